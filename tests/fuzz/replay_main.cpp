@@ -60,7 +60,7 @@ constexpr std::size_t kLongest = 65'536;
 // what a failed claim was about, for the signal handler
 char now[512];
 
-extern "C" void tell(int signal) {
+extern "C" void report_fatal_signal(int signal) {
   static_cast<void>(std::fprintf(stderr, "the claim failed, or the program, with signal %d on %s\n", signal, now));
   std::_Exit(1);
 }
@@ -69,7 +69,8 @@ extern "C" void tell(int signal) {
 void report_signal(int signal) {
   struct sigaction present {};
   const bool is_known = sigaction(signal, nullptr, &present) == 0;
-  if (is_known && (present.sa_flags & SA_SIGINFO) == 0 && present.sa_handler == SIG_DFL) std::signal(signal, tell);
+  if (is_known && (present.sa_flags & SA_SIGINFO) == 0 && present.sa_handler == SIG_DFL)
+    std::signal(signal, report_fatal_signal);
 }
 
 void give(const Input& input, const std::string& name) {

@@ -73,9 +73,9 @@ class LockStep {
   // a clock of its own: on a busy machine nodes would request samples that are on their way
   static constexpr std::int64_t kBetweenPolls = 10'000;
 
-  // a controller with long names, that says a value in every step
+  // a controller with long names, that writes a value in every step
   void steer() {
-    for (transport::Received heard; controller_.take(heard);) {
+    for (transport::Received received; controller_.take(received);) {
     }
     if (io_->next_step() == steered_) return;
     steered_ = io_->next_step();

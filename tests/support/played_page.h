@@ -30,8 +30,8 @@ inline nlohmann::json played_page(const std::string& page, const std::string& dr
   std::array<char, 4096> block{};
   for (std::size_t got = 0; (got = fread(block.data(), 1, block.size(), pipe)) > 0;) out.append(block.data(), got);
   const bool has_failed = pclose(pipe) != 0;
-  const nlohmann::json said = nlohmann::json::parse(out, nullptr, false);
-  return has_failed || said.is_discarded() ? nlohmann::json(nullptr) : said;
+  const nlohmann::json result = nlohmann::json::parse(out, nullptr, false);
+  return has_failed || result.is_discarded() ? nlohmann::json(nullptr) : result;
 }
 
 }  // namespace slew::testing

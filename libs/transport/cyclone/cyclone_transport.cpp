@@ -177,7 +177,7 @@ Status CycloneTransport::create() {
   return Status::ok();
 }
 
-bool CycloneTransport::hears_kept(wire::Topic topic) const noexcept {
+bool CycloneTransport::receives_kept(wire::Topic topic) const noexcept {
   return topic != (options_.is_controller ? wire::Topic::controller_lease : wire::Topic::variables);
 }
 
@@ -200,7 +200,7 @@ Status CycloneTransport::create_endpoints(wire::Topic topic, std::int32_t publis
     dds_lset_data_available_arg(listener, on_data_available, &bells_[i], /*reset_on_invoke=*/true);
     // without keys a reader's depth is that of all its writers together
     if (has_several_writers(topic)) dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kWriters * traits(topic).depth);
-    if (!hears_kept(topic)) dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
+    if (!receives_kept(topic)) dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
     readers_[i] = dds_create_reader(subscriber, handle, qos.get(), listener);
     dds_delete_listener(listener);
     if (readers_[i] < 0) return creation_error(traits(topic).name, readers_[i], *domain_);

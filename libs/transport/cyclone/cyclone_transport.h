@@ -64,7 +64,7 @@ class CycloneTransport final : public Transport {
 
   CycloneTransport(std::shared_ptr<CycloneDomain> domain, Endpoint options);
   [[nodiscard]] Status create();
-  [[nodiscard]] bool hears_kept(wire::Topic topic) const noexcept;
+  [[nodiscard]] bool receives_kept(wire::Topic topic) const noexcept;
   [[nodiscard]] Status create_endpoints(wire::Topic topic, std::int32_t publisher, std::int32_t subscriber);
   [[nodiscard]] bool refill();
   void look_at_the_clock() noexcept;

@@ -49,7 +49,7 @@ Command::Command(const std::string& program, const std::vector<std::string>& arg
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     // a shell's background job ignores them, and so would what it starts
-    for (const int asked : {SIGINT, SIGHUP, SIGTERM}) signal(asked, SIG_DFL);
+    for (const int ignored : {SIGINT, SIGHUP, SIGTERM}) signal(ignored, SIG_DFL);
     const int nothing = open("/dev/null", O_RDONLY);
     dup2(nothing, STDIN_FILENO);
     dup2(out, STDOUT_FILENO);

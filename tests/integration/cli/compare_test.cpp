@@ -115,10 +115,10 @@ TEST_F(CompareVerb, CtrlCPrintsTheRowsThatAreDone) {
 }
 
 TEST_F(CompareVerb, WhatCannotBeIsRefusedWithCode2) {
-  const auto refused = [this](const std::vector<std::string>& more, const char* says) {
+  const auto refused = [this](const std::vector<std::string>& more, const char* sentence) {
     const CommandResult result = compare("first_steps.yaml", more);
     EXPECT_EQ(result.code, 2) << result.err;
-    EXPECT_TRUE(contains(result.err, says)) << result.err << "\nexpected: " << says;
+    EXPECT_TRUE(contains(result.err, sentence)) << result.err << "\nexpected: " << sentence;
     EXPECT_TRUE(result.out.empty()) << result.out;
   };
   refused({"--formulations", "newton"}, "--formulations: there is no 'newton' in this version; expected all, or some");

@@ -20,7 +20,7 @@ class DescribeVerb : public ::testing::Test {
   WorkFolder work_;
 };
 
-TEST_F(DescribeVerb, ShowsOnlyThePartsThatWereAskedFor) {
+TEST_F(DescribeVerb, ShowsOnlyTheRequestedParts) {
   const CommandResult eigenvalues =
       slewring({"describe", scene_file("truck_crane.yaml"), "--eigenvalues", "--at", "2s"});
   ASSERT_EQ(eigenvalues.code, 0) << eigenvalues.err;

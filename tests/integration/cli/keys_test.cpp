@@ -30,9 +30,9 @@ class Keys : public ::testing::Test {
   // problem of each identity in check's output; empty: good
   std::map<std::string, std::string> problems(const std::string& store = "plant") {
     const CommandResult result = keys({"check", store, "--json"});
-    std::map<std::string, std::string> said;
-    for (const auto& one : nlohmann::json::parse(result.out, nullptr, false)) said[one.at("what")] = one.at("problem");
-    return said;
+    std::map<std::string, std::string> found;
+    for (const auto& one : nlohmann::json::parse(result.out, nullptr, false)) found[one.at("what")] = one.at("problem");
+    return found;
   }
   const fs::path& folder() const { return work_.path(); }
   [[nodiscard]] std::string domain() const { return std::to_string(domain_.number()); }
@@ -222,7 +222,7 @@ TEST_F(Keys, AreGoodFromADayBeforeTheyWereMade) {
   }
 }
 
-TEST_F(Keys, ThatHaveExpiredAreRefusedAndTold) {
+TEST_F(Keys, ThatHaveExpiredAreRefusedAndReported) {
   ASSERT_EQ(keys({"create", "plant"}).code, 0);
   const fs::path io = folder() / "plant/io", store = folder() / "plant";
   const auto openssl = [&](const std::vector<std::string>& arguments) {
@@ -275,18 +275,20 @@ TEST_F(Keys, AViewerLooksOnAndCanDoNothing) {
                   {"run", scene_file("truck_crane.yaml"), "--keys", "plant", "--domain", domain(), "--session", "t",
                    "--duration", "0", "--step", "10 ms", "--json"},
                   folder());
-  const auto say = [&](std::vector<std::string> more) {
+  const auto run_verb = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--session", "t", "--domain", domain(), "--keys", "glass", "--identity", "viewer"});
     return run("slewring", more, folder());
   };
-  ASSERT_TRUE(wait_until([&] { return say({"watch", "Bag.position.y", "--count", "2"}).code == 0; })) << session.err();
-  const CommandResult named = say({"variables"});
+  ASSERT_TRUE(wait_until([&] {
+    return run_verb({"watch", "Bag.position.y", "--count", "2"}).code == 0;
+  })) << session.err();
+  const CommandResult named = run_verb({"variables"});
   EXPECT_EQ(named.code, 0) << named.err;
   EXPECT_NE(named.out.find("Bag.position.y"), std::string::npos) << named.out;
-  for (const std::vector<std::string>& wish :
+  for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"control", "stop"}, {"control", "reset"}, {"param", "set", "Bag.mass=900"}}) {
-    const CommandResult refused = say(wish);
-    EXPECT_EQ(refused.code, 2) << wish.back() << refused.err;
+    const CommandResult refused = run_verb(arguments);
+    EXPECT_EQ(refused.code, 2) << arguments.back() << refused.err;
     EXPECT_NE(refused.err.find("the keys of this process do not allow it"), std::string::npos) << refused.err;
   }
   EXPECT_FALSE(session.has_ended());
@@ -308,7 +310,7 @@ TEST_F(Keys, SessionWithKeysGivesTheBitsOfOneWithout) {
 }
 
 // The observer of a run that is not recorded reads the samples; stores of before did not let it.
-TEST_F(Keys, WhatStepsReportIsToldWithoutARecordingOrSaidToBeUnknown) {
+TEST_F(Keys, FlagsAreReportedWithoutARecordingOrAsMissing) {
   std::ofstream(folder() / "closed.yaml")
       << "volumes:\n  Vol_P: {rigid_volume: 1 l}\n  Vol_T: {initial_pressure: 1 bar, fixed: true}\n"
          "components:\n  Pump: {type: ls_pump, port_a: Vol_P, port_b: Vol_T, speed: 1500 rpm, displacement: 28 cc/rev, "
@@ -370,7 +372,7 @@ TEST_F(Keys, HoldersCannotGrantThemselvesMore) {
   EXPECT_NE(forged.err.find("the keys of this process are not good"), std::string::npos) << forged.err;
 }
 
-TEST_F(Keys, WhoHasTheWrongOnesOrNoneIsNotHeardAndIsReported) {
+TEST_F(Keys, AProcessWithWrongOnesOrNoneIsIgnoredAndReported) {
   ASSERT_EQ(keys({"create", "plant"}).code, 0);
   ASSERT_EQ(keys({"create", "other"}).code, 0);
   ASSERT_EQ(keys({"add", "plant", "--role", "hydraulics", "--name", "guest", "--session", "foo_*"}).code, 0);

@@ -14,7 +14,7 @@
 namespace slew::testing {
 
 enum class Forgery : std::uint8_t {
-  newer,           // what was overheard, with a higher sequence number
+  newer,           // what was captured, with a higher sequence number
   newer_unsigned,  // that as well, without its signature or the end of it
   gap,             // GAP: the next million samples are of no matter
   heartbeat,       // HEARTBEAT: the next million samples are gone
@@ -32,7 +32,7 @@ class Stranger {
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
   // It has received this number of samples of a program, and the number of a process that has answered one.
-  [[nodiscard]] bool has_heard(std::size_t samples) const;
+  [[nodiscard]] bool has_received(std::size_t samples) const;
   // This text was in a packet as it is.
   [[nodiscard]] bool has_seen(std::string_view text) const;
   // Sends forged packets in the name of the last sample's writer, to the last reader, up to `count` numbers ahead.

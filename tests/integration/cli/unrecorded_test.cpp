@@ -9,7 +9,7 @@
 namespace slew::testing {
 namespace unrecorded_test {
 
-TEST(Unrecorded, WhatIsNotRecordedIsToldBeforeAndWhoeverAsksForIt) {
+TEST(Unrecorded, IsReportedBeforeARunAndOnRequest) {
   const WorkFolder work;
   const auto slewring = [&](const std::vector<std::string>& arguments) {
     return run("slewring", arguments, work.path());
@@ -32,10 +32,10 @@ TEST(Unrecorded, WhatIsNotRecordedIsToldBeforeAndWhoeverAsksForIt) {
   EXPECT_EQ(report.at("notes").size(), 3u) << report.at("notes");
 
   const std::string recording = work.recording().string();
-  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& said) {
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& sentence) {
     const CommandResult refusal = slewring(arguments);
     EXPECT_EQ(refusal.code, 2);
-    EXPECT_NE(refusal.err.find(said), std::string::npos) << refusal.err;
+    EXPECT_NE(refusal.err.find(sentence), std::string::npos) << refusal.err;
   };
   const std::string pressure = "Vol_MainPump.pressure is not in this recording, whose scene records [Cyl_*] only";
   refused({"plot", recording, "Vol_MainPump.pressure", "-o", "a.svg"}, pressure);

@@ -44,7 +44,7 @@ class ClientLibrary : public ::testing::Test {
   }
   [[nodiscard]] Client join(const char* controller) const {
     Client client(slewring_join(session->name().c_str(), controller, session->domain(), "lo", "", kSoon));
-    EXPECT_NE(client, nullptr) << slewring_error(nullptr) << session->said();
+    EXPECT_NE(client, nullptr) << slewring_error(nullptr) << session->errors();
     return client;
   }
   // a verb of the program on this session
@@ -76,24 +76,24 @@ class ClientLibrary : public ::testing::Test {
     }
   }
   // reads blocks until the program has printed the words
-  [[nodiscard]] static bool comes_to_say(slewring_session* client, const Program& program, const std::string& words) {
-    const auto has_said = [&] { return program.out().find(words) != std::string::npos; };
-    for (int i = 0; i < 3000 && !has_said(); ++i) {
+  [[nodiscard]] static bool comes_to_print(slewring_session* client, const Program& program, const std::string& words) {
+    const auto has_printed = [&] { return program.out().find(words) != std::string::npos; };
+    for (int i = 0; i < 3000 && !has_printed(); ++i) {
       if (slewring_latest(client, kSoon) != SLEWRING_OK) return false;
     }
-    return has_said();
+    return has_printed();
   }
   void stop() {
     session->node(Role::io).send(SIGINT);
     for (const auto& [role, code] : session->wait_all()) {
-      EXPECT_TRUE(code == 130 || (code == 0 && role != Role::io)) << node::to_text(role) << session->said();
+      EXPECT_TRUE(code == 130 || (code == 0 && role != Role::io)) << node::to_text(role) << session->errors();
     }
   }
 
   std::unique_ptr<Session> session;
 };
 
-TEST_F(ClientLibrary, LooksForNoVariableOfANodeThatSaysThatItHasNone) {
+TEST_F(ClientLibrary, LooksForNoVariableOfANodeWithAnEmptyDirectory) {
   start({"--set", "recording.variables=[Vol_*]"});  // of hydraulics alone
   const Client client = join("reader");
   EXPECT_GE(slewring_find(client.get(), "Vol_LiftCyl_A.pressure", kSoon), 0) << slewring_error(client.get());
@@ -106,7 +106,7 @@ TEST_F(ClientLibrary, LooksForNoVariableOfANodeThatSaysThatItHasNone) {
   stop();
 }
 
-TEST_F(ClientLibrary, FindsAVariableOfANodeThatTellsItsNamesLongAfterTheOthers) {
+TEST_F(ClientLibrary, FindsAVariableOfANodeThatPublishesItsNamesLongAfterTheOthers) {
   const TestDomain domain;
   const ScratchFolder folder;
   Program played(program_path("played_session"), {"late", std::to_string(domain.number())}, folder.path() / "played");
@@ -207,7 +207,7 @@ TEST_F(ClientLibrary, TwoControllersMoveTwoChannelsOneOfThemDigital) {
   stop();
 }
 
-TEST_F(ClientLibrary, TheSupervisorTakesOverAndTheHolderIsTold) {
+TEST_F(ClientLibrary, TheSupervisorTakesOverAndTheHolderIsInformed) {
   start({"--set", "Input_Lift.supervisor=instructor"});
   const Client trainee = join("trainee"), instructor = join("instructor");
   ASSERT_EQ(slewring_step(trainee.get(), kSoon), SLEWRING_OK) << "the session runs: it can be stopped";
@@ -233,29 +233,29 @@ TEST_F(ClientLibrary, TheSupervisorTakesOverAndTheHolderIsTold) {
 TEST_F(ClientLibrary, ALateAnswerToAcquireIsNoAnswerToTakeOver) {
   start({"--set", "Input_Lift.supervisor=instructor"});
   Observer& observer = session->observer();
-  ASSERT_TRUE(observer.wait_for_step(1)) << session->said();
+  ASSERT_TRUE(observer.wait_for_step(1)) << session->errors();
   ASSERT_TRUE(observer.acquire("trainee", "Input_Lift").is_granted);
   const auto probe = start_probe("instructor", "instructor", "20", "take_over");
   const auto refusal = [&] {
     return std::find_if(observer.leases().begin(), observer.leases().end(),
                         [](const wire::ControllerLease& lease) { return lease.controller == "instructor"; });
   };
-  const auto has_said = [&](const char* words) { return probe->out().find(words) != std::string::npos; };
-  ASSERT_TRUE(observer.wait_until([&] { return refusal() != observer.leases().end() && has_said("refused: "); }));
+  const auto has_printed = [&](const char* words) { return probe->out().find(words) != std::string::npos; };
+  ASSERT_TRUE(observer.wait_until([&] { return refusal() != observer.leases().end() && has_printed("refused: "); }));
   const wire::ControllerLease late = *refusal();
   session->node(Role::io).send(SIGSTOP);
   for (int i = 0; i < 20; ++i) {
     probe->send(SIGCONT);
-    observer.say(wire::Topic::controller_lease, late);
-    EXPECT_FALSE(observer.wait_until([&] { return has_said("not taken over: "); }, 20'000'000)) << probe->out();
+    observer.publish(wire::Topic::controller_lease, late);
+    EXPECT_FALSE(observer.wait_until([&] { return has_printed("not taken over: "); }, 20'000'000)) << probe->out();
   }
   session->node(Role::io).send(SIGCONT);
-  ASSERT_TRUE(observer.wait_until([&] { return has_said("taken over\n"); })) << probe->out();
+  ASSERT_TRUE(observer.wait_until([&] { return has_printed("taken over\n"); })) << probe->out();
   // nor does it take the channel away again
-  observer.say(wire::Topic::controller_lease, late);
-  ASSERT_TRUE(observer.wait_for_step(observer.step() + 200)) << session->said();
+  observer.publish(wire::Topic::controller_lease, late);
+  ASSERT_TRUE(observer.wait_for_step(observer.step() + 200)) << session->errors();
   EXPECT_EQ(observer.variable("Input_Lift.raw"), 0.375);
-  EXPECT_FALSE(has_said("lost")) << probe->out();
+  EXPECT_FALSE(has_printed("lost")) << probe->out();
   stop();
 }
 
@@ -402,7 +402,7 @@ TEST_F(ClientLibrary, TheHeaderForCxxThrowsAndReleasesAtTheEnd) {
 
 // ---- controllers that leave, stand still, die or are there twice ----------------------------------------------
 
-TEST_F(ClientLibrary, WhoLeavesALockstepChannelAfterReadingABlockIsNotWaitedFor) {
+TEST_F(ClientLibrary, NoTickWaitsForAControllerThatLeavesALockstepChannelAfterReadingABlock) {
   start({"--set", "Input_Lift.controller=lockstep", "--set", "Input_Lift.controller_wait=4 s", "--set",
          "recording.every=1"});
   const Client reader = join("reader");
@@ -421,43 +421,43 @@ TEST_F(ClientLibrary, WhoLeavesALockstepChannelAfterReadingABlockIsNotWaitedFor)
   }
   read_to(reader.get(), 400);
   EXPECT_EQ(slewring_value(reader.get(), late), 0);
-  const std::string said = session->said();
-  EXPECT_EQ(said.find("waited"), std::string::npos) << said;
-  EXPECT_NE(said.find("warning: 'pid' has released channel Input_Lift (controller: lockstep): it is free from tick"),
+  const std::string errors = session->errors();
+  EXPECT_EQ(errors.find("waited"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("warning: 'pid' has released channel Input_Lift (controller: lockstep): it is free from tick"),
             std::string::npos)
-      << said;
+      << errors;
   stop();
 }
 
 // the gate has a standstill over a reset, and one below this time
-TEST_F(ClientLibrary, NightlyWhoStoodStillLongerThanTheMiddlewareKnowsItLearnsThatItsChannelIsGone) {
+TEST_F(ClientLibrary, NightlyAControllerThatStoodStillLongerThanItsLivelinessLeaseLosesItsChannel) {
   start();
   const Client reader = join("reader");
   const auto probe = start_probe("probe", "probe");
-  ASSERT_TRUE(comes_to_say(reader.get(), *probe, "acquired")) << session->said();
+  ASSERT_TRUE(comes_to_print(reader.get(), *probe, "acquired")) << session->errors();
   probe->send(SIGSTOP);
   // no process receives from it for 2 s, and it has been silent for 5 s
   read_to(reader.get(), slewring_present_step(reader.get()) + 7500);
   probe->send(SIGCONT);
-  EXPECT_TRUE(comes_to_say(reader.get(), *probe,
-                           "lost: 'probe' does not hold channel Input_Lift: it is free; acquire it again to go on\n"
-                           "acquired"))
-      << probe->out() << session->said();
+  EXPECT_TRUE(comes_to_print(reader.get(), *probe,
+                             "lost: 'probe' does not hold channel Input_Lift: it is free; acquire it again to go on\n"
+                             "acquired"))
+      << probe->out() << session->errors();
   stop();
 }
 
-TEST_F(ClientLibrary, WhoStoodStillOverAResetLearnsOfIt) {
+TEST_F(ClientLibrary, AControllerThatStoodStillOverAResetSeesIt) {
   start();
   const Client reader = join("reader");
   const auto probe = start_probe("probe", "probe");
-  ASSERT_TRUE(comes_to_say(reader.get(), *probe, "acquired")) << session->said();
+  ASSERT_TRUE(comes_to_print(reader.get(), *probe, "acquired")) << session->errors();
   probe->send(SIGSTOP);
   control("reset");
   read_to(reader.get(), slewring_present_step(reader.get()) + 20);
   read_to(reader.get(), 3000);
   probe->send(SIGCONT);
-  EXPECT_TRUE(comes_to_say(reader.get(), *probe, "lost: ")) << probe->out() << session->said();
-  EXPECT_TRUE(comes_to_say(reader.get(), *probe, "go on\nacquired")) << probe->out() << session->said();
+  EXPECT_TRUE(comes_to_print(reader.get(), *probe, "lost: ")) << probe->out() << session->errors();
+  EXPECT_TRUE(comes_to_print(reader.get(), *probe, "go on\nacquired")) << probe->out() << session->errors();
   stop();
 }
 
@@ -465,7 +465,7 @@ TEST_F(ClientLibrary, ItsOwnStandstillIsNoTimeOut) {
   start();
   const Client reader = join("reader");
   const auto probe = start_probe("probe", "probe", "3");
-  ASSERT_TRUE(comes_to_say(reader.get(), *probe, "acquired")) << session->said();
+  ASSERT_TRUE(comes_to_print(reader.get(), *probe, "acquired")) << session->errors();
   // no block comes, so that it finds none when it wakes up behind its time-out
   control("pause");
   probe->send(SIGSTOP);
@@ -475,7 +475,7 @@ TEST_F(ClientLibrary, ItsOwnStandstillIsNoTimeOut) {
   probe->send(SIGCONT);
   control("resume");
   read_to(reader.get(), slewring_present_step(reader.get()) + 200);
-  EXPECT_EQ(probe->out(), "acquired\n") << session->said();
+  EXPECT_EQ(probe->out(), "acquired\n") << session->errors();
   stop();
 }
 
@@ -485,7 +485,7 @@ TEST_F(ClientLibrary, OfTwoProcessesOfOneNameTheSecondIsRefusedUntilTheFirstIsGo
   const int raw = slewring_find(reader.get(), "Input_Lift.raw", kSoon);
   ASSERT_GE(raw, 0);
   const auto first = start_probe("probe", "first");
-  ASSERT_TRUE(comes_to_say(reader.get(), *first, "acquired")) << session->said();
+  ASSERT_TRUE(comes_to_print(reader.get(), *first, "acquired")) << session->errors();
   const auto second = start_probe("probe", "second");
   EXPECT_EQ(second->wait(), 0);
   const std::string process = "(process " + std::to_string(first->pid()) + " on ";
@@ -502,7 +502,7 @@ TEST_F(ClientLibrary, OfTwoProcessesOfOneNameTheSecondIsRefusedUntilTheFirstIsGo
   std::unique_ptr<Program> third;
   for (int i = 0; i < 100; ++i) {
     third = start_probe("probe", "third" + std::to_string(i));
-    ASSERT_TRUE(comes_to_say(reader.get(), *third, "d")) << session->said();
+    ASSERT_TRUE(comes_to_print(reader.get(), *third, "d")) << session->errors();
     if (third->out() == "acquired\n") break;
   }
   EXPECT_EQ(third->out(), "acquired\n");
@@ -524,16 +524,16 @@ TEST_F(ClientLibrary, TwoSessionsOfOneProcessUnderOneNameAreTwoControllers) {
   stop();
 }
 
-TEST_F(ClientLibrary, OfTwoOfOneNameThatAskTogetherOneHasTheChannel) {
+TEST_F(ClientLibrary, OneOfTwoWithOneNameThatRequestTogetherHasTheChannel) {
   start();
   const std::array<Client, 2> both = {join("pid"), join("pid")};
   const auto find = [&](std::size_t i) { return slewring_find(both[i].get(), "Input_Lift.loop_delay", kSoon); };
   const std::array<int, 2> delay = {find(0), find(1)};
   ASSERT_EQ(slewring_step(both[0].get(), kSoon), SLEWRING_OK) << "the session runs: it can be stopped";
   for (int round = 0; round < 50; ++round) {
-    const auto ask = [&](std::size_t i) { return slewring_acquire(both[i].get(), "Input_Lift", kSoon); };
-    auto second = std::async(std::launch::async, ask, 1);
-    const int of_first = ask(0), of_second = second.get();
+    const auto acquire = [&](std::size_t i) { return slewring_acquire(both[i].get(), "Input_Lift", kSoon); };
+    auto second = std::async(std::launch::async, acquire, 1);
+    const int of_first = acquire(0), of_second = second.get();
     ASSERT_NE(of_first >= 0, of_second >= 0) << round;
     const std::size_t winner = of_first >= 0 ? 0 : 1;
     ASSERT_EQ(std::min(of_first, of_second), SLEWRING_REFUSED) << slewring_error(both[1 - winner].get());
@@ -618,7 +618,7 @@ class Environment {
   const char* name_;
 };
 
-TEST_F(ClientLibrary, InASessionWithKeysMovesItsChannelAndWithoutThemHearsNothing) {
+TEST_F(ClientLibrary, InASessionWithKeysMovesItsChannelAndWithoutThemReceivesNothing) {
   session = std::make_unique<Session>(
       std::vector<std::string>{"--pace", "real", "--duration", "60s", "--input", "none"}, kScene);
   const std::string plant = (session->folder() / "plant").string();
@@ -657,7 +657,7 @@ TEST_F(ClientLibrary, InASessionWithKeysMovesItsChannelAndWithoutThemHearsNothin
   EXPECT_NE(refused(2).find("compare its name, domain, interface, peers and keys"), std::string::npos);
   slewring({"control", "stop", "--session", session->name(), "--domain", std::to_string(session->domain()), "--keys",
             plant});
-  EXPECT_EQ(session->wait_all(), all_ok()) << session->said();
+  EXPECT_EQ(session->wait_all(), all_ok()) << session->errors();
 }
 
 }  // namespace client_test

@@ -139,7 +139,7 @@ TEST_F(FaultSeeds, ARoleThatHasBeenReadyFor2SecondsYieldsToNoStatus) {
   }
 }
 
-TEST_F(FaultSeeds, ARecorderThatHearsNothingForLessThan2SecondsMissesNoStepAtAnyStep) {
+TEST_F(FaultSeeds, ARecorderThatReceivesNothingForLessThan2SecondsMissesNoStepAtAnyStep) {
   for (const char* step : {"1 ms", "0.5 ms", "0.25 ms"}) {
     SCOPED_TRACE(step);
     const scene::Scene scene =
@@ -191,7 +191,7 @@ TEST_F(FaultSeeds, AllComeToTheBitsOfACleanRun) {
 }
 
 // Whatever is dropped for good: within the time in which a node may wait there is a tick or a sentence, and at the end
-// either all steps are done or every node that could not go on says why.
+// either all steps are done or every node that could not go on reports its reason.
 class DropSeeds : public FaultSeeds {
  protected:
   static constexpr std::int64_t kSilence = 1'000 * kMs;       // between a tick and the sentence that it waits
@@ -225,7 +225,7 @@ class DropSeeds : public FaultSeeds {
       EXPECT_EQ(session.auditor().contradiction(), "") << session.text();
       const Auditor::Chain& expected = clean(which);
       for (const auto& [key, hash] : session.auditor().chain()) {
-        // the last tick of a session that ends early says END, where the clean one has inputs
+        // the last tick of a session that ends early has the END flag, where the clean one has inputs
         if (key.first == wire::Topic::tick && key.second >= session.next_tick()) continue;
         const auto found = expected.find(key);
         const bool differs = found != expected.end() && found->second != hash;

@@ -207,7 +207,7 @@ void FaultyTransport::deliver(const transport::Received& message) {
   if (!is_over && plan_.mutation > 0 && happens(plan_.mutation)) return deliver_mutated(message);
   const std::int64_t cut_ns = has_sender && !is_over ? plan_.cut_until(header.role, self_, now_ns) : 0;
   if (is_dialogue(message.topic, self_)) {
-    std::int64_t& last_ns = last_said_[{header.role, message.topic}];
+    std::int64_t& last_ns = last_sent_[{header.role, message.topic}];
     last_ns = std::max({last_ns, now_ns, cut_ns});
     if (!is_over && cut_ns == 0 && happens(plan_.messages.late)) {
       ++count_.late;

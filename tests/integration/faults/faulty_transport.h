@@ -135,7 +135,7 @@ class FaultyTransport final : public transport::Transport {
   FaultCount& count_;
   std::mt19937_64 random_;
   std::multimap<std::int64_t, Pending> pending_;                          // by the time at which they are there
-  std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_said_;  // due, of a dialogue
+  std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_sent_;  // due, of a dialogue
   std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_due_;   // of all that was sent so far
   Pending taken_;
 };

@@ -40,30 +40,31 @@ Auditor::Auditor(transport::InProcessBus& bus)
 
 template <typename Message>
 void Auditor::hear(const transport::Received& message) {
-  Message heard;
-  if (!transport::decode(message.bytes, heard)) {
+  Message decoded;
+  if (!transport::decode(message.bytes, decoded)) {
     contradiction_ = fmt::format("{} publishes a message that cannot be decoded", node::to_text(message.topic));
     return;
   }
   // JOIN repeats its step -1 until it is received
-  if (heard.header.phase == wire::Phase::join) return;
+  if (decoded.header.phase == wire::Phase::join) return;
   // independent of the process
-  heard.header.incarnation = 0;
+  decoded.header.incarnation = 0;
   std::vector<std::byte> bytes;
-  if (!transport::encode(heard, bytes)) contradiction_ = "a message cannot be encoded again";
-  const auto [said, is_new] = said_.try_emplace({message.topic, heard.header.phase, heard.header.step}, bytes);
-  const bool is_same = said->second == bytes;
+  if (!transport::encode(decoded, bytes)) contradiction_ = "a message cannot be encoded again";
+  const auto [entry, is_new] =
+      published_.try_emplace({message.topic, decoded.header.phase, decoded.header.step}, bytes);
+  const bool is_same = entry->second == bytes;
   if (!is_new && !is_same && contradiction_.empty()) {
-    contradiction_ =
-        fmt::format("{} publishes two different messages of step {}", node::to_text(message.topic), heard.header.step);
+    contradiction_ = fmt::format("{} publishes two different messages of step {}", node::to_text(message.topic),
+                                 decoded.header.step);
   }
   std::uint64_t hash = 0;
-  if constexpr (requires { heard.state.state_hash; }) {
-    hash = heard.state.state_hash;
+  if constexpr (requires { decoded.state.state_hash; }) {
+    hash = decoded.state.state_hash;
   } else {
-    hash = heard.state_hash;
+    hash = decoded.state_hash;
   }
-  chain_[{message.topic, heard.header.step}] = hash;
+  chain_[{message.topic, decoded.header.step}] = hash;
 }
 
 std::size_t Auditor::given_up(Role role) const {
@@ -259,18 +260,18 @@ std::string VirtualSession::sentence() const {
   for (const Place& place : places_) {
     if (place.is_dead) continue;
     const node::SessionMember& member = place.node->member();
-    const bool says = member.state() == wire::NodeState::holding || member.state() == wire::NodeState::fault;
-    if (says && !member.reason().empty()) return member.reason();
+    const bool has_reason = member.state() == wire::NodeState::holding || member.state() == wire::NodeState::fault;
+    if (has_reason && !member.reason().empty()) return member.reason();
   }
   return "";
 }
 
 std::uint64_t VirtualSession::resends() const {
-  std::uint64_t asked = 0;
+  std::uint64_t requested = 0;
   for (const Place& place : places_) {
-    if (!place.is_dead) asked += place.node->health().resends_asked;
+    if (!place.is_dead) requested += place.node->health().resends_asked;
   }
-  return asked;
+  return requested;
 }
 
 std::string VirtualSession::text() const {

@@ -37,7 +37,7 @@ class Auditor {
 
   std::unique_ptr<transport::Transport> transport_;
   Chain chain_;
-  std::map<std::tuple<wire::Topic, wire::Phase, StepIndex>, std::vector<std::byte>> said_;
+  std::map<std::tuple<wire::Topic, wire::Phase, StepIndex>, std::vector<std::byte>> published_;
   std::string contradiction_;
   std::vector<wire::GivenUp> given_up_;
 };

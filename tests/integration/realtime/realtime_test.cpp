@@ -172,7 +172,7 @@ TEST_F(RealTime, MemoryThatMayNotBeLockedLeavesTheScheduling) {
   EXPECT_EQ(result.err.find("SCHED_FIFO"), std::string::npos) << result.err;
 }
 
-TEST_F(RealTime, StressTellsOnceThatMemoryMayNotBeLocked) {
+TEST_F(RealTime, StressReportsOnceThatMemoryMayNotBeLocked) {
   if (!kLocksMemory) GTEST_SKIP() << "the sanitizers lock no memory";
   if (geteuid() != 0) GTEST_SKIP() << "needs the right to SCHED_FIFO: run it as root";
   const CommandResult result =
@@ -192,10 +192,10 @@ TEST_F(RealTime, ABoundThatCouldNotBeMeasuredIsNotKept) {
   std::vector<std::string> stress = {
       "stress", scene_file("truck_crane.yaml"), "--domain", std::to_string(domain_.number()), "--rt", "--seconds", "2",
       "--quiet"};
-  const CommandResult told = run_without("sys_nice", stress);
-  EXPECT_EQ(told.code, 0) << told.err;
-  EXPECT_NE(told.err.find("SCHED_FIFO was refused, and cells that need it were not run"), std::string::npos)
-      << told.err;
+  const CommandResult result_of_stress = run_without("sys_nice", stress);
+  EXPECT_EQ(result_of_stress.code, 0) << result_of_stress.err;
+  EXPECT_NE(result_of_stress.err.find("SCHED_FIFO was refused, and cells that need it were not run"), std::string::npos)
+      << result_of_stress.err;
   stress.insert(stress.end(), {"--max-miss", "100"});
   EXPECT_EQ(run_without("sys_nice", stress).code, 7);
 }
@@ -223,7 +223,7 @@ TEST_F(RealTime, NodesTakeNothingFromTheHeapAfterReadyNorCycloneOnceItsHistoryIs
   }
 }
 
-TEST_F(RealTime, WhatIsLeftOutUnderLoadIsTold) {
+TEST_F(RealTime, VariablesLeftOutUnderLoadAreReported) {
   const CommandResult result = run_crane(
       {"--step", "10 us", "--duration", "0.02", "--set", "session.shed=variables", "--set", "session.start_grace=0 s"});
   ASSERT_EQ(result.code, 0) << result.err;
@@ -250,14 +250,14 @@ TEST_F(RealTime, StopsASessionThatCannotKeepUpWithCode3) {
   EXPECT_NE(result.err.find("it was ended, what was recorded is valid"), std::string::npos) << result.err;
 }
 
-TEST_F(RealTime, ASessionThatSlipsTellsItOnceAndItsBooksBalance) {
+TEST_F(RealTime, ASessionThatSlipsReportsItOnceAndItsBooksBalance) {
   const CommandResult result =
       run_crane({"--step", "10 us", "--duration", "0.05", "--no-record", "--json", "--set", "session.start_grace=0 s"});
   ASSERT_EQ(result.code, 0) << result.err;
-  const std::string told = "steps of wall time were given up";
-  const std::size_t first = result.err.find(told);
+  const std::string warning = "steps of wall time were given up";
+  const std::size_t first = result.err.find(warning);
   ASSERT_NE(first, std::string::npos) << result.err;
-  EXPECT_EQ(result.err.find(told, first + 1), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find(warning, first + 1), std::string::npos) << result.err;
   const json deadline = json::parse(result.out).at("deadline");
   EXPECT_TRUE(deadline.at("books_balance"));
   EXPECT_GT(deadline.at("steps_skipped"), 0);

@@ -31,10 +31,10 @@ class Stress : public ::testing::Test {
   CommandResult stress(std::vector<std::string> more) const {
     return run("slewring", arguments(std::move(more)), work_.path());
   }
-  void expect_refused(const std::vector<std::string>& more, int code, const std::string& says) const {
+  void expect_refused(const std::vector<std::string>& more, int code, const std::string& sentence) const {
     const CommandResult result = stress(more);
     EXPECT_EQ(result.code, code) << result.err;
-    EXPECT_NE(result.err.find(says), std::string::npos) << result.err << "\nexpected: " << says;
+    EXPECT_NE(result.err.find(sentence), std::string::npos) << result.err << "\nexpected: " << sentence;
     EXPECT_EQ(result.out, "");
     EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
   }
@@ -84,16 +84,17 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
     const double behind = rest < 0 ? 0 : std::floor(rest / 1e-3) + 1;
     EXPECT_EQ(books.at("due").get<double>(), 2000 + books.at("skipped").get<double>() + behind);
     EXPECT_NEAR(lag, books.at("skipped").get<double>() * 1e-3 + rest, 1e-9);
-    for (const char* who : {"session", "yardstick"}) {
-      expect_ordered(cell.at(who).at("response"));
-      EXPECT_LE(cell.at(who).at("missed"), cell.at(who).at("response").at("count"));
-      EXPECT_LE(cell.at(who).at("skipped"), cell.at(who).at("missed"));
-      EXPECT_LE(cell.at(who).at("longest_run_of_misses"), cell.at(who).at("missed"));
+    for (const char* source : {"session", "yardstick"}) {
+      expect_ordered(cell.at(source).at("response"));
+      EXPECT_LE(cell.at(source).at("missed"), cell.at(source).at("response").at("count"));
+      EXPECT_LE(cell.at(source).at("skipped"), cell.at(source).at("missed"));
+      EXPECT_LE(cell.at(source).at("longest_run_of_misses"), cell.at(source).at("missed"));
       // looks at half a second may find no running thread
-      EXPECT_GE(cell.at(who).at("runnable"), cell.at("load") == "mixed" && who == std::string("session") ? 0.5 : 0)
-          << who;
-      EXPECT_GT(cell.at(who).at("busy"), 0) << who;
-      EXPECT_GE(cell.at(who).at("steal"), 0) << who;
+      EXPECT_GE(cell.at(source).at("runnable"),
+                cell.at("load") == "mixed" && source == std::string("session") ? 0.5 : 0)
+          << source;
+      EXPECT_GT(cell.at(source).at("busy"), 0) << source;
+      EXPECT_GE(cell.at(source).at("steal"), 0) << source;
     }
     // half a second of start-up grace is not judged, and the step that the end cuts off; of the yardstick a quarter is
     // judged; what was given up was due too
@@ -161,7 +162,7 @@ TEST_F(Stress, StepsThatAreGivenUpAreMissed) {
   EXPECT_TRUE(cell.at("books").at("balance"));
 }
 
-TEST_F(Stress, ACellThatSomebodyEndsFails) {
+TEST_F(Stress, ACellThatIsEndedFromOutsideFails) {
   Command session("slewring", arguments({"--json", "--no-record", "--seconds", "20", "--max-miss", "100"}),
                   work_.path());
   ASSERT_TRUE(wait_until_at(600));
@@ -195,8 +196,9 @@ TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {
   const CommandResult result = stress({"--no-record", "--p99", "0.001"});
   EXPECT_EQ(result.code, 3) << result.err;
   EXPECT_NE(result.out.find(", preemption "), std::string::npos) << result.out;
-  const std::size_t verdict = result.out.find("over, as the yardstick"), told = result.out.find("over; the yardstick");
-  EXPECT_TRUE(verdict != std::string::npos || told != std::string::npos) << result.out;
+  const std::size_t verdict = result.out.find("over, as the yardstick"),
+                    over_alone = result.out.find("over; the yardstick");
+  EXPECT_TRUE(verdict != std::string::npos || over_alone != std::string::npos) << result.out;
   EXPECT_NE(result.out.find("steps due = "), std::string::npos) << result.out;
   EXPECT_EQ(result.out.find("NOT BALANCE"), std::string::npos) << result.out;
 }

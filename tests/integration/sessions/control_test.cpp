@@ -51,15 +51,15 @@ class Control : public ::testing::Test {
     session_ = std::make_unique<Session>(io_arguments);
     observer_ = &session_->observer();
     session_->start_all();
-    ASSERT_TRUE(observer_->wait_for_step(step)) << session_->said();
+    ASSERT_TRUE(observer_->wait_for_step(step)) << session_->errors();
   }
   // no tick while io sends so many health messages, ten a second
   void expect_stands_still(std::uint64_t healths) {
     const std::uint64_t ticks = observer_->ticks();
-    ASSERT_TRUE(observer_->wait_for_healths(Role::io, healths)) << session_->said();
+    ASSERT_TRUE(observer_->wait_for_healths(Role::io, healths)) << session_->errors();
     EXPECT_EQ(observer_->ticks(), ticks);
   }
-  void expect_ends_well() { EXPECT_EQ(session_->wait_all(), all_ok()) << session_->said(); }
+  void expect_ends_well() { EXPECT_EQ(session_->wait_all(), all_ok()) << session_->errors(); }
 
   std::unique_ptr<Session> session_;
   Observer* observer_ = nullptr;
@@ -145,7 +145,7 @@ TEST_F(Control, ResetOfAPausedSessionStaysPausedAtStepZero) {
     return observer_->epoch() == 1 && observer_->status(Role::io)->state == wire::NodeState::holding &&
            observer_->status(Role::io)->header.epoch == 1;
   };
-  ASSERT_TRUE(observer_->wait_until(is_back)) << session_->said();
+  ASSERT_TRUE(observer_->wait_until(is_back)) << session_->errors();
   expect_stands_still(2);
   EXPECT_EQ(observer_->step(), kJoinStep);
   ASSERT_TRUE(observer_->request(ControlAction::resume).is_accepted);
@@ -205,12 +205,12 @@ TEST_F(Control, CouplingLevelsChangeWhileItRunsAndTheTicksReproduceIt) {
                                                                      {"Cyl_Lift.coupling", 1, 1000}};
   StepIndex first = -1;
   for (const auto& [path, level, step] : kChanges) {
-    ASSERT_TRUE(observer_->wait_for_step(step)) << session_->said();
+    ASSERT_TRUE(observer_->wait_for_step(step)) << session_->errors();
     const ControlReply reply = observer_->request(ControlAction::set_parameter, level, path);
     ASSERT_TRUE(reply.is_accepted) << reply.reason;
     if (first < 0) first = reply.header.step;
   }
-  ASSERT_TRUE(observer_->wait_for_step(1100)) << session_->said();
+  ASSERT_TRUE(observer_->wait_for_step(1100)) << session_->errors();
   EXPECT_EQ(observer_->request(ControlAction::get_parameter, 0, "Cyl_Lift.coupling").value, 1);
   EXPECT_FALSE(observer_->request(ControlAction::set_parameter, 5, "Cyl_Lift.coupling").is_accepted);
   EXPECT_FALSE(observer_->request(ControlAction::set_parameter, 1, "Cyl_Lift.coupling", 1'000'000).is_accepted);
@@ -243,7 +243,7 @@ TEST_F(Control, WrongParametersAreRefusedWithTheReasonAndTouchNothing) {
   EXPECT_EQ(first_difference(session_->recorded().chain(), undisturbed()), "");
 }
 
-TEST_F(Control, PresentValueOfAParameterIsToldInAPauseToLatecomersAndAfterAReset) {
+TEST_F(Control, PresentValueOfAParameterIsPublishedInAPauseForLateReadersAndAfterAReset) {
   start({"--pace", "real", "--duration", "0"}, 200);
   const auto present = [this](const std::string& path) {
     const ControlReply reply = observer_->request(ControlAction::get_parameter, 0, path);
@@ -357,19 +357,19 @@ TEST_F(Controller, ChannelIsLeasedToOneAtATime) {
   stop();
 }
 
-TEST_F(Controller, ResetTellsTheHolderThatItsChannelIsFree) {
+TEST_F(Controller, ResetInformsTheHolderThatItsChannelIsFree) {
   start_session();
   ASSERT_TRUE(observer_->acquire("a", kChannel).is_granted);
   ASSERT_TRUE(write_until("a", 0.5, [this] { return control() == 250; }));
   ASSERT_TRUE(observer_->request(ControlAction::reset).is_accepted);
-  const auto is_told = [this] {
+  const auto is_informed = [this] {
     const std::vector<ControllerLease>& leases = observer_->leases();
     return std::any_of(leases.begin(), leases.end(), [](const ControllerLease& lease) {
       return lease.controller == "a" && lease.channel == kChannel && !lease.is_granted && lease.holder.empty() &&
              lease.header.epoch == 1 && lease.reason.find("the session was reset") != std::string::npos;
     });
   };
-  EXPECT_TRUE(observer_->wait_until(is_told));
+  EXPECT_TRUE(observer_->wait_until(is_informed));
   ASSERT_TRUE(observer_->wait_until([this] { return observer_->epoch() == 1 && observer_->step() > 0; }));
   EXPECT_TRUE(observer_->acquire("b", kChannel).is_granted);
   stop();

@@ -18,10 +18,10 @@ class Loopback : public ::testing::Test {
   void SetUp() override {
     if (!cable.problem().empty()) GTEST_SKIP() << "network namespaces are not possible here: " << cable.problem();
     // every refusal is to be answered, not six and then one a second
-    std::vector<std::string> tell = cable.left().command();
-    tell.insert(tell.end(), {"/bin/sh", "-c", "echo 0 > /proc/sys/net/ipv4/icmp_ratelimit"});
+    std::vector<std::string> command_line = cable.left().command();
+    command_line.insert(command_line.end(), {"/bin/sh", "-c", "echo 0 > /proc/sys/net/ipv4/icmp_ratelimit"});
     const ScratchFolder folder;
-    Program limit(tell.front(), {tell.begin() + 1, tell.end()}, folder.path() / "limit");
+    Program limit(command_line.front(), {command_line.begin() + 1, command_line.end()}, folder.path() / "limit");
     if (limit.wait() != 0) GTEST_SKIP() << "refusals cannot be counted here: " << limit.err();
     if (!cable.count_sent()) GTEST_SKIP() << "nft cannot count here: " << cable.problem();
   }
@@ -31,7 +31,7 @@ class Loopback : public ::testing::Test {
     Session session({"--pace", "real", "--duration", "0"});
     for (const Role role : kAllNodes) session.run_under(role, cable.left().command(), more);
     session.start_all();
-    ASSERT_TRUE(session.wait_for_recorded_step()) << session.said();
+    ASSERT_TRUE(session.wait_for_recorded_step()) << session.errors();
     open_ports = 0;
     const std::uint32_t first = 7400 + 250 * session.domain() + 10;
     for (std::uint32_t port = first; port < first + 2 * kAllNodes.size(); ++port) {
@@ -39,7 +39,7 @@ class Loopback : public ::testing::Test {
     }
     session.node(Role::io).send(SIGINT);
     for (const auto& [role, code] : session.wait_all()) {
-      EXPECT_TRUE(code == 130 || (code == 0 && role != Role::io)) << code << session.said();
+      EXPECT_TRUE(code == 130 || (code == 0 && role != Role::io)) << code << session.errors();
     }
   }
   // A datagram to a closed port is answered so that the next one fails.

@@ -24,7 +24,7 @@ struct StepHashes {
 using HashChain = std::map<StepIndex, StepHashes>;
 
 // A NodeStatus with the wall time at which it was sent.
-struct SaidStatus {
+struct PublishedStatus {
   wire::NodeStatus status;
   std::int64_t sent_ns = 0;
 };
@@ -34,7 +34,7 @@ struct RecordedSession {
   std::vector<std::map<StepIndex, wire::Tick>> ticks;  // by epoch
   std::vector<wire::MechanismMessage> mechanisms;      // running samples in the order of the file
   std::vector<wire::ActuatorMessage> actuators;        // likewise
-  std::vector<SaidStatus> statuses;
+  std::vector<PublishedStatus> statuses;
   std::vector<wire::ControlReply> replies;
   std::vector<wire::ControllerLease> leases;
   std::map<std::string, std::string> summary;  // what the recorder counted

@@ -45,7 +45,7 @@ class Observer {
   void send(const wire::ControllerInput& input);
   // Publishes in the name of another process.
   template <typename Message>
-  void say(wire::Topic topic, const Message& message) {
+  void publish(wire::Topic topic, const Message& message) {
     if (!transport::encode(message, buffer_)) throw std::runtime_error("a message cannot be encoded");
     if (const Status sent = transport_->publish(topic, buffer_); !sent.is_ok()) throw std::runtime_error(sent.text);
   }
@@ -121,7 +121,7 @@ class Session {
   // receives. False when io ends before there is one.
   [[nodiscard]] bool wait_for_recorded_step();
   // Everything the nodes wrote to standard error, for messages of failed expectations.
-  [[nodiscard]] std::string said() const;
+  [[nodiscard]] std::string errors() const;
 
   [[nodiscard]] Observer& observer();
   [[nodiscard]] RecordedSession recorded() const { return read_session(runs()); }
@@ -137,11 +137,11 @@ class Session {
   std::string name_ = "s";
   std::vector<std::string> io_arguments_;
   std::string scene_;
-  struct Surroundings {
+  struct CommandPrefix {
     std::vector<std::string> command;
     std::vector<std::string> more;
   };
-  std::map<wire::Role, Surroundings> surroundings_;
+  std::map<wire::Role, CommandPrefix> prefixes_;
   std::unique_ptr<Observer> observer_;
   std::map<wire::Role, std::unique_ptr<Program>> nodes_;
   std::vector<std::unique_ptr<Program>> copies_;

@@ -219,7 +219,7 @@ bool take_part_wrongly(std::uint32_t domain) {
   return eventually([&] { return dds_take(done, &sample, &about, 1, 1) == 1; });
 }
 
-TEST(CycloneInterop, WhoHasTheWrongTypeOrQosIsNamed) {
+TEST(CycloneInterop, AnEndpointWithTheWrongTypeOrQosIsNamed) {
   const testing::TestDomain domain;
   ChildProcess program([&] { return take_part_wrongly(domain.number()); });
   std::unique_ptr<CycloneTransport> transport;
@@ -235,19 +235,22 @@ TEST(CycloneInterop, WhoHasTheWrongTypeOrQosIsNamed) {
     misfits = transport->misfits();
     return misfits.size() >= 4;
   }));
-  const std::string who = "a program that is not of Slewring ";
+  const std::string program_name = "a program that is not of Slewring ";
   EXPECT_EQ(
       misfits,
       (std::vector<std::string>{
-          who + "reads topic 'slewring/control_request' with a durability above the one the writer offers (volatile); "
-                "it receives nothing; see idl/README.md",
-          who +
+          program_name +
+              "reads topic 'slewring/control_request' with a durability above the one the writer offers (volatile); "
+              "it receives nothing; see idl/README.md",
+          program_name +
               "writes topic 'slewring/mechanism' with reliability best effort, and the reader requests reliable; it is "
               "ignored; see idl/README.md",
-          who + "writes topic 'slewring/session' with a durability below the one the reader requests (transient "
-                "local); it is ignored; see idl/README.md",
-          who + "writes topic 'slewring/tick' with type slewring::NodeStatus, which is slewring::Tick here; it is "
-                "ignored; see idl/README.md"}));
+          program_name +
+              "writes topic 'slewring/session' with a durability below the one the reader requests (transient "
+              "local); it is ignored; see idl/README.md",
+          program_name +
+              "writes topic 'slewring/tick' with type slewring::NodeStatus, which is slewring::Tick here; it is "
+              "ignored; see idl/README.md"}));
   ASSERT_TRUE(eventually([&] { return transport->matched_readers(Topic::health) > 0; }));
   ByteBuffer bytes;
   ASSERT_TRUE(encode(wire::Health{}, bytes));

@@ -260,7 +260,7 @@ TEST_F(Compare, ImpossibleOptionsAreRefusedBeforeAnythingRuns) {
   EXPECT_TRUE(contains(failure(), "--until"));
 }
 
-TEST_F(Compare, EndsWithTheRowsThatAreDoneWhenToldTo) {
+TEST_F(Compare, EndsWithTheFinishedRowsOnRequest) {
   write(kDoublePendulum);
   options.formulations = {"recursive"};
   options.steps = {"2ms", "4ms"};

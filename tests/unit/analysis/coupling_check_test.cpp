@@ -15,7 +15,7 @@ std::vector<std::string> warnings(const std::string& file, const scene::Override
   return coupling_warnings(scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + file, overrides));
 }
 
-TEST(CouplingCheck, SaysNothingOfScenesAsTheyAre) {
+TEST(CouplingCheck, HasNoWarningForTheScenes) {
   for (const char* file :
        {"truck_crane.yaml", "single_cylinder.yaml", "tipper.yaml", "four_bar.yaml", "truck_crane_flexible.yaml"}) {
     EXPECT_EQ(warnings(file, {}), std::vector<std::string>()) << file;
@@ -53,7 +53,7 @@ TEST(CouplingCheck, LooksAtEveryLevelForItself) {
   EXPECT_EQ(warnings("truck_crane.yaml", {"session.coupling=tlm", "session.step=0.2 ms"}).size(), 0u);
 }
 
-TEST(CouplingCheck, FreeRunningIsToldOfTheStepThatItsLateSamplesBear) {
+TEST(CouplingCheck, FreeRunningIsWarnedOfTheStepForItsLateSamples) {
   // omega_H of the flexible crane is 0.37 at its start in steps of 1 ms, of the rigid one 0.1
   EXPECT_EQ(warnings("truck_crane.yaml", {"session.mode=free_running"}).size(), 0u);
   const auto flexible =

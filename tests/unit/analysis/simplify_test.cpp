@@ -140,9 +140,9 @@ TEST(Simplify, GivesNoVerdictOnWhatItWasInterruptedIn) {
       });
   int interrupted = 0;
   for (int last = 1; last < all; last += 1 + all / 12) {
-    int asked = 0;
+    int calls = 0;
     const Simplification result = simplify(options_for("single_cylinder.yaml", {"Load.position 1mm"}, "1 s"),
-                                           [&](std::string_view, double) { return ++asked < last; });
+                                           [&](std::string_view, double) { return ++calls < last; });
     if (!result.is_interrupted) continue;  // what saves time by chance is not tried with others
     ++interrupted;
     EXPECT_FALSE(result.helps());

@@ -74,7 +74,7 @@ TEST_F(SweepTest, GoesOnWhereItWasEnded) {
   EXPECT_EQ(runs("a"), 2u);
 }
 
-TEST_F(SweepTest, TellsWhyATaskHasNoResultAndTriesItAgain) {
+TEST_F(SweepTest, ReportsTheFailureOfATaskAndTriesItAgain) {
   const std::vector<SweepTask> tasks = {task("a", "echo no oil; exit 3"), task("b", "kill -9 $$"), counting("c", "4"),
                                         task("d", "echo 'not json {' > \"$2\"")};
   for (int i = 0; i < 2; ++i) {

@@ -181,7 +181,7 @@ TEST(StepCost, IsPerSimulatedMillisecond) {
   EXPECT_DOUBLE_EQ(cost.worst, 50);
 }
 
-TEST(TradeoffReport, TellsRefusalsInstabilityAndTheAnswer) {
+TEST(TradeoffReport, HasRefusalsInstabilityAndTheAnswer) {
   Tradeoff tradeoff = example();
   mark_pareto(tradeoff);
   const Answer answer{.question = {.budget = 5, .errors = {}}, .row = 1, .overlay = "example_tradeoff.yaml"};

@@ -45,7 +45,7 @@ class PlotPage : public ::testing::Test {
   Plot plot_;
 };
 
-TEST_F(PlotPage, TellsTheLastSampleThatIsNotLater) {
+TEST_F(PlotPage, ShowsTheLastSampleThatIsNotLater) {
   const json result = play(R"(
     const out=[];for(const x of [.37,.3001,.55,.02,1]){canvases[0].onpointermove(at(x));out.push(readouts())}
     canvases[0].onpointerleave();out.push(readouts());return out)");

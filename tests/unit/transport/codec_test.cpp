@@ -71,7 +71,7 @@ void expect_may_be_missing(M sent, Field M::*appended, std::size_t whole_before)
   }
 }
 
-TEST(OfARecordingOfVersion3, ALeaseSaysNotWhatItAnswers) {
+TEST(OfARecordingOfVersion3, ALeaseLacksTheNumberThatItAnswers) {
   std::mt19937_64 random(2);
   wire::ControllerLease lease = random_message<wire::ControllerLease>(random, 0);
   lease.reason = "abc";
@@ -80,7 +80,7 @@ TEST(OfARecordingOfVersion3, ALeaseSaysNotWhatItAnswers) {
   expect_may_be_missing(lease, &wire::ControllerLease::answers, 4 + 40 + 2 * 8 + 8 + 8);
 }
 
-TEST(OfARecordingOfVersion3, AReplySaysNotWhatWasAsked) {
+TEST(OfARecordingOfVersion3, AReplyLacksTheTextOfTheRequest) {
   std::mt19937_64 random(2);
   wire::ControlReply reply = random_message<wire::ControlReply>(random, 0);
   reply.reason = "abc";

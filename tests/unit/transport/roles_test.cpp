@@ -53,7 +53,7 @@ TEST(Roles, IoReadsTheSamplesThatItWaitsFor) {
 }
 
 // whoever joins must be seen, and its messages must be found again
-TEST(Roles, EveryNodeSaysHowItIsAndAsksForWhatItMisses) {
+TEST(Roles, EveryNodePublishesItsStatusAndRequestsMissingMessages) {
   for (const Role role : wire::kNodeRoles) {
     for (const Topic topic : {Topic::node_status, Topic::health, Topic::resend}) {
       EXPECT_TRUE(traits(role).writes.contains(topic)) << traits(role).name;
@@ -63,7 +63,7 @@ TEST(Roles, EveryNodeSaysHowItIsAndAsksForWhatItMisses) {
   }
 }
 
-TEST(Roles, NobodyFromOutsideWritesWhatAStepNeeds) {
+TEST(Roles, NoRoleFromOutsideWritesInputsOfAStep) {
   for (const Role role : {Role::observer, Role::controller}) {
     for (const Topic topic : {Topic::session, Topic::tick, Topic::node_status, Topic::health, Topic::checkpoint}) {
       EXPECT_FALSE(traits(role).writes.contains(topic)) << traits(role).name << " " << traits(topic).name;
