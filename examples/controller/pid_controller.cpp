@@ -54,7 +54,7 @@ bool next_block(slewring::Session& session) {
     try {
       return session.step(1);
     } catch (const slewring::Error& error) {
-      if (error.code() != SLEWRING_TIMEOUT) throw;  // that is a pause
+      if (error.code() != SLEWRING_TIMEOUT) throw;  // a timeout is a pause
     }
   }
   return false;

@@ -24,7 +24,7 @@ using wire::Role;
 
 constexpr const char* kList = "identities.json";
 constexpr const char* kGovernanceText = "governance.xml";  // as it was signed
-constexpr const char* kOldConfig = "openssl.cnf";          // of stores that version 0.1.0 made
+constexpr const char* kOldConfig = "openssl.cnf";          // in stores of version 0.1.0
 constexpr const char* kViewer = "viewer";
 
 struct Allowed {

@@ -95,7 +95,7 @@ class DirectSession {
   // samples of the last steps, by step, where a step uses samples of other instants than its own
   std::vector<Exchanged> history_;
   std::array<coupling::OwnSample, kParts> now_, next_;  // at t_n, t_{n+1}
-  std::array<StepReport, kParts> reports_{};            // of the last step
+  std::array<StepReport, kParts> reports_{};            // reports of the last step
   std::array<std::int64_t, kParts> step_ns_{};
   std::uint64_t init_hash_ = 0;
 };

@@ -45,7 +45,7 @@ struct RunOptions {
   std::optional<double> join_timeout;  // s, longest wait for nodes and lockstep controllers; none: the nodes' own
   bool is_in_process = false;
   bool is_monolithic = false;
-  std::string rtol;  // of a monolithic run; empty: the scene's
+  std::string rtol;  // relative tolerance of a monolithic run; empty: the scene's
   bool is_real_time = false;
   bool is_refusal_reported = false;  // the refusal was reported before: no second message
   std::string cpus;                  // "mechanics=1, hydraulics=0"; empty: as in the scene

@@ -15,7 +15,7 @@
 namespace slew::transport {
 
 inline constexpr std::uint32_t kMaxDomain = 230;  // its UDP ports are below 65536
-inline constexpr int kMaxProcesses = 60;          // of one domain on one host
+inline constexpr int kMaxProcesses = 60;          // per domain on one host
 inline constexpr const char* kAnySession =
     "*";  // session name of a pure reader: messages of all sessions of the domain
 
@@ -23,7 +23,7 @@ inline constexpr const char* kAnySession =
 struct SecurityFiles {
   std::string identity_authority;     // certificate that signed those of all processes, PEM
   std::string permissions_authority;  // certificate that signed governance and permissions, PEM
-  std::string governance;             // what is protected and how, signed (S/MIME)
+  std::string governance;             // rules of the protection, signed (S/MIME)
   std::string certificate;            // certificate of this process, PEM
   std::string private_key;            // PEM
   std::string permissions;            // permissions of this process, signed (S/MIME)

@@ -23,7 +23,7 @@ struct RoleTraits {
   std::string_view name;  // in options, messages and certificates
   Needed needed;
   bool is_follower;    // publishes samples every k-th step, for which no other node waits in the step itself
-  int priority;        // of SCHED_FIFO with --rt; 0: none
+  int priority;        // SCHED_FIFO priority with --rt; 0: none
   wire::Topic sample;  // the topic by which other nodes notice the role: its sample, else its status
   TopicSet writes;
   TopicSet reads;

@@ -229,8 +229,8 @@ struct Health {
   Quantiles input_latency;         // io_node
   double response_recent = 0;      // s, largest since the last health message
   std::array<double, 4> waited{};  // s, for io (of io: controllers), mechanics, hydraulics, flex, all judged steps
-  std::int64_t allocations = -1;   // of the loop since READY, without the middleware's; -1: not counted
-  std::int64_t carrier_allocations = -1;  // of the middleware in the loop's thread; -1: not counted
+  std::int64_t allocations = -1;   // heap calls of the loop since READY, without the middleware's; -1: not counted
+  std::int64_t carrier_allocations = -1;  // heap calls of the middleware in the loop's thread; -1: not counted
   std::uint64_t steps_due = 0;            // io_node: steps that the wall clock requires in this epoch
   std::uint64_t steps_skipped = 0;        // io_node: steps of steps_due given up with the slip
   std::int64_t lag_ns = 0;        // io_node: delay behind the wall clock of the epoch, pauses apart; negative: ahead
@@ -294,7 +294,7 @@ struct ControlRequest {
   std::string session;
   std::uint64_t request = 0;  // drawn at random by the sender
   ControlAction action = ControlAction::set_parameter;
-  std::string path;           // of the parameter
+  std::string path;           // the parameter's path
   double value = 0;           // SI; `step`: number of steps
   std::int64_t over_ns = -1;  // -1: the parameter's default ramp
   bool operator==(const ControlRequest&) const = default;
@@ -306,7 +306,7 @@ struct ControlReply {
   bool is_accepted = false;
   double value = 0;  // get_parameter: SI, at present
   std::string reason;
-  std::string asked;  // what was requested, in words, at most kMaxReasonLength characters; empty: nothing (request 0)
+  std::string asked;  // text of the request, at most kMaxReasonLength characters; empty: no request (request 0)
   bool operator==(const ControlReply&) const = default;
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 using plotting::colour_of;
 
-constexpr double kMargin = 0.08;                   // of a view's width
+constexpr double kMargin = 0.08;                   // share of a view's width
 constexpr double kPictureWidth = 1000, kGap = 30;  // px
 constexpr double kHeading = 60, kFaintest = 0.15;  // px; opacity of the first instant
 

@@ -14,7 +14,7 @@ namespace slew::analysis {
 
 struct Pose {
   math::Vec3 position{};           // m, in Ground
-  math::Quaternion orientation{};  // of the body in Ground
+  math::Quaternion orientation{};  // orientation of the body in Ground
 };
 
 // A time without recorded poses.

@@ -26,7 +26,7 @@ namespace slew::analysis {
 // The chosen variables of one dimension.
 struct VariableClass {
   std::string unit{};                  // SI
-  std::vector<std::size_t> columns{};  // of Observation::values
+  std::vector<std::size_t> columns{};  // columns of Observation::values
   double extent = 0;                   // largest range of one of them in the reference
   double reference_error = 0;          // estimated: largest difference
   double reference_rms = 0;            // RMS of the same difference

@@ -43,7 +43,7 @@ struct ExtremeCase {
   bool alternates = false;           // inputs go from one end to the other at every step
   std::vector<SuddenChange> changes{};
   StepIndex delay = 0;        // steps that every sample comes late
-  StepIndex lost = 0;         // of every kLossPeriod samples, in a row
+  StepIndex lost = 0;         // samples lost in a row, of every kLossPeriod
   double hold_at = -1;        // s; from there no step is done for kHold of wall time; < 0: none
   std::int64_t begin_ns = 0;  // time of the first step
   double stiffness = 0;       // K H^2 W to be reached by the step, then by stiffer oil and hoses; 0: as it is
@@ -55,7 +55,7 @@ struct ExtremeCase {
 };
 
 inline constexpr StepIndex kLossPeriod = 100;           // steps
-inline constexpr SimDuration kHold = {10'000'000'000};  // of wall time
+inline constexpr SimDuration kHold = {10'000'000'000};  // wall time
 
 // All cases in the order of the table, those that do not apply with their obstacle.
 [[nodiscard]] std::vector<ExtremeCase> extreme_cases(const scene::Scene& scene);

@@ -26,8 +26,8 @@ struct ExtremesRow {
   CaseGroup group = CaseGroup::machine;
   std::string obstacle;  // why it does not apply
   bool is_done = false;
-  std::string failure;  // of its process
-  Json result;          // of case_run.h; null: none
+  std::string failure;  // failure of its process
+  Json result;          // result of case_run.h; null: none
 
   // within its bounds, refused by name, or not for this scene
   [[nodiscard]] bool is_good() const;
@@ -35,7 +35,7 @@ struct ExtremesRow {
 
 struct Extremes {
   std::vector<ExtremesRow> rows;
-  std::size_t kept = 0;  // of an earlier run
+  std::size_t kept = 0;  // cases of an earlier run
   std::string folder;
 
   [[nodiscard]] bool is_complete() const;

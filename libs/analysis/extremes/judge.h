@@ -41,7 +41,7 @@ struct Measures {
   std::optional<double> eta;   // largest of any port
   std::optional<double> gap;   // m or rad, largest opening of a joint
   std::optional<double>
-      difference;  // of the port forces, or pressures, to the run it is compared with, over their range
+      difference;  // largest difference of port forces, or pressures, to the comparison run, over their range
   std::optional<double> stiffness;  // omega_H^2 = K H^2 W, largest
   bool is_same = true;              // every bit as in the run it is compared with
   std::int64_t too_late = 0,
@@ -60,7 +60,7 @@ enum class ComparedWith : std::uint8_t {
 struct Bounds {
   double made = 1e-2;          // energy that the coupling may make since the start, of the work done
   double gap = 1e-5;           // m or rad
-  double difference = 0;       // of the range; 0: not compared
+  double difference = 0;       // share of the range; 0: not compared
   bool requires_same = false;  // the end must be the same to the bit
 };
 

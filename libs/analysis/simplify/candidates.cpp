@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kCoarser[] = {10, 100};      // tolerances
 constexpr int kLonger[] = {2, 5, 10};         // communication steps; each divides kStepsPerSample
-constexpr double kLongerSubsteps[] = {2, 4};  // of the mechanics
+constexpr double kLongerSubsteps[] = {2, 4};  // factors of the mechanics' sub-step
 constexpr std::string_view kQuasiStatic = "quasi_static";
 
 class Collector {

@@ -29,7 +29,7 @@ struct StressOptions {
   std::vector<Scheduling> schedulings;
   std::vector<Load> loads;
   std::vector<double> works_us;  // CPU time added to every step of each physics node
-  double seconds = 10;           // of every cell
+  double seconds = 10;           // duration of every cell
   std::string cpus;              // "mechanics=1, ..."; empty: the scene's
   std::string folder = "runs";   // recordings, which are removed again, and the load's files
 };

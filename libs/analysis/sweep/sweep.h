@@ -20,7 +20,7 @@ namespace slew::analysis {
 struct SweepTask {
   std::string key;                     // letters, digits, '-', '_': name of its result's file
   std::string label;                   // shown while it runs
-  std::vector<std::string> arguments;  // of this program; `--result FILE` is added
+  std::vector<std::string> arguments;  // arguments of this program; `--result FILE` is added
   double weight = 1;                   // expected work relative to the others'
 };
 

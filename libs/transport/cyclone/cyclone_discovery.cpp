@@ -21,7 +21,7 @@
 namespace slew::transport {
 namespace {
 
-constexpr std::uint32_t kMaxEndpoints = 2048;  // of all topics in the domain, written or read
+constexpr std::uint32_t kMaxEndpoints = 2048;  // written or read in the domain, all topics
 constexpr std::size_t kMaxMatched = 256;       // writers of one topic
 constexpr const char* kOtherLayout = " of another layout (built from another idl/slewring.idl)";
 
