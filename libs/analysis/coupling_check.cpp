@@ -98,10 +98,9 @@ std::string running_late(const Ports& ports, const std::string& name, double H) 
   const double safe = H * coupling::kMostLate / omega_H;
   const std::string step = safe < scene::kMinStep ? "" : "session.step " + duration_below(safe) + " or less, or ";
   return fmt::format(
-      "{}: free_running works with samples that are a step or more late, and the machine swings by omega_H {:.2g} on "
-      "its oil "
-      "in a step of {}; that is right up to {:.2g} by the steps that are late or lost; the run may be wrong or "
-      "unstable: use {}session.mode lockstep",
+      "{}: free_running works with samples that are a step or more late; omega_H is {:.2g} at a step of {}, and the "
+      "mode is valid up to {:.2g} over the number of late or lost steps; the run may be wrong or unstable: use "
+      "{}session.mode lockstep",
       name, omega_H, duration_text(H), coupling::kMostLate, step);
 }
 

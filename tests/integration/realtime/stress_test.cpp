@@ -255,7 +255,7 @@ TEST_F(Stress, ALoadThatCannotWorkFailsItsCell) {
   ASSERT_EQ(cell.at("messages").size(), 1u) << cell;
   const std::string message = cell.at("messages").at(0);
   EXPECT_TRUE(message.starts_with("load mixed: its disk process (")) << message;
-  EXPECT_NE(message.find("exited with code 6, and what is measured without it is no result; runs/stress-"),
+  EXPECT_NE(message.find("exited with code 6, and a measurement without it is no result; runs/stress-"),
             std::string::npos)
       << message;
   EXPECT_NE(message.find(": cannot be written (File too large); the disk is no load; free space, or"),
@@ -271,7 +271,7 @@ TEST_F(Stress, ALoadThatIsKilledFailsItsCell) {
   const CommandResult result = session.wait();
   EXPECT_EQ(result.code, 1) << result.err;
   EXPECT_NE(result.out.find("failed with code 1"), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find("was killed by signal 9 (Killed), and what is measured without it is no result; find out"),
+  EXPECT_NE(result.out.find("was killed by signal 9 (Killed), and a measurement without it is no result; find the"),
             std::string::npos)
       << result.out;
   EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));

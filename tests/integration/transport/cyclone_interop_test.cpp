@@ -306,7 +306,7 @@ INSTANTIATE_TEST_SUITE_P(
     Of, ForeignQos,
     ::testing::Values(
         QosMisfit{"Deadline", false, [](dds_qos_t* qos) { dds_qset_deadline(qos, DDS_MSECS(100)); },
-                  "a deadline shorter than the one that is offered (none is expected)"},
+                  "a deadline shorter than the one the writer offers (none is expected)"},
         QosMisfit{"LatencyBudget", true, [](dds_qos_t* qos) { dds_qset_latency_budget(qos, DDS_MSECS(1)); },
                   "a latency budget above the one the reader requests (0 is expected)"},
         QosMisfit{"LivelinessKind", false,
@@ -314,7 +314,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "another kind of liveliness (automatic is expected)"},
         QosMisfit{"LivelinessLease", false,
                   [](dds_qos_t* qos) { dds_qset_liveliness(qos, DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(500)); },
-                  "a lease of its liveliness shorter than the one that is offered (none is expected)"},
+                  "a lease of its liveliness shorter than the one the writer offers (none is expected)"},
         QosMisfit{"DestinationOrder", false,
                   [](dds_qos_t* qos) { dds_qset_destination_order(qos, DDS_DESTINATIONORDER_BY_SOURCE_TIMESTAMP); },
                   "another destination order (by reception timestamp is expected)"},

@@ -27,7 +27,7 @@ TEST(CouplingCheck, NamesThePortAndAStepThatSuitsTheLevel) {
   const auto two = warnings("truck_crane.yaml", {"session.step=20 ms"});
   ASSERT_EQ(two.size(), 1u);
   EXPECT_NE(two[0].find("Cyl_Jib: omega_H"), std::string::npos) << two[0];
-  EXPECT_NE(two[0].find("level 'two' is right up to 1"), std::string::npos) << two[0];
+  EXPECT_NE(two[0].find("level 'two' is valid up to 1"), std::string::npos) << two[0];
   EXPECT_NE(two[0].find("use session.step"), std::string::npos) << two[0];
   EXPECT_EQ(warnings("truck_crane.yaml", {"session.step=5 ms"}).size(), 0u);
   EXPECT_EQ(warnings("truck_crane.yaml", {"session.step=10 ms", "session.coupling=linear"}).size(), 1u);

@@ -187,7 +187,7 @@ TEST(TradeoffReport, HasRefusalsInstabilityAndTheAnswer) {
   const Answer answer{.question = {.budget = 5, .errors = {}}, .row = 1, .overlay = "example_tradeoff.yaml"};
   const std::string text = report_text(tradeoff, answer);
   EXPECT_NE(text.find("refused: session.step: no"), std::string::npos) << text;
-  EXPECT_NE(text.find("no: farther from the reference"), std::string::npos) << text;
+  EXPECT_NE(text.find("no: error exceeds the reference's own range"), std::string::npos) << text;
   EXPECT_NE(text.find("at most 5 us/ms: step 2ms (5 us/ms, worst error 4 %)"), std::string::npos) << text;
   const nlohmann::json json = nlohmann::json::parse(report_json(tradeoff, answer));
   EXPECT_EQ(json.at("rows").size(), 6u);
