@@ -98,7 +98,7 @@ void add_keys(options::Command& program) {
   add_validity(sub("create", "a new store with keys for every role", create, "plant_keys --days 365"));
   options::Command adding = sub("add", "keys for one more: a second controller, a viewer, a guest for one session", add,
                                 "plant_keys --role controller --name joystick --session 'truck_*'");
-  adding.option("--role", options->role, "role: it decides what the holder may publish and receive")
+  adding.option("--role", options->role, "decides what the holder may publish and receive")
       .one_of(keys::key_roles())
       .value_name("ROLE")
       .show_default();

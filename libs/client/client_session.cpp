@@ -399,7 +399,7 @@ Answer ClientSession::step(Which which, SimDuration timeout) {
   if (in_time) return {};
   return {Code::timeout, "no block of variables came within " + in_seconds(timeout) + " after step " +
                              std::to_string(step_) +
-                             "; the session is paused, waits for a node or is gone: see `slewring sessions`"};
+                             "; the session is paused, waits for a partner or is gone: see `slewring sessions`"};
 }
 
 Answer ClientSession::ended() const {

@@ -131,7 +131,7 @@ class ScatterPicture {
 
   void draw_floor() {
     draw_line("zero dash", kScatterLeft, y_of(s_.y_floor), right_, y_of(s_.y_floor));
-    // the lowest tick label is that of the floor
+    // the space below the floor is free for its label
     put("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kScatterLeft + 6, y_of(s_.y_floor) + 13,
         escaped(s_.y_floor_label));
   }

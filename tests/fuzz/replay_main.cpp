@@ -15,7 +15,7 @@
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-// of the fuzzers that have one
+// defined by the fuzzers that need it
 extern "C" [[gnu::weak]] std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                                              unsigned int seed);
 
@@ -57,7 +57,7 @@ namespace {
 
 constexpr std::size_t kLongest = 65'536;
 
-// what a failed claim was about, for the signal handler
+// text of a failed claim, for the signal handler
 char now[512];
 
 extern "C" void report_fatal_signal(int signal) {
@@ -75,7 +75,7 @@ void report_signal(int signal) {
 
 void give(const Input& input, const std::string& name) {
   std::snprintf(now, sizeof now, "%s", name.c_str());
-  // as a copy whose end is its own: a sanitizer sees what is read beyond
+  // a copy with its own end: a sanitizer sees reads beyond it
   const Input copy(input.begin(), input.end());
   LLVMFuzzerTestOneInput(copy.data(), copy.size());
 }

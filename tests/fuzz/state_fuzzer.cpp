@@ -27,7 +27,7 @@ constexpr StepIndex kStep = 30;
 
 constexpr std::size_t kFront = 30;  // bytes in front of the sum
 constexpr std::size_t kSum = sizeof(std::uint64_t);
-constexpr std::size_t kHeader = 32, kLengthAt = 16, kSumAt = 24;  // of a subsystem's own bytes
+constexpr std::size_t kHeader = 32, kLengthAt = 16, kSumAt = 24;  // offsets in a subsystem's own bytes
 
 std::uint64_t sum_of(const std::byte* data, std::size_t size) {
   StateHash hash;
@@ -191,7 +191,7 @@ void try_physics(const Loaded& of, bool has_right_sums, fuzz::Choices& choices) 
     fuzz::require(status.code == ExitCode::bad_input && !status.text.empty());
     fuzz::require(of.subsystem->state_hash() == of.reset_hash);
   };
-  // as a copy whose end is its own: a sanitizer sees what is read beyond
+  // a copy with its own end: a sanitizer sees reads beyond it
   const std::size_t front = std::min(checkpoint.bytes.size(), kFront + kSum);
   const std::vector<std::byte> own(checkpoint.bytes.begin() + static_cast<std::ptrdiff_t>(front),
                                    checkpoint.bytes.end());

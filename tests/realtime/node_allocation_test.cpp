@@ -116,7 +116,7 @@ TEST(NodeLoop, DoesNotAllocateOnceItsCachesAreFull) {
 TEST(NodeLoop, DoesNotAllocateWithAFlexNode) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "a sanitizer is in front of malloc";
   for (const std::string exchange : {"once", "every_step"}) {
-    // stated once, samples of flexible bodies come every tenth step and fill their caches so much later
+    // samples of flexible bodies come every tenth step and fill their caches that much later
     const StepIndex warm_up = exchange == "once" ? 10 * kWarmUp : kWarmUp;
     LockStep session(
         scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane_flexible.yaml", {"session.flexible=" + exchange}),

@@ -1,4 +1,4 @@
-// `slewring animate`: the page beside what was recorded.
+// `slewring animate`: the page against the recording.
 #include <gtest/gtest.h>
 
 #include <algorithm>

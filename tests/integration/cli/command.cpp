@@ -48,7 +48,7 @@ Command::Command(const std::string& program, const std::vector<std::string>& arg
   pid_ = fork();
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    // a shell's background job ignores them, and so would what it starts
+    // a shell's background job ignores them, and so would its child processes
     for (const int ignored : {SIGINT, SIGHUP, SIGTERM}) signal(ignored, SIG_DFL);
     const int nothing = open("/dev/null", O_RDONLY);
     dup2(nothing, STDIN_FILENO);

@@ -32,7 +32,7 @@ class Command {
   // Waits for the end, at most 120 s.
   [[nodiscard]] CommandResult wait();
   [[nodiscard]] bool has_ended();
-  // What it has written so far.
+  // Its output so far.
   [[nodiscard]] std::string out() const;
   [[nodiscard]] std::string err() const;
 

@@ -82,7 +82,7 @@ TEST_F(CompareVerb, ALoopClosesInEveryFormulationThatRuns) {
   EXPECT_TRUE(contains(text_of("crank.html"), "<!DOCTYPE html>"));
 }
 
-// what is compared is what a session computes
+// the compared runs equal those of a session
 TEST_F(CompareVerb, ARowEndsInTheStateOfARunBitForBit) {
   const CommandResult compared = compare(
       "tipper.yaml", {"--until", "2s", "--steps", "1ms", "--repeats", "1", "--formulations", "recursive", "--json"});

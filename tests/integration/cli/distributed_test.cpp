@@ -271,7 +271,7 @@ TEST_F(Distributed, SignalsThatComeTwiceEndInOrderToo) {
   }
 }
 
-// of a disk that confirms the recording only after so many seconds
+// a disk that confirms the recording only after this number of seconds
 class SlowDisk : public Distributed {
  protected:
   void SetUp() override {
@@ -325,7 +325,7 @@ TEST_F(SlowDisk, IsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
             std::string::npos)
       << result.err;
 
-  // of two Ctrl-C the first one ends the session
+  // the first of two Ctrl-C ends the session
   ASSERT_TRUE(comes_to_say(*interrupted_twice, "still writes")) << interrupted_twice->err();
   EXPECT_EQ(interrupted_twice->err().find("killed"), std::string::npos) << interrupted_twice->err();
   interrupted_twice->send(SIGINT);

@@ -1,4 +1,4 @@
-// Hard cases of a small scene: processes, verdicts, what is kept, exit codes.
+// Hard cases of a small scene: processes, verdicts, kept results, exit codes.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -25,7 +25,7 @@ class Flex : public ::testing::Test {
     std::ofstream(work_.path() / name, std::ios::binary) << text;
     return work_.path() / name;
   }
-  // includes lie beside what includes them
+  // includes lie beside the including file
   std::string include_boom() {
     fs::copy_file(scene_file("beams/jib_boom.yaml"), work_.path() / "jib_boom.yaml",
                   fs::copy_options::overwrite_existing);

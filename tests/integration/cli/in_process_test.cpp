@@ -346,7 +346,7 @@ TEST_F(InProcess, ADamagedRecordingIsRecoveredAndReplays) {
   ASSERT_EQ(replayed.code, 0) << replayed.err;
   EXPECT_EQ(nlohmann::json::parse(replayed.out).at("different"), 0);
   EXPECT_EQ(nlohmann::json::parse(replayed.out).at("steps"), last + 1);
-  // what is there is never replaced
+  // an existing file is never replaced
   const CommandResult again = slewring({"recover", "cut.mcap"});
   EXPECT_EQ(again.code, 6);
   EXPECT_NE(again.err.find("cut.recovered.mcap: the file exists already"), std::string::npos) << again.err;
@@ -378,7 +378,7 @@ TEST_F(InProcess, ADamagedRecordingOfASessionThatGoesOnIsRecoveredFromItsFirstSt
   EXPECT_EQ(nlohmann::json::parse(replayed.out).at("different"), 0);
 }
 
-// what an operator did on one crane, done again on another, and both in one picture
+// an operator's inputs on one crane, played back on another, and both in one picture
 TEST_F(InProcess, AnInputIsTakenFromOneCraneToAnotherAndBothAreDrawnTogether) {
   const auto run_into = [&](const std::string& scene, const std::string& out, const std::string& input) {
     const CommandResult run = run_scene(scene, {"--duration", "2", "--out", out, "--input", input});

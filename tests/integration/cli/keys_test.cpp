@@ -101,7 +101,7 @@ TEST_F(Keys, ExportTakesWhatHoldersNeedAndRevocationMakesItWorthless) {
   ASSERT_EQ(revoked.code, 0) << revoked.err;
   EXPECT_FALSE(fs::exists(folder() / "plant/joystick"));
   EXPECT_EQ(keys({"check", "plant"}).code, 0);
-  // what was exported is of the former authority
+  // the exported keys belong to the former authority
   const CommandResult mixed = keys({"export", "plant", "hydraulics", "--to", "out"});
   EXPECT_EQ(mixed.code, 2);
   EXPECT_NE(mixed.err.find("before a revocation"), std::string::npos) << mixed.err;
@@ -160,7 +160,7 @@ TEST_F(Keys, LeaveFoldersAndFilesOfOthersAsTheyAre) {
   ASSERT_EQ(keys({"export", "plant", "io", "--to", "out"}).code, 0);
   EXPECT_EQ(mode("out"), kOpen);
   EXPECT_EQ(mode("out/io/private_key.pem"), fs::perms::owner_read | fs::perms::owner_write);
-  // what lies beside the store or in it survives a revocation
+  // foreign files beside the store and in it survive a revocation
   for (const char* path : {"plant.old", "plant.new", "plant/notes"}) {
     make_folder(path);
     std::ofstream(folder() / path / "text") << path;

@@ -103,7 +103,7 @@ TEST_F(MonolithicRun, OfMechanicsAloneHoldsLoopsAndKeepsEnergy) {
     largest = std::max(largest, std::fabs(a + b - first));
   }
   EXPECT_GT(lines, 1000);
-  EXPECT_LT(largest, 1e-5);  // of 36 J, 1.5 J of them moving
+  EXPECT_LT(largest, 1e-5);  // share of 36 J, of which 1.5 J move
 }
 
 TEST_F(MonolithicRun, EndsWithCodeFiveWhereShapesTouch) {

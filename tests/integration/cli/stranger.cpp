@@ -22,7 +22,7 @@ constexpr std::size_t kHeader = 20;           // bytes of an RTPS message before
 constexpr std::size_t kSubmessageHeader = 4;  // id, flags, length
 constexpr std::size_t kMostBytes = 65536;
 constexpr std::uint32_t kMillion = 1'000'000;
-constexpr std::uint32_t kPorts = 250;  // of a domain
+constexpr std::uint32_t kPorts = 250;  // ports of a domain
 
 enum Submessage : std::uint8_t {
   acknack = 0x06,
@@ -77,7 +77,7 @@ std::vector<std::uint8_t> renumbered(std::vector<std::uint8_t> packet, std::uint
   return packet;
 }
 
-// without what a signature is made of
+// without the parts that a signature needs
 std::vector<std::uint8_t> without(const std::vector<std::uint8_t>& packet, std::initializer_list<std::uint8_t> ids) {
   std::vector<std::uint8_t> out(packet.begin(), packet.begin() + kHeader);
   for_each_submessage(packet, [&](std::uint8_t id, std::size_t begin, std::size_t, std::size_t end) {

@@ -14,7 +14,7 @@
 namespace slew::testing {
 
 enum class Forgery : std::uint8_t {
-  newer,           // what was captured, with a higher sequence number
+  newer,           // a captured message with a higher sequence number
   newer_unsigned,  // that as well, without its signature or the end of it
   gap,             // GAP: the next million samples are of no matter
   heartbeat,       // HEARTBEAT: the next million samples are gone

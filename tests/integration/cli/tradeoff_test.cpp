@@ -121,7 +121,7 @@ TEST_F(Tradeoff, GoesOnAfterAnInterruption) {
   const nlohmann::json all = parsed(second);
   EXPECT_TRUE(all.at("is_complete").get<bool>());
   EXPECT_GE(all.at("kept").get<int>(), 1);
-  // what was kept is as it was
+  // the kept results are unchanged
   for (std::size_t i = 0; i < part.at("rows").size(); ++i) {
     if (!part.at("rows").at(i).at("is_done").get<bool>()) continue;
     EXPECT_EQ(all.at("rows").at(i).at("us_per_ms"), part.at("rows").at(i).at("us_per_ms"));

@@ -47,7 +47,7 @@ TEST(Unrecorded, IsReportedBeforeARunAndOnRequest) {
   EXPECT_NE(drawn.err.find("warning: plot Slewing: not drawn: Body_Pillar.position is not in this recording"),
             std::string::npos)
       << drawn.err;
-  // what is io's own is in every recording
+  // io's own variables are in every recording
   EXPECT_EQ(slewring({"export", recording, "Input_Lift.raw", "session.slip", "mechanics.step_time"}).code, 0);
 }
 

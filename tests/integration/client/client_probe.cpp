@@ -13,7 +13,7 @@
 namespace {
 
 constexpr double kSoon = 20;      // s
-constexpr double kStick = 0.375;  // of every answer
+constexpr double kStick = 0.375;  // value of every answer
 
 void print_line(const char* what, const char* text = "") {
   std::printf("%s%s\n", what, text);

@@ -94,7 +94,7 @@ class ClientLibrary : public ::testing::Test {
 };
 
 TEST_F(ClientLibrary, LooksForNoVariableOfANodeWithAnEmptyDirectory) {
-  start({"--set", "recording.variables=[Vol_*]"});  // of hydraulics alone
+  start({"--set", "recording.variables=[Vol_*]"});  // variables of hydraulics alone
   const Client client = join("reader");
   EXPECT_GE(slewring_find(client.get(), "Vol_LiftCyl_A.pressure", kSoon), 0) << slewring_error(client.get());
   EXPECT_EQ(slewring_find(client.get(), "Bag.position.x", 3600), SLEWRING_REFUSED);
@@ -130,7 +130,7 @@ TEST_F(ClientLibrary, ReadsEveryBlockInOrderWithNamesAndUnits) {
   const Client client = join("reader");
   EXPECT_DOUBLE_EQ(slewring_step_size(client.get()), 1e-3);
   const int stroke = slewring_find(client.get(), "Cyl_Lift.stroke", kSoon);
-  const int slip = slewring_find(client.get(), "session.slip", kSoon);  // of another node
+  const int slip = slewring_find(client.get(), "session.slip", kSoon);  // a variable of another node
   ASSERT_GE(stroke, 0) << slewring_error(client.get());
   ASSERT_GE(slip, 0) << slewring_error(client.get());
   EXPECT_EQ(slewring_find(client.get(), "Cyl_Lift.stroke", 0), stroke);
@@ -559,7 +559,7 @@ TEST_F(ClientLibrary, CountsTheBlocksThatItWasTooSlowFor) {
   read(50);
   const long long first = slewring_present_step(slow.get());
   EXPECT_EQ(slewring_blocks_missed(slow.get()), 0);
-  // it computes for longer than what is kept for it
+  // its computing takes longer than the kept blocks last
   read_to(reader.get(), first + 3000);
   int blocks = 0;
   while (slewring_present_step(slow.get()) < first + 3000) {
@@ -570,7 +570,7 @@ TEST_F(ClientLibrary, CountsTheBlocksThatItWasTooSlowFor) {
   EXPECT_LT(blocks, passed);
   EXPECT_EQ(slewring_blocks_missed(slow.get()), passed - blocks);
   EXPECT_EQ(slewring_steps_per_block(slow.get()), 1);
-  // passing over what has come is no loss
+  // blocks that are passed over are not lost
   const long long before = slewring_blocks_missed(slow.get());
   read_to(reader.get(), slewring_present_step(slow.get()) + 100);
   ASSERT_EQ(slewring_latest(slow.get(), kSoon), SLEWRING_OK);
@@ -606,7 +606,7 @@ TEST_F(ClientLibrary, GoesOnWhenANodeIsReplacedAndTheOneThatStoodStillWakesUp) {
   EXPECT_EQ(result, SLEWRING_ENDED) << slewring_error(client.get());
 }
 
-// what the library reads from the environment of its program
+// environment variables that the library reads
 class Environment {
  public:
   Environment(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }

@@ -63,7 +63,7 @@ TEST_F(SimulinkBlock, ReadsVariablesAndMovesItsChannel) {
   const double before = block_.y[0];
   EXPECT_GT(before, 0.5);
   block_.u[0] = 0.7;
-  // what it answers comes back, and the cylinder moves by it
+  // its answers arrive, and the cylinder moves by them
   for (int k = 0; k < 2000 && (block_.y[1] != 0.7 || std::fabs(block_.y[0] - before) < 1e-3); ++k) {
     step();
     ASSERT_EQ(block_.error, nullptr) << block_.error;

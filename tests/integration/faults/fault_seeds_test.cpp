@@ -16,13 +16,13 @@
 namespace slew::testing {
 namespace fault_seeds_test {
 
-constexpr std::int64_t kProgressWithin = 100 * kMs;    // of ticks at 1 ms
+constexpr std::int64_t kProgressWithin = 100 * kMs;    // for ticks at 1 ms
 constexpr std::int64_t kReplacedWithin = 6'000 * kMs;  // two nodes, one after the other
-constexpr std::int64_t kEndWithin = 20'000 * kMs;      // of a session of 0.4 s
+constexpr std::int64_t kEndWithin = 20'000 * kMs;      // for a session of 0.4 s
 constexpr StepIndex kSteps = 400;
 constexpr std::uint32_t kSeeds = 1000;
 
-// What a session may be made of; seed s takes entry s mod their number.
+// Variants of a session; seed s takes entry s mod their number.
 struct Machine {
   const char* file;
   scene::Overrides overrides;
@@ -220,7 +220,7 @@ class DropSeeds : public FaultSeeds {
     }
     EXPECT_TRUE(session.is_finished()) << session.text();
     EXPECT_EQ(session.unnamed_end(), "") << session.text();
-    // what was computed has the bits of a clean run; a mutated message may be a lawful one with other content
+    // computed samples have the bits of a clean run; a mutated message may be a valid one with other content
     if (plan.mutation == 0) {
       EXPECT_EQ(session.auditor().contradiction(), "") << session.text();
       const Auditor::Chain& expected = clean(which);

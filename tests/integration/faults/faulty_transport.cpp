@@ -238,7 +238,7 @@ void FaultyTransport::deliver(const transport::Received& message) {
   }
 }
 
-// What a damaged or hostile datagram does: the message with some bytes changed, or cut, in front of it or in its place.
+// A damaged or hostile datagram: the message with some bytes changed, or cut, in front of it or in its place.
 void FaultyTransport::deliver_mutated(const transport::Received& message) {
   ++count_.mutated;
   Pending changed{message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}};

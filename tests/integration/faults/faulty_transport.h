@@ -1,5 +1,5 @@
-// Faults between the nodes of one process, drawn from a seed: what a transport does to messages, and what a scheduler
-// does to nodes. Times are those of a clock that is a number.
+// Faults between the nodes of one process, drawn from a seed: faults of a transport and of a scheduler. Times are those
+// of a clock that is a number.
 //
 // Ticks, samples, resends and health are lost, doubled, late and overtaken; in a partition they are lost. The rest
 // (session, status, variables, leases, requests, to the recorder bodies' shapes too) is late only and keeps its order,
@@ -49,8 +49,8 @@ struct Kill {
   std::int64_t at_ns = 0;
 };
 
-// Messages that never arrive from a time on, as behind a filter or in a reader that was led astray: those of one topic,
-// of one size or in one direction, whatever else arrives. Any topic, also one that a reliable transport would repeat.
+// Messages that never arrive from a time on, as behind a filter or in a disturbed reader: messages of one topic, of one
+// size or in one direction, independent of all others. Any topic, also one that a reliable transport would repeat.
 struct Drop {
   std::optional<wire::Topic> topic;
   std::optional<wire::Role> from, to;
@@ -87,7 +87,7 @@ struct FaultPlan {
   [[nodiscard]] std::string text() const;
 };
 
-// What was done to messages.
+// Counts of the faults.
 struct FaultCount {
   std::uint64_t lost = 0, doubled = 0, late = 0, dropped = 0, mutated = 0;
   std::uint64_t overtaken = 0;  // by one of its own writer and topic that was sent behind it
@@ -136,7 +136,7 @@ class FaultyTransport final : public transport::Transport {
   std::mt19937_64 random_;
   std::multimap<std::int64_t, Pending> pending_;                          // by the time at which they are there
   std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_sent_;  // due, of a dialogue
-  std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_due_;   // of all that was sent so far
+  std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_due_;   // time at which the last sent message is due
   Pending taken_;
 };
 

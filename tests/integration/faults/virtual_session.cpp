@@ -237,7 +237,7 @@ bool VirtualSession::is_finished() const {
 }
 
 bool VirtualSession::has_ended_well() const {
-  // what was on its way to a recorder that lags is lost with its writer
+  // messages in transit to a recorder that lags are lost with their writer
   const bool may_lose = plan_.cut_off_ns(Role::recorder) > node::kLinger.ns / 2 || restarts_ > 0;
   return is_finished() && std::all_of(places_.begin(), places_.end(), [may_lose](const Place& place) {
            if (place.is_dead) return false;

@@ -95,7 +95,7 @@ TEST_F(RealTime, AProcessorThatIsNotThereIsRefusedByNameOfThoseThatAre) {
                       cpu_list(usable_cpus()) + "; nothing was started; name one of them in --cpu or session.cpus\n"),
       std::string::npos)
       << result.err;
-  // of a role that is started elsewhere nothing is known here
+  // a role that is started elsewhere cannot be checked here
   const CommandResult elsewhere =
       run_crane({"--cpu", "mechanics=1000,hydraulics=1001", "--remote", "mechanics", "--duration", "0.1"});
   EXPECT_NE(elsewhere.err.find("hydraulics=1001: there is no processor"), std::string::npos) << elsewhere.err;
@@ -202,7 +202,7 @@ TEST_F(RealTime, ABoundThatCouldNotBeMeasuredIsNotKept) {
 
 TEST_F(RealTime, NodesTakeNothingFromTheHeapAfterReadyNorCycloneOnceItsHistoryIsFull) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "a sanitizer is in front of malloc";
-  // what up to four topics keep; in 3000 steps each node sends 6000 messages and more
+  // the depth of up to four topics; in 3000 steps each node sends 6000 messages and more
   constexpr int kMostKept = 4 * 1024;
   std::vector<const char*> scenes = {"truck_crane_flexible.yaml"};  // has nodes of every role
   if (is_nightly()) scenes.push_back("truck_crane.yaml");

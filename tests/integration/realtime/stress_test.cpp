@@ -97,7 +97,7 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
       EXPECT_GE(cell.at(source).at("steal"), 0) << source;
     }
     // half a second of start-up grace is not judged, and the step that the end cuts off; of the yardstick a quarter is
-    // judged; what was given up was due too
+    // judged; steps that were given up were due too
     EXPECT_EQ(judged_and_done(cell.at("session")), 1499);
     EXPECT_EQ(judged_and_done(cell.at("yardstick")), 500);
     EXPECT_LE(cell.at("session").at("skipped"), books.at("skipped"));
@@ -114,7 +114,7 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
     EXPECT_GT(computing.at("mechanics"), 0);
     EXPECT_EQ(computing.at("io"), 0);
     for (const auto& [role, part] : computing.items()) EXPECT_LE(part, loops.at(role)) << role;
-    // of a step behind those that were given up the loops may have begun before it was due
+    // after given-up steps the loops may begin a step before it is due
     if (cell.at("yardstick").at("skipped") == 0) {
       EXPECT_GE(cell.at("yardstick").at("response").at("min"), computing.at("mechanics"));
     }
@@ -131,7 +131,7 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
   const std::string text((std::istreambuf_iterator<char>(page)), {});
   EXPECT_NE(text.find("normal, load mixed, 0 us added"), std::string::npos);
   EXPECT_EQ(text.find("http://"), text.find("http://www.w3.org")) << "needs no external resource";
-  // what came is gone again
+  // temporary files are removed
   EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
 }
 
@@ -205,7 +205,7 @@ TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {
 
 TEST_F(Stress, WorkThatIsAddedIsDone) {
   // twice the step's time: every step overruns, all of them in a row, and the session falls behind; it goes on to its
-  // end whatever the scene would have it do
+  // end with any overrun policy of the scene
   const CommandResult result =
       stress({"--json", "--no-record", "--seconds", "0.6", "--add-work", "2000,2e3", "--load", "none,none",
               "--scheduling", "normal,normal", "--set", "session.start_grace=0 s", "--set", "session.overrun=hold"});
@@ -290,11 +290,11 @@ std::multiset<int> fifo_priorities(pid_t pid) {
   return priorities;
 }
 
-// What was seen of a cell from outside while it ran.
+// Observations of a cell from outside while it ran.
 struct SeenCell {
   pid_t io = 0;
   std::multiset<int> nodes;  // priorities of the nodes' loops that are FIFO
-  std::multiset<int> loops;  // of the yardstick's
+  std::multiset<int> loops;  // loops of the yardstick
 };
 
 void look_at_cell(pid_t stress, std::vector<SeenCell>& cells) {

@@ -83,7 +83,7 @@ class WallClock : public ::testing::Test {
       EXPECT_NE(published.status.state, NodeState::holding) << published.status.reason;
       EXPECT_EQ(published.status.reason, "");
     }
-    // what a busy machine costs, and nothing of the hours
+    // the slips of a busy machine, and none of the hours
     EXPECT_LT(recorded.largest.at("session.slip"), 60);
     EXPECT_EQ(first_difference(recorded.chain(), undisturbed_chain(kScene, recorded.last_complete_step())), "");
   }
@@ -123,7 +123,7 @@ class JumpingClock : public WallClock, public ::testing::WithParamInterface<Jump
   }
 };
 
-// of all nodes or of one
+// the clock of all nodes or of one
 TEST_P(JumpingClock, InMidRunChangesNothing) {
   session.start_all();
   ASSERT_TRUE(session.observer().wait_for_step(300)) << session.errors();

@@ -53,7 +53,7 @@ class Control : public ::testing::Test {
     session_->start_all();
     ASSERT_TRUE(observer_->wait_for_step(step)) << session_->errors();
   }
-  // no tick while io sends so many health messages, ten a second
+  // no tick while io sends this number of health messages, ten a second
   void expect_stands_still(std::uint64_t healths) {
     const std::uint64_t ticks = observer_->ticks();
     ASSERT_TRUE(observer_->wait_for_healths(Role::io, healths)) << session_->errors();
@@ -347,7 +347,7 @@ TEST_F(Controller, ChannelIsLeasedToOneAtATime) {
   EXPECT_EQ(refused.holder, "a");
   EXPECT_NE(refused.reason.find("held by 'a'"), std::string::npos) << refused.reason;
   EXPECT_FALSE(observer_->acquire("b", "Input_Nothing").is_granted);
-  // what another one writes is counted, not applied
+  // values of another controller are counted, not applied
   const double before = rejected();
   ASSERT_TRUE(write_until("b", 1.0, [&] { return rejected() >= before + 3; }));
   EXPECT_EQ(control(), 0);
@@ -389,7 +389,7 @@ TEST_F(Controller, SilentControllerGoesToNeutral) {
 
 TEST_F(Controller, MayNotMoveTheScriptsChannelBeforeItHasTheLease) {
   start({"--pace", "real", "--duration", "1.6s"}, 100);
-  // what it writes arrives, and is counted
+  // its values arrive, and are counted
   ASSERT_TRUE(write_until("a", -1, [this] { return rejected() >= 3; }));
   expect_ends_well();
   EXPECT_EQ(first_difference(physics_only(session_->recorded().chain()), physics_only(undisturbed())), "");

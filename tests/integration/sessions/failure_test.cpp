@@ -157,7 +157,7 @@ TEST(StoppedForGood, NodeIsNamedAfter300MillisecondsAndGivenUpAfter2Seconds) {
 
 // ---- signals --------------------------------------------------------------------------------------------------
 
-// but for what a busy machine costs
+// without the messages of a busy machine
 std::string errors_without_slips(Program& program) {
   std::istringstream lines(program.err());
   std::string rest;
@@ -172,7 +172,7 @@ void expect_orderly_end(Session& session, int signal) {
   EXPECT_EQ(io.wait(), signal == SIGINT ? 130 : 143) << session.errors();
   ASSERT_TRUE(session.observer().wait_until([] { return true; }));  // all that has come is taken
   EXPECT_LT(session.observer().healths_after_end(Role::io), kHealthsOfAnEnd);
-  // those that never learned of the session are ended as a supervisor does it
+  // nodes without the session are ended as a supervisor does it
   for (const Role role : kAllNodes) {
     if (session.has(role)) session.node(role).send(signal);
   }
@@ -307,7 +307,7 @@ TEST_P(StartedTogether, ExactlyOneOfTwoStays) {
 INSTANTIATE_TEST_SUITE_P(Roles, StartedTogether, ::testing::ValuesIn(kGateRoles), role_name);
 INSTANTIATE_TEST_SUITE_P(NightlyRoles, StartedTogether, ::testing::ValuesIn(kNightlyRoles), role_name);
 
-// An io that holds the same name and goes first, for its id is the lowest there is; the observer speaks for it.
+// An io with the same name and priority, since its id is the lowest possible; the observer publishes its messages.
 class Claimant {
  public:
   Claimant(Observer& observer, const wire::SessionDescription& first) : observer_(observer), description_(first) {

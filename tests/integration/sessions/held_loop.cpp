@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kTries = 100'000;
 
-// what follows makes only calls that are safe behind a fork of a process with threads
+// only calls that are safe after a fork of a process with threads
 
 bool stop(pid_t thread) {
   int status = 0;

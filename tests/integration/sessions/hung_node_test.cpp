@@ -1,4 +1,4 @@
-// Nodes that stand still for a while, or so long that the others give them up: as processes, and by their loop alone.
+// Nodes that stand still for a while, or until the others give them up: as processes, and by their loop alone.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -73,7 +73,7 @@ HashChain bits_of_a_flexible_session() {
   return session.recorded().chain();
 }
 
-// of a session that has this role, when nothing happens in it
+// hashes of an undisturbed session with this role
 const HashChain& undisturbed_with(Role role) {
   static const HashChain rigid = [] {
     const ScratchFolder folder;

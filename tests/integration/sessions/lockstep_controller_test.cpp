@@ -1,4 +1,4 @@
-// Loops that are closed from outside in lockstep: the same bits in every run, and what happens when a controller never
+// Loops that are closed from outside in lockstep: the same bits in every run, and the faults of a controller that never
 // comes, dies or is too late.
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using wire::Role;
 constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
 
 // two loops with delays of their own; from at rest, so that nothing but the controllers moves the machine
-// (what is too slow for controller_wait is in LockstepFault: the load of these tests is not to be)
+// (controllers too slow for controller_wait are in LockstepFault: these tests must not be)
 std::vector<std::string> lockstep_arguments(const char* pace, const char* duration) {
   return {"--pace",     pace,
           "--duration", duration,
@@ -85,7 +85,7 @@ std::string warnings_without_releases(const std::string& errors) {
 
 struct LoopRun {
   RecordedSession recorded;
-  std::string lift_words;  // what the lifting loop printed
+  std::string lift_words;  // output of the lifting loop
 };
 
 // One run with both loops closed by this program.

@@ -12,7 +12,7 @@
 
 namespace slew::testing {
 
-// State hashes at t_step; io's is of the tick of that step. 0: there is none.
+// State hashes at t_step; io's belongs to the tick of that step. 0: there is none.
 struct StepHashes {
   std::uint64_t io = 0;
   std::uint64_t mechanics = 0;
@@ -37,7 +37,7 @@ struct RecordedSession {
   std::vector<PublishedStatus> statuses;
   std::vector<wire::ControlReply> replies;
   std::vector<wire::ControllerLease> leases;
-  std::map<std::string, std::string> summary;  // what the recorder counted
+  std::map<std::string, std::string> summary;  // counts of the recorder
   std::map<std::string, double> largest;       // value of each variable
   std::string problem;                         // why the file is not valid; empty: every byte is as it was written
   bool has_all_messages = false;               // closed in order

@@ -214,7 +214,7 @@ INSTANTIATE_TEST_SUITE_P(NightlyLosses, ReplacedFlex,
 
 class RunWithRejoin : public ::testing::Test {
  protected:
-  // of a session in mid-motion
+  // waits for the role in a session in mid-motion
   void wait_for(Role role) {
     ASSERT_TRUE(observer_.wait_for_step(300)) << run_.out() << run_.err();
     ASSERT_TRUE(observer_.wait_until([&] { return observer_.status(role).has_value(); }));
@@ -224,7 +224,7 @@ class RunWithRejoin : public ::testing::Test {
     wait_for(role);
     if (!HasFatalFailure()) kill(pid_of(role), signal);
   }
-  // a node is started again, and what it goes on with is as if nothing had been
+  // a restarted node continues with the undisturbed bits
   void expect_one_restart_and_undisturbed_bits() {
     EXPECT_EQ(run_.wait(), 0) << run_.out() << run_.err();
     EXPECT_NE(run_.err().find("it is started again with the state of its last checkpoint (1 of 3)"), std::string::npos)

@@ -72,7 +72,7 @@ class SavedSession : public ::testing::Test {
     EXPECT_EQ(saved_.states.size(), 3u);
   }
 
-  // of a session that goes on for a second
+  // the state of a session that goes on for a second
   [[nodiscard]] std::string duration() const { return std::to_string(saved_.step + 1000) + " ms"; }
 
   void expect_goes_on(const std::vector<std::string>& how) {
@@ -290,8 +290,7 @@ class LateRecording : public ::testing::Test {
     for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) session_.start(role);
   }
 
-  // Starts the recorder while the session pauses, and lets it go on to its end. What was recorded is complete and
-  // replays.
+  // Starts the recorder while the session pauses, and lets it go on to its end. The recording is complete and replays.
   RecordedSession record_the_rest() {
     Observer& observer = session_.observer();
     const wire::ControlReply paused = observer.request(wire::ControlAction::pause);

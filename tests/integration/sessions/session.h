@@ -29,7 +29,7 @@ class Observer {
  public:
   Observer(std::uint32_t domain, const std::string& session);
 
-  // Takes what comes until the condition holds; false when it does not within the time.
+  // Takes messages until the condition holds; false when it does not within the time.
   [[nodiscard]] bool wait_until(const std::function<bool()>& condition, std::int64_t longest_ns = kSoonNs);
   // The tick of this step of the present epoch, or a later one, has been seen.
   [[nodiscard]] bool wait_for_step(StepIndex step);

@@ -1,4 +1,4 @@
-// What the design promises in wall time. Any other load counts against it: judged alone on the machine, by `--nightly`.
+// Promises of the design in wall time. Any other load counts against it: judged alone on the machine, by `--nightly`.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a domain does to the program that opens it.
+// Effects of a domain on the program that opens it.
 #include "transport/cyclone/cyclone_domain.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What happens to a stream when its reader, in another process, does not run for a while.
+// A stream whose reader, in another process, does not run for a while.
 #include <gtest/gtest.h>
 
 #include <algorithm>

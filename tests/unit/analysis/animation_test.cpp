@@ -55,7 +55,7 @@ TEST(MachineDrawing, ShowsTheEdgesOfShapesWhereTheyAre) {
   box.position = {5, 0, 0};
   box.orientation = {M_PI / 2, 0, 0};
   box.size = {2, 4, 6};
-  multibody::ShapeDef square;  // of two triangles: their common edge is no edge of it
+  multibody::ShapeDef square;  // two triangles: their common edge is no edge of the shape
   square.type = contact::ShapeType::triangle_mesh;
   square.vertices = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   square.triangles = {0, 1, 2, 0, 2, 3};
@@ -106,7 +106,7 @@ TEST(MachineDrawing, ShowsTheCentreOfMassAndACrossWhereNothingElseIsSeen) {
 TEST(MachineDrawing, OfEverySceneShowsEveryBody) {
   int drawn = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(SLEWRING_SOURCE_DIR "/scenes")) {
-    // those of a flexible body alone are for 'slewring flex'
+    // problems of a flexible body alone are for 'slewring flex'
     const bool is_scene = entry.path().extension() == ".yaml" && entry.path().parent_path().filename() != "beams";
     if (!is_scene) continue;
     const scene::Scene scene = scene::load_file(entry.path().string());
@@ -194,7 +194,7 @@ TEST(Animation, IsAPictureOfTheInstantsInBothViews) {
 
 // ---- the page's script, run
 
-// what is drawn, back from px to m in the plane of the view
+// drawn points, back from px to m in the plane of the view
 constexpr const char* kDriver = R"(
 const W=800,H=600,s=Math.min(W,H)/2/reach;
 const drawn=(id,right,up)=>page.elements[id].context.lines.map(l=>({colour:l.colour,alpha:l.alpha,points:l.points.map(
@@ -223,7 +223,7 @@ class AnimationPage : public ::testing::Test {
     EXPECT_FALSE(result.is_null());
     return result;
   }
-  // of the arm's line from (-1, 0, 0) to (1, 0, 0), seen along an axis; turn: of the view about y [rad]
+  // the arm's line from (-1, 0, 0) to (1, 0, 0), seen along an axis; turn of the view about y [rad]
   void expect_drawn_at(const nlohmann::json& lines, std::size_t instant, bool is_top, double turn = 0) const {
     const Pose& pose = motion_.poses[0][instant];
     const math::Mat3 R = math::rotation_of(pose.orientation);

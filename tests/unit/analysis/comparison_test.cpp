@@ -147,7 +147,7 @@ TEST_F(Compare, EveryFormulationThatTheFieldTableListsHasARow) {
   }
 }
 
-// a rule by the name that it has, not by that of the default; what a formulation does not have is no row of `all`
+// a rule has its own name, not the default's; `all` has no row for a rule that a formulation lacks
 TEST_F(Compare, EveryRowNamesTheRuleThatItRunsWith) {
   write(kDoublePendulum);
   options.scene.duration = "0.02s";

@@ -150,7 +150,7 @@ TEST(ExtremeCases, CraneHasThemAllWithItsOwnNames) {
   }
 }
 
-// A load that is put on swings to twice what holds it, whatever kind of cylinder holds it.
+// A load that is put on swings to twice the holding force, for every kind of cylinder.
 TEST(ExtremeCases, CylindersOfEveryKindBoundThePressuresByWhatTheyHold) {
   for (const char* file : {"single_cylinder.yaml", "two_dof_crane.yaml", "tipper.yaml"}) {
     const auto ceiling_with = [&](const char* gravity) {

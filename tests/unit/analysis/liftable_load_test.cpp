@@ -41,7 +41,7 @@ double way(const std::string& scene_name, const LiftableLoad& found, double mass
   return port.force_per_kg > 0 ? after - before : before - after;
 }
 
-// a cylinder's first way is its oil's compression: what is lifted goes on
+// a cylinder first compresses its oil: a lifted load goes on
 constexpr double kLifted = 0.01, kNotLifted = 0.004;  // m
 
 TEST(LiftableLoad, OfTheCraneIsLiftedAndMoreIsNot) {

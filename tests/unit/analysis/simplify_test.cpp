@@ -130,7 +130,7 @@ TEST(Simplify, RefusesWhatItCannotJudge) {
   expect_refusal("Lode.position 1 mm", "Lode.position");
 }
 
-// wherever it ends: what was not judged has no verdict, and nothing is taken
+// at any interruption: a candidate that was not judged has no verdict, and none is taken
 TEST(Simplify, GivesNoVerdictOnWhatItWasInterruptedIn) {
   int all = 0;
   const Simplification whole =
@@ -143,7 +143,7 @@ TEST(Simplify, GivesNoVerdictOnWhatItWasInterruptedIn) {
     int calls = 0;
     const Simplification result = simplify(options_for("single_cylinder.yaml", {"Load.position 1mm"}, "1 s"),
                                            [&](std::string_view, double) { return ++calls < last; });
-    if (!result.is_interrupted) continue;  // what saves time by chance is not tried with others
+    if (!result.is_interrupted) continue;  // a candidate that saves time by chance is not combined with others
     ++interrupted;
     EXPECT_FALSE(result.helps());
     EXPECT_TRUE(result.settings.empty());

@@ -8,7 +8,7 @@
 namespace slew::analysis {
 namespace stress_verdict_test {
 
-// of 10000 steps; misses come alone
+// health of 10000 steps; misses come alone
 wire::Health timing(double missed, double p99, std::uint64_t longest_row = 1) {
   wire::Health health;
   health.response.count = health.release_jitter.count = 10000;
@@ -77,7 +77,7 @@ TEST(StressVerdict, StepsThatWereGivenUpAreMissesAndHaveAColumn) {
   cell.response.time = cell.response.values = {1, 2};
   wire::Health& io = cell.nodes[static_cast<std::size_t>(wire::Role::io)];
   io.response.count = 8000;
-  io.release_jitter.count = 5600;  // those that were done
+  io.release_jitter.count = 5600;  // finished steps
   io.overruns = 2408;
   const auto json = nlohmann::json::parse(report_json(stress)).at("cells").at(0);
   EXPECT_EQ(json.at("verdict"), "over");

@@ -1,4 +1,4 @@
-// The bare loops of a stress test: what of them is judged. Nothing is claimed about how fast they are.
+// The bare loops of a stress test: which of their steps are judged. No claim about their speed.
 #include "analysis/stress/yardstick.h"
 
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 namespace slew::plotting {
 namespace html_plot_test {
 
-// what the page's script reads
+// data of the page's script
 nlohmann::json data_of(const std::string& page) {
   const std::string begin = "id=\"data\">";
   const std::size_t from = page.find(begin) + begin.size();

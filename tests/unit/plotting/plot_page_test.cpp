@@ -1,4 +1,4 @@
-// The script of a plot's page, run: what stands under the pointer, what a zoom shows, and where lines break.
+// The script of a plot's page, run: values under the pointer, zoomed ranges, and gaps of lines.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +51,7 @@ TEST_F(PlotPage, ShowsTheLastSampleThatIsNotLater) {
     canvases[0].onpointerleave();out.push(readouts());return out)");
   EXPECT_EQ(result[0], (json{"0.09 at 0.3 s", "8 at 0.3 s"}));
   EXPECT_EQ(result[1], (json{"0.09 at 0.3 s", "8 at 0.3 s"}));
-  EXPECT_EQ(result[2], (json{"no value at 0.5 s", "9 at 0.55 s"}));  // what is missing is not made up
+  EXPECT_EQ(result[2], (json{"no value at 0.5 s", "9 at 0.55 s"}));  // missing values are not invented
   EXPECT_EQ(result[3], (json{"0 at 0 s", ""}));                      // before the first sample
   EXPECT_EQ(result[4], (json{"1 at 1 s", "10 at 0.8 s"}));
   EXPECT_EQ(result[5], (json{"", ""}));

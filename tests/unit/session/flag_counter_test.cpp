@@ -1,4 +1,4 @@
-// Counts of what samples report.
+// Counts of the samples' flags.
 #include "session/flag_counter.h"
 
 #include <gtest/gtest.h>

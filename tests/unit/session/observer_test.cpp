@@ -1,4 +1,4 @@
-// What becomes of a request that is lost on its way, or whose session ends.
+// Requests that are lost on their way, or whose session ends.
 #include "session/observer.h"
 
 #include <gtest/gtest.h>
@@ -126,7 +126,7 @@ class ObserverRequest : public ::testing::Test {
 
   int sent_first_ = 0;
   int signal_ = 0;                // that comes when the request is sent
-  ExitCode code_ = ExitCode::ok;  // of the failure
+  ExitCode code_ = ExitCode::ok;  // exit code of the failure
   std::unique_ptr<PlayedIo> io_ = std::make_unique<PlayedIo>();
 };
 

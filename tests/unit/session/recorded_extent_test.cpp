@@ -1,4 +1,4 @@
-// How far a recording goes without a gap, and what is missing in it.
+// Extent of a recording without a gap, and its missing messages.
 #include "session/recorded_extent.h"
 
 #include <gtest/gtest.h>

@@ -106,7 +106,7 @@ TEST_F(SceneOptionsTest, AContinuedSessionMayHaveAnotherControllerOfAnInput) {
   }
   ASSERT_EQ(continued.changes.size(), 1u);
   EXPECT_EQ(continued.changes[0].path, "Bag.mass");
-  // of the same field a wrong value, and another one of the same input
+  // a wrong value for the same field, and another one for the same input
   on.overrides = {"Input_Lift.controller=somehow"};
   EXPECT_THROW(static_cast<void>(scene::continue_scene(on, saved.expanded_text, saved.name)), scene::LoadError);
   on.overrides = {"Input_Lift.ramp=1 s"};

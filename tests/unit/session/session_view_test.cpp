@@ -1,4 +1,4 @@
-// What an observer makes of a session's messages.
+// An observer's view from a session's messages.
 #include "session/session_view.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The table of roles against what a session needs of it: one writer of each sample, a partner for each reader.
+// The table of roles against the needs of a session: one writer of each sample, a partner for each reader.
 #include "transport/roles.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(Roles, IoReadsTheSamplesThatItWaitsFor) {
   EXPECT_FALSE(is_physics(Role::recorder));
 }
 
-// whoever joins must be seen, and its messages must be found again
+// a joining node must be seen, and its messages must be available again
 TEST(Roles, EveryNodePublishesItsStatusAndRequestsMissingMessages) {
   for (const Role role : wire::kNodeRoles) {
     for (const Topic topic : {Topic::node_status, Topic::health, Topic::resend}) {
