@@ -28,8 +28,8 @@ bool try_openssl(const std::vector<std::string>& arguments, std::string& output)
     for (const std::string& line : openssl.take_lines()) output += line + '\n';
   };
   while (!openssl.poll_end()) {
-    pollfd output{openssl.output_fd(), POLLIN, 0};
-    ::poll(&output, 1, kLookAgain);
+    pollfd pipe{openssl.output_fd(), POLLIN, 0};
+    ::poll(&pipe, 1, kLookAgain);
     listen();
   }
   listen();
