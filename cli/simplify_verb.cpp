@@ -19,7 +19,7 @@ namespace {
 constexpr int kMostRepeats = 100;
 
 struct Options {
-  analysis::SimplifyOptions run;
+  analysis::SimplifyOptions settings;
   std::string overlay;
   bool is_json = false, is_quiet = false;
 };
@@ -33,25 +33,25 @@ std::string remark(const analysis::Simplification& result) {
 }
 
 ExitCode run(const Options& options) {
-  if (options.run.scene.input == "keyboard") {
+  if (options.settings.scene.input == "keyboard") {
     throw Failure(ExitCode::bad_input,
                   "--input keyboard: every run needs the same input; nothing was run; write it into a "
                   ".csv file");
   }
-  const std::string target = analysis::overlay_target(options.run.scene.file, options.overlay, "simplified");
+  const std::string target = analysis::overlay_target(options.settings.scene.file, options.overlay, "simplified");
   session::count_interrupts();
   analysis::Simplification result;
   {
     ProgressLine line(options.is_quiet);
-    result = analysis::simplify(options.run, [&line](std::string_view doing, double share) {
+    result = analysis::simplify(options.settings, [&line](std::string_view doing, double share) {
       line.show(doing, share);
       return session::interrupts() == 0;
     });
   }
   if (result.helps()) {
-    scene::Overrides settings = options.run.scene.overrides;
+    scene::Overrides settings = options.settings.scene.overrides;
     settings.insert(settings.end(), result.settings.begin(), result.settings.end());
-    analysis::write_overlay(options.run.scene.file, settings, remark(result), target);
+    analysis::write_overlay(options.settings.scene.file, settings, remark(result), target);
   }
   if (options.is_json) {
     Json json = analysis::report_json(result);
@@ -70,24 +70,24 @@ void add_simplify(options::Command& program) {
   options::Command verb =
       program.command("simplify", "parts of a scene that may be left out while chosen variables stay as they are");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  analysis::SimplifyOptions& run = options->run;
-  verb.option("scene", run.scene.file, "scene file").required().value_name("SCENE");
-  verb.option("--error", run.errors,
+  analysis::SimplifyOptions& settings = options->settings;
+  verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
+  verb.option("--error", settings.errors,
               "a variable and by how much it may change: a quantity, or a part of its range in %; repeat for more")
       .required()
       .value_name("'VARIABLE TOLERANCE'")
       .one_value_each();
-  verb.option("--until", run.scene.duration, "how long each run is; without it the scene's duration")
+  verb.option("--until", settings.scene.duration, "how long each run is; without it the scene's duration")
       .value_name("TIME");
-  verb.option("--set", run.scene.overrides, "change a value of the scene first; repeat for more")
+  verb.option("--set", settings.scene.overrides, "change a value of the scene first; repeat for more")
       .value_name("PATH=VALUE")
       .one_value_each();
-  verb.option("--input", run.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+  verb.option("--input", settings.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
       .value_name("SOURCE")
       .show_default();
   verb.option("-o,--overlay", options->overlay, "file to write, beside the scene; without it SCENE_simplified.yaml")
       .value_name("FILE");
-  verb.option("--repeats", run.repeats, "timed runs of everything tried")
+  verb.option("--repeats", settings.repeats, "timed runs of everything tried")
       .between(1, kMostRepeats)
       .value_name("N")
       .show_default();
