@@ -59,7 +59,7 @@ TEST(Judge, EachBoundThatIsBrokenIsTheOneNamed) {
   compared.difference = 0.02;
   EXPECT_EQ(broken([](Measures& m) { m.difference = 0.021; }, compared), "force error");
   Bounds same;
-  same.asks_same = true;
+  same.requires_same = true;
   EXPECT_EQ(broken([](Measures& m) { m.is_same = false; }, same), "bits that differ");
 }
 
