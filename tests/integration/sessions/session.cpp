@@ -15,7 +15,7 @@ namespace {
 using wire::Role;
 using wire::Topic;
 
-constexpr std::int64_t kAskAgainNs = 500'000'000;
+constexpr std::int64_t kRequestIntervalNs = 500'000'000;
 
 }  // namespace
 
@@ -146,7 +146,7 @@ wire::ControlReply Observer::request(wire::ControlAction action, double value, c
   // io may not have discovered the writer yet; an unanswered request is repeated
   for (int attempt = 0; attempt < 20; ++attempt) {
     publish(Topic::control_request, request);
-    if (wait_until([&] { return replies_.count(request.request) != 0; }, kAskAgainNs)) {
+    if (wait_until([&] { return replies_.count(request.request) != 0; }, kRequestIntervalNs)) {
       return replies_.at(request.request);
     }
   }
@@ -165,7 +165,7 @@ wire::ControllerLease Observer::acquire(const std::string& controller, const std
       return lease.controller == controller && lease.channel == channel;
     };
     const auto answered = [&] { return std::any_of(leases_.begin(), leases_.end(), is_answer); };
-    if (wait_until(answered, kAskAgainNs)) return *std::find_if(leases_.begin(), leases_.end(), is_answer);
+    if (wait_until(answered, kRequestIntervalNs)) return *std::find_if(leases_.begin(), leases_.end(), is_answer);
   }
   throw std::runtime_error("io does not answer a controller");
 }
