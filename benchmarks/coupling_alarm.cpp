@@ -3,7 +3,7 @@
 //
 //   coupling_alarm RESULTS.md
 //
-// replaces what stands in RESULTS.md between "<!-- measured: begin -->" and "<!-- measured: end -->". Controls are held
+// replaces the part of RESULTS.md between "<!-- measured: begin -->" and "<!-- measured: end -->". Controls are held
 // over 20 ms, so that all steps receive the same. Takes some minutes. The same figures on every run.
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ struct Machine {
   std::string name, file;
   scene::Overrides overrides;
   double duration;   // s
-  double amplitude;  // of the moving valves, raw signal
+  double amplitude;  // raw signal of the moving valves
 };
 
 struct Variant {
@@ -49,7 +49,7 @@ struct Variant {
   StepIndex late = 0;  // steps
 };
 
-// Of one port.
+// Results of one port.
 struct PortOutcome {
   Level level;
   double rms = 0;  // force error over any second, share of the force range
@@ -263,7 +263,7 @@ struct Study {
   std::array<Counts, std::size(kKinds)> by_kind{};
   Counts all;
   std::vector<std::string> wrong;  // false alarms and missed divergences
-  std::vector<PortOutcome> lamps;  // of runs in lockstep
+  std::vector<PortOutcome> lamps;  // ports of runs in lockstep
 };
 
 // hold and tlm have no alarm that ends a session
@@ -323,7 +323,7 @@ std::string quantile(std::vector<double> values, double share) {
 
 struct LampRow {
   std::string_view name;
-  double least, most;  // of eta
+  double least, most;  // bounds of eta
 };
 constexpr LampRow kLampRows[] = {{"green", -1, coupling::kGreenBelow},
                                  {"amber", coupling::kGreenBelow, coupling::kAmberBelow},
@@ -349,7 +349,7 @@ std::string lamps_of(const std::vector<PortOutcome>& ports) {
         if (!is_meant || !(port.eta >= lamp.least) || !(port.eta < lamp.most)) continue;
         force.push_back(port.rms);
         stroke.push_back(port.x);
-        // what has diverged is in no relation to anything
+        // a diverged run has no error to relate
         if (port.eta < coupling::kGreenBelow || !(port.rms < kDiverged)) continue;
         force_over_eta.push_back(port.rms / port.eta);
         stroke_over_eta.push_back(port.x / port.eta);

@@ -1,9 +1,9 @@
 // Coupling errors of all levels against the monolith, over the communication step, on the boom with one cylinder and on
-// the truck crane, rigid and with a jib boom that bends, with and without friction; and what eta says of them.
+// the truck crane, rigid and with a jib boom that bends, with and without friction; and their relation to eta.
 //
 //   coupling_error RESULTS.md FIGURES_FOLDER
 //
-// replaces what stands in RESULTS.md between "<!-- measured: begin -->" and "<!-- measured: end -->" and writes
+// replaces the part of RESULTS.md between "<!-- measured: begin -->" and "<!-- measured: end -->" and writes
 // coupling_*.svg. All runs get the same controls: the script sampled every 20 ms and held. Takes some minutes.
 #include <fmt/format.h>
 
@@ -64,7 +64,7 @@ std::vector<Case> sweep_cases() {
 }
 
 scene::Scene load(const Case& c, const scene::Overrides& more = {}) {
-  // how wrong a level is beyond its limit is what is measured
+  // the error of a level beyond its limit is to be measured
   const scene::Overrides to_the_end = {"session.coupling_alarm=warn"};
   return scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + c.file,
                           joined(joined(c.overrides, to_the_end), more));
@@ -161,11 +161,12 @@ Sweep sweep(const Case& c, bool is_dashed) {
   return result;
 }
 
-// ---- what eta tells -------------------------------------------------------------------------------------------
+// ---- force error over eta -------------------------------------------------------------------------------------------
 
 std::string factors(const std::vector<EtaPoint>& points) {
   std::string text =
-      "### What eta tells\n\nRelative force error (largest error / largest force) over eta, of all runs above whose "
+      "### Force error over eta\n\nRelative force error (largest error / largest force) over eta, of all runs above "
+      "whose "
       "error "
       "is less than the range.\n\n| level | runs | least | a quarter below | median | three quarters below | most |\n"
       "|---|---|---|---|---|---|---|\n";
@@ -205,7 +206,7 @@ std::string eta_figure(const std::vector<EtaPoint>& points) {
                       .is_flagged = {false, false}});
   }
   return log_log_svg(curves,
-                     {.title = "What eta tells",
+                     {.title = "Force error over eta",
                       .subtitle = "every run of the tables: largest force error over the indicator of the same run",
                       .x_label = "eta, over the whole run",
                       .y_label = "largest force error / largest force",
@@ -217,7 +218,7 @@ std::string eta_figure(const std::vector<EtaPoint>& points) {
                       .has_flags = false});
 }
 
-// ---- what limits level two ------------------------------------------------------------------------------------
+// ---- limits of level two ------------------------------------------------------------------------------------
 
 std::string limits_table(const Case& c) {
   const scene::Overrides oil = {"hydraulics.relative_tolerance=1e-6"};
@@ -251,7 +252,7 @@ std::string limits(const std::vector<Case>& cases) {
   return text + "\n";
 }
 
-// ---- what the reference itself is worth -----------------------------------------------------------------------
+// ---- error of the reference itself -----------------------------------------------------------------------
 
 // Largest difference of two references over the force range of the first, of the port with the largest share.
 double spread(const Traces& a, const Traces& b) {

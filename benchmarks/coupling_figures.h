@@ -19,9 +19,9 @@ struct ErrorCurve {
 struct LogLogPlot {
   std::string title, subtitle, x_label, y_label;
   double x_low = 0.08, x_high = 25;
-  double y_low = 1e-7, y_high = 1e1;  // what lies above is drawn at the edge
+  double y_low = 1e-7, y_high = 1e1;  // larger values are drawn at the edge
   std::vector<double> x_ticks = {0.1, 0.2, 0.5, 1, 2, 5, 10, 20};
-  bool has_flags = true;  // says what open circles mean
+  bool has_flags = true;  // has a note on the meaning of open circles
 };
 
 [[nodiscard]] std::string log_log_svg(const std::vector<ErrorCurve>& curves, const LogLogPlot& plot);

@@ -94,7 +94,7 @@ void report(benchmark::State& state, StepIndex steps_per_iteration) {
                                                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-// one side, given what the other said on the tape
+// one side, with the other side's samples from the tape
 template <typename Side>
 void run_side(benchmark::State& state, Boom boom, Side side) {
   const Tape& t = tape(boom);

@@ -37,7 +37,7 @@ constexpr std::size_t kChannels = 8;
 constexpr std::int64_t kGiveUp = 20'000'000'000;  // ns without any message
 constexpr std::int64_t kJoinPeriod = 2'000'000;   // ns between two join probes
 constexpr StepIndex kHello = -2;                  // "I am here"
-constexpr StepIndex kHeardAll = -1;               // "and I hear the others"
+constexpr StepIndex kReceivedAll = -1;            // all others have been received
 
 constexpr std::array<Topic, 3> kTopics = {Topic::tick, Topic::mechanism, Topic::actuators};
 
@@ -233,18 +233,19 @@ std::unique_ptr<Link> connect(Way way, std::uint32_t domain, Topic own) {
   return std::make_unique<TransportLink>(domain, own);
 }
 
-// One process of the star: what it has heard last on every topic.
+// One process of the star: the last message received on every topic.
 class Process {
  public:
   Process(Way way, std::uint32_t domain, Topic own) : own_(own), link_(connect(way, domain, own)) {}
 
-  // Says hello until all others have been heard, then that it hears them until all others have said so.
+  // Publishes hello until a message of every other process has arrived, then a confirmation until all others have
+  // published theirs.
   void join() {
-    for (const StepIndex stage : {kHello, kHeardAll}) {
-      while (lowest_heard() < stage) {
+    for (const StepIndex stage : {kHello, kReceivedAll}) {
+      while (lowest_step() < stage) {
         link_->send(stage);
         const std::int64_t deadline = monotonic_ns() + kJoinPeriod;
-        while (lowest_heard() < stage && monotonic_ns() < deadline) hear(deadline);
+        while (lowest_step() < stage && monotonic_ns() < deadline) hear(deadline);
       }
       link_->send(stage);
     }
@@ -255,19 +256,19 @@ class Process {
   // Waits for the step or a later one on both other topics.
   void wait_for(Topic topic, StepIndex step) {
     const std::int64_t give_up = monotonic_ns() + kGiveUp;
-    while (heard(topic) < step) {
+    while (last_step(topic) < step) {
       if (monotonic_ns() > give_up) fail("no message for 20 s");
       hear(give_up);
     }
   }
 
  private:
-  StepIndex& heard(Topic topic) { return heard_[static_cast<std::size_t>(topic)]; }
+  StepIndex& last_step(Topic topic) { return last_steps_[static_cast<std::size_t>(topic)]; }
 
-  StepIndex lowest_heard() {
+  StepIndex lowest_step() {
     StepIndex lowest = kTopLimit;
     for (const Topic topic : kTopics) {
-      if (topic != own_) lowest = std::min(lowest, heard(topic));
+      if (topic != own_) lowest = std::min(lowest, last_step(topic));
     }
     return lowest;
   }
@@ -277,7 +278,7 @@ class Process {
     StepIndex step = 0;
     bool is_empty = true;
     while (link_->take(topic, step)) {
-      heard(topic) = std::max(heard(topic), step);
+      last_step(topic) = std::max(last_step(topic), step);
       is_empty = false;
     }
     if (is_empty) link_->wait_until(deadline);
@@ -288,10 +289,10 @@ class Process {
 
   Topic own_;
   std::unique_ptr<Link> link_;
-  std::array<StepIndex, wire::kTopics> heard_ = [] {
-    std::array<StepIndex, wire::kTopics> heard{};
-    heard.fill(kNothing);
-    return heard;
+  std::array<StepIndex, wire::kTopics> last_steps_ = [] {
+    std::array<StepIndex, wire::kTopics> last_step{};
+    last_step.fill(kNothing);
+    return last_step;
   }();
 };
 

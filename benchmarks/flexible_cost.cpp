@@ -1,6 +1,6 @@
-// What bending costs: the mechanics of the truck crane with its jib boom rigid, frozen, with more and more modes, of 20
-// and of 200 nodes, and in segments; and a chain of five booms of which none, one or all bend. Beside each the rigid
-// one of the same run.
+// Cost of bending: the mechanics of the truck crane with its jib boom rigid, frozen, with an increasing number of
+// modes, with 20 and 200 nodes, and in segments; and a chain of five booms of which none, one or all bend. Beside each
+// the rigid one of the same run.
 //
 //   flexible_cost                    tables of microseconds per simulated millisecond
 //   flexible_cost --steps NAME N     N steps of one mechanism and nothing else, for a counter of instructions; prints
@@ -96,7 +96,7 @@ scene::Scene crane(const Boom& boom) {
   return scene;
 }
 
-// One run of the machine with what the mechanics was given in it.
+// One run of the machine with the inputs of the mechanics.
 struct Tape {
   std::vector<coupling::ActuatorSample> actuators;
   std::vector<std::vector<double>> controls;
@@ -135,7 +135,7 @@ Tape record(const scene::Scene& scene, mechanics::MechanicsSubsystem& mechanics)
   return tape;
 }
 
-// A mechanism without its surroundings: Runge-Kutta steps from a start, of 1 ms or of what segments need.
+// A free mechanism: Runge-Kutta steps from a start, of 1 ms or of the length that segments need.
 class Falling {
  public:
   explicit Falling(multibody::MechanicsDef def)
@@ -217,7 +217,7 @@ struct Crane {
   mechanics::MechanicsSubsystem mechanics;
   Tape tape;
   Falling alone;
-  double iterations = 0;  // of the ports' laws, of the last run
+  double iterations = 0;  // iterations of the ports' laws in the last run
   std::vector<double> node_times{}, alone_times{};
 };
 

@@ -1,5 +1,5 @@
-// What the hydraulics' solvers cost and how far off they are, over the extremes of the coupling study's section 7: the
-// truck crane's circuit with a mass and end stops on each piston, the lift at full command from 0.2 to 1.2 s of 2 s.
+// Cost and error of the hydraulics' solvers over the extremes of the coupling study's section 7: the truck crane's
+// circuit with a mass and end stops on each piston, the lift at full command from 0.2 to 1.2 s of 2 s.
 //
 //   hydraulics_alone              Markdown tables: error, microseconds per simulated millisecond, worst millisecond
 //   hydraulics_alone --steps N    N runs of the nominal circuit under RODAS3 and nothing else, for a profiler

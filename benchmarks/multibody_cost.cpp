@@ -1,5 +1,5 @@
-// What the mechanics costs: forward dynamics and steps of the crane, of the crane with its cylinders as bodies in
-// loops, of contact and of chains, in nanoseconds of thread time; and what the steps lose of a chain's energy.
+// Cost of the mechanics: forward dynamics and steps of the crane, of the crane with its cylinders as bodies in loops,
+// of contact and of chains, in nanoseconds of thread time; and the energy drift of a chain.
 //
 //   multibody_cost
 //

@@ -1,4 +1,4 @@
-// `slewring animate REC`: the machine of a recording in side and top view, to look at without installing anything.
+// `slewring animate REC`: the machine of a recording in side and top view, as a page that needs no installation.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -18,7 +18,7 @@
 namespace slew::cli {
 namespace {
 
-constexpr std::size_t kMostFrames = 2000;  // of a page; its help says so
+constexpr std::size_t kMostFrames = 2000;  // limit of a page, also in the help
 constexpr int kMostInstants = 50;
 
 struct Options {
@@ -27,7 +27,7 @@ struct Options {
   int instants = 7;
 };
 
-// of a Pose, in the order of its members
+// members of a Pose, in their order
 constexpr const char* kParts[] = {"position.x",    "position.y",    "position.z",   "orientation.w",
                                   "orientation.x", "orientation.y", "orientation.z"};
 
@@ -74,7 +74,7 @@ std::string ordinal_text(std::size_t n) {
   return fmt::format("{}{}", n, last == 1 ? "st" : last == 2 ? "nd" : last == 3 ? "rd" : "th");
 }
 
-// A page does not bear every instant of a long recording, and says so.
+// A page holds a limited number of instants; it names the ones shown.
 std::string page_text(const analysis::MachineDrawing& machine, const analysis::Motion& motion) {
   const std::size_t n = analysis::stride_for(motion, kMostFrames);
   if (n == 1) return analysis::animation_html(machine, motion);
@@ -125,11 +125,14 @@ void add_animate(options::Command& program) {
       .value_name("FILE");
   verb.option("--from", options->from, "first time that is shown, such as '2.5 s'").value_name("TIME");
   verb.option("--to", options->to, "last time that is shown").value_name("TIME");
-  verb.option("--instants", options->instants, "of a .svg").between(1, kMostInstants).value_name("N").show_default();
+  verb.option("--instants", options->instants, "number of instants of a .svg")
+      .between(1, kMostInstants)
+      .value_name("N")
+      .show_default();
   verb.footer(
       "Bodies are drawn as lines between joints, forces and centre of mass and by their contact shapes, or as a small\n"
       "cross, at the poses that were recorded; bending, ropes and planes are not drawn.\n\n"
-      "A page holds 2000 instants: of a longer recording every n-th, as it says.\n\n"
+      "A page holds 2000 instants: of a longer recording every n-th, named on the page.\n\n"
       "Examples:\n"
       "  slewring animate runs/truck_crane-20260501-102030 -o crane.html\n"
       "  slewring animate runs/truck_crane-20260501-102030 --from 2s --to 5s -o crane.svg");

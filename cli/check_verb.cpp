@@ -41,7 +41,7 @@ Json to_json(const scene::LoadError& error) {
   return {{"ok", false}, {"problems", problems}, {"omitted", error.omitted()}};
 }
 
-// A name that only the built models can know: what is plotted and recorded must exist.
+// Checks names that only the built models have: plotted and recorded variables must exist.
 void check_variables(const scene::Scene& scene, const session::DirectSession& session) {
   std::vector<std::string> names;
   for (const Role role : wire::kPhysicsRoles) {
@@ -62,7 +62,7 @@ void check_variables(const scene::Scene& scene, const session::DirectSession& se
   }
 }
 
-// A payload that the scene's valves do not lift: a physical result, and rarely what was wanted.
+// A payload that the scene's valves do not lift: a physical result, and rarely intended.
 void check_payload(scene::Scene& scene) {
   const analysis::LiftableLoad load = analysis::find_liftable(scene, {}, analysis::ListedSettings::left_out);
   if (!load.has_answer() || load.mass <= load.limit().load) return;

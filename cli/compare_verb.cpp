@@ -17,8 +17,8 @@ namespace {
 constexpr int kMostRepeats = 1000;
 
 struct Options {
-  analysis::ComparisonWish wish;
-  std::string picture;  // empty: beside the user, named after the scene
+  analysis::ComparisonOptions settings;
+  std::string picture;  // empty: in the working folder, named after the scene
   std::string csv;
   bool is_json = false;
   bool is_quiet = false;
@@ -36,7 +36,7 @@ bool is_html(const std::string& path) {
   return path.ends_with(".html") || path.ends_with(".htm");
 }
 
-// refused before anything has run for minutes
+// a wrong name is refused before the runs
 void check_picture(const std::string& path) {
   if (path.empty() || path.ends_with(".svg") || is_html(path)) return;
   throw Failure(ExitCode::bad_input,
@@ -45,7 +45,7 @@ void check_picture(const std::string& path) {
 
 ExitCode run(const Options& options) {
   check_picture(options.picture);
-  if (options.wish.scene.input == "keyboard") {
+  if (options.settings.scene.input == "keyboard") {
     throw Failure(ExitCode::bad_input,
                   "--input keyboard: every run needs the same input; nothing was run; write it "
                   "into a .csv file");
@@ -54,7 +54,7 @@ ExitCode run(const Options& options) {
   analysis::Comparison comparison;
   {
     ProgressLine line(options.is_quiet);
-    comparison = analysis::compare(options.wish, [&line](std::string_view doing, double share) {
+    comparison = analysis::compare(options.settings, [&line](std::string_view doing, double share) {
       line.show(doing, share);
       return session::interrupts() == 0;
     });
@@ -75,28 +75,29 @@ ExitCode run(const Options& options) {
 }
 
 void add_what(options::Command& verb, Options& options) {
-  analysis::ComparisonWish& wish = options.wish;
-  verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
+  analysis::ComparisonOptions& settings = options.settings;
+  verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
   const auto list = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
     verb.option(name, to, text).comma_separated().one_value_each().value_name(type);
   };
-  list("--formulations", wish.formulations, "names separated by commas, or all; all without it", "NAMES");
-  list("--integrators", wish.integrators, "names separated by commas, or all; without it the scene's", "NAMES");
-  list("--steps", wish.steps,
+  list("--formulations", settings.formulations, "names separated by commas, or all; all without it", "NAMES");
+  list("--integrators", settings.integrators, "names separated by commas, or all; without it the scene's", "NAMES");
+  list("--steps", settings.steps,
        "sub-steps of the mechanics, such as 0.5ms,1ms, that divide the communication step; a multiple of that "
        "replaces it too. Without it the whole, a half and a quarter of the scene's",
        "TIMES");
-  verb.option("--until", wish.scene.duration, "how long to simulate, such as '5 s'; without it the scene's duration")
+  verb.option("--until", settings.scene.duration,
+              "how long to simulate, such as '5 s'; without it the scene's duration")
       .value_name("TIME");
-  verb.option("--variables", wish.variables,
-              "whose difference to the reference is shown: names, or patterns with * and ?; repeat for more; "
+  verb.option("--variables", settings.variables,
+              "variables whose difference to the reference is shown: names, or patterns with * and ?; repeat for more; "
               "without it origins and centres of mass of all bodies")
       .value_name("PATTERN")
       .one_value_each();
-  verb.option("--reference", wish.reference_step,
+  verb.option("--reference", settings.reference_step,
               "sub-step of the reference; without it an eighth of the smallest of the steps")
       .value_name("TIME");
-  verb.option("--repeats", wish.repeats, "timed runs of every row")
+  verb.option("--repeats", settings.repeats, "timed runs of every row")
       .between(1, kMostRepeats)
       .value_name("N")
       .show_default();
@@ -108,10 +109,10 @@ void add_compare(options::Command& program) {
   options::Command verb = program.command("compare", "accuracy against cost of formulations, integrators and steps");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   add_what(verb, *options);
-  verb.option("--set", options->wish.scene.overrides, "change a value of the scene; repeat for more")
+  verb.option("--set", options->settings.scene.overrides, "change a value of the scene; repeat for more")
       .value_name("PATH=VALUE")
       .one_value_each();
-  verb.option("--input", options->wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+  verb.option("--input", options->settings.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
       .value_name("SOURCE")
       .show_default();
   verb.option("-o,--output", options->picture, "picture, .svg or .html; without it SCENE_compare.svg")

@@ -43,9 +43,9 @@ constexpr Command kCommands[] = {
     {"stop", "end the session in order; the recording is closed", ControlAction::stop},
 };
 
-// What io_node said to a command, on standard output.
-void tell(const Options& options, const std::string& command, const session::Observer& observer,
-          const wire::ControlReply& reply, const std::string& more = "") {
+// Prints io_node's reply to a command on standard output.
+void report(const Options& options, const std::string& command, const session::Observer& observer,
+            const wire::ControlReply& reply, const std::string& more = "") {
   if (options.is_json) {
     fmt::print("{}\n", Json({{"session", observer.session_name()},
                              {"action", command},
@@ -70,14 +70,14 @@ ExitCode send(const Options& options, const Command& command) {
   wire::ControlRequest request;
   request.action = command.action;
   request.value = command.action == ControlAction::step ? static_cast<double>(options.steps) : 0;
-  tell(options, command.name, *observer, observer->ask(request));
+  report(options, command.name, *observer, observer->request_reply(request));
   return ExitCode::ok;
 }
 
 // ---- save and load --------------------------------------------------------------------------------------------
 
 constexpr SimDuration kSaveAnswer = milliseconds(10'000);   // io_node waits for its nodes
-constexpr SimDuration kStatesArrive = milliseconds(2'000);  // behind its answer
+constexpr SimDuration kStatesArrive = milliseconds(2'000);  // after its reply
 constexpr int kSaveAttempts = 3;
 
 std::vector<wire::Role> roles_with_state(const wire::SessionDescription& session) {
@@ -102,10 +102,10 @@ ExitCode save(const Options& options) {
   request.action = ControlAction::save;
   wire::ControlReply reply;
   bool is_whole = false;
-  // what io_node says before it knows this reader is lost
+  // replies before io_node has discovered this reader are lost
   for (int attempt = 0; attempt < kSaveAttempts && !is_whole; ++attempt) {
-    reply = observer->ask(request, kSaveAnswer);
-    if (!reply.is_accepted) tell(options, "save", *observer, reply);
+    reply = observer->request_reply(request, kSaveAnswer);
+    if (!reply.is_accepted) report(options, "save", *observer, reply);
     is_whole = observer->wait_for(
         [&] {
           return std::all_of(roles.begin(), roles.end(),
@@ -130,12 +130,12 @@ ExitCode save(const Options& options) {
   saved.step = reply.header.step;
   for (const wire::Role role : roles) saved.states.push_back({role, *observer->state(reply.request, role)});
   require(io::write_saved(options.file, saved, options.may_replace ? io::Replace::existing : io::Replace::never));
-  tell(options, "save", *observer, reply, fmt::format(", t = {:.6g} s: {}", saved.time(), options.file));
+  report(options, "save", *observer, reply, fmt::format(", t = {:.6g} s: {}", saved.time(), options.file));
   return ExitCode::ok;
 }
 
-// Empty when both are the same machine; else what differs first. Duration, pace, how deadlines are kept, script, who
-// moves the inputs, and which variables are recorded and plotted are no part of the machine.
+// Empty when both have the same machine; else the first difference. Duration, pace, how deadlines are kept, script,
+// controllers of the inputs, and the recorded and plotted variables are not part of the machine.
 std::string difference_of(const io::SavedSession& saved, const wire::SessionDescription& running) {
   scene::Scene a = scene::load_text(saved.scene_text, saved.scene_name);
   scene::Scene b = scene::load_text(running.scene_text, running.scene_name);
@@ -202,8 +202,8 @@ ExitCode load(const Options& options) {
   const auto give_states = [&] {
     for (const wire::Role role : roles) observer->give_state(request.request, role, *saved.find(role));
   };
-  tell(options, "load", *observer, observer->ask(request, kSaveAnswer, give_states),
-       fmt::format(", t = {:.6g} s", saved.time()));
+  report(options, "load", *observer, observer->request_reply(request, kSaveAnswer, give_states),
+         fmt::format(", t = {:.6g} s", saved.time()));
   return ExitCode::ok;
 }
 

@@ -1,5 +1,5 @@
-// `slewring describe SCENE`: what a scene is made of, what it costs in states, and which nodes it needs and why; what
-// each part costs in time, its eigenvalues and what it can lift when asked for.
+// `slewring describe SCENE`: the parts of a scene, its number of states, and its nodes with reasons; on request the
+// cost of each part, its eigenvalues and its liftable load.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,16 +23,16 @@
 namespace slew::cli {
 namespace {
 
-// s of a scene's run whose cost is measured when nothing is said: some manoeuvre, some seconds of waiting
+// s, default length of the run whose cost is measured: some manoeuvre, some seconds of waiting
 constexpr double kCostTime = 8;
 
 struct Options {
   std::string scene;
   std::vector<std::string> overrides;
   bool is_json = false;
-  // what to work out beside the description
+  // results beside the description
   bool has_cost = false, has_eigenvalues = false, is_frictionless = false, has_liftable = false;
-  std::string until;      // of the run whose cost is measured; empty: all of it, at most kCostTime
+  std::string until;      // end of the run whose cost is measured; empty: all of it, at most kCostTime
   std::size_t count = 8;  // eigenvalues of either end
   std::string at = "0 s";
   std::vector<std::string> pose;
@@ -40,7 +40,7 @@ struct Options {
   [[nodiscard]] bool has_part() const { return has_cost || has_eigenvalues || has_liftable; }
 };
 
-// A body by its numbers, and the mesh that they came from.
+// A body's inertia, and the mesh that it was computed from.
 struct BodyNumbers {
   multibody::BodyDef def;
   std::optional<scene::MeshInertia> mesh;
@@ -103,7 +103,7 @@ void describe_mechanics(const scene::Scene& scene, Description& d) {
         std::any_of(pairs.begin(), pairs.end(), [&](const auto& one) { return one.name == pair && one.tested; });
     d.left_out.push_back("contact " + pair +
                          (is_tested ? ": its shapes cannot move against each other, it is not tested"
-                                    : ": the scene says that it is not tested"));
+                                    : ": the scene excludes it from the test"));
   }
   for (const std::string& body : m.fixed_to_ground) d.merged.push_back(body + " with Ground");
   for (const multibody::LinkDescription& link : m.links) {
@@ -284,7 +284,7 @@ void print(const Description& d) {
   print_table(rows);
 }
 
-// Only the parts that were asked for, in the order of the options.
+// Prints only the requested parts, in the order of the options.
 ExitCode show_parts(const Options& options) {
   // the same physics, in the parts that are described
   scene::Overrides overrides = options.overrides;
@@ -337,8 +337,7 @@ ExitCode show(const Options& options) {
 }  // namespace
 
 void add_describe(options::Command& program) {
-  options::Command verb =
-      program.command("describe", "what a scene consists of and which nodes it needs, with reasons");
+  options::Command verb = program.command("describe", "parts of a scene and the nodes it needs, with reasons");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   verb.option("scene", options->scene, "scene file").required().value_name("SCENE");
   verb.option("--set", options->overrides, "change a value of the scene; repeat for more")
@@ -350,9 +349,9 @@ void add_describe(options::Command& program) {
       .value_name("TIME")
       .needs(cost);
   options::Option eigenvalues = verb.flag("--eigenvalues", options->has_eigenvalues,
-                                          "fastest and slowest motions of the whole machine, and whose they are");
+                                          "fastest and slowest motions of the whole machine, and their owners");
   options::Option liftable =
-      verb.flag("--liftable", options->has_liftable, "largest payload that the cylinders lift, and what limits it");
+      verb.flag("--liftable", options->has_liftable, "largest payload that the cylinders lift, and its limit");
   verb.option("--at", options->at, "time of the scene's own run at which to look").value_name("TIME").show_default();
   verb.option("--count", options->count, "eigenvalues shown of either end").needs(eigenvalues).show_default();
   verb.flag("--frictionless", options->is_frictionless, "eigenvalues without the dry friction of cylinders and joints")

@@ -1,4 +1,4 @@
-// `slewring doctor`: is this machine fit for a session, and what to do where it is not.
+// `slewring doctor`: checks whether this machine is fit for a session, with a remedy for each problem.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/statvfs.h>
@@ -27,7 +27,7 @@ enum class Verdict { good, warning, bad };
 struct Finding {
   std::string what;
   Verdict verdict = Verdict::good;
-  std::string text;  // what was found, and what to do
+  std::string text;  // finding and remedy
 };
 
 struct Options {
@@ -78,7 +78,7 @@ Finding check_pidfd() {
 }
 
 Finding check_network(node::SessionOptions options) {
-  // a look at the network says nothing there that keys would have to protect
+  // a look at the network sends no data that keys would have to protect
   const bool lacks_keys = options.keys.empty() && transport::leaves_machine(options.interface);
   options.is_insecure_lan = lacks_keys;
   try {
@@ -96,7 +96,7 @@ Finding check_receive_buffer() {
   const long bytes = text.empty() ? 0 : std::stol(text);
   if (bytes >= kEnoughReceiveBuffer || text.empty()) return {"receive buffer", Verdict::good, text + " bytes at most"};
   return {"receive buffer", Verdict::warning,
-          fmt::format("{} bytes at most; a node that is held up may lose messages and ask for them again; as root: "
+          fmt::format("{} bytes at most; a node that is held up may lose messages and request them again; as root: "
                       "sysctl -w net.core.rmem_max={}",
                       bytes, kEnoughReceiveBuffer)};
 }

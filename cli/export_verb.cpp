@@ -41,7 +41,7 @@ void check_values(const recording::Reader& reader, const std::vector<plotting::S
                             static_cast<double>(reader.statistics().end_time) * 1e-9));
 }
 
-// A file is replaced only when that is asked for, and never by half of another.
+// Replaces a file only on request, and never leaves a part of one.
 ExitCode write_file(const Options& options, const std::function<Status(const std::filesystem::path&)>& write) {
   std::error_code error;
   const std::filesystem::file_status there = std::filesystem::status(options.output, error);
@@ -64,7 +64,7 @@ void check_output(const Options& options) {
                                          "replace it with --force");
 }
 
-// What the operator did, as `run --input` and scripts read it: raw values by input.
+// The operator's inputs in the format of `run --input` and scripts: raw values by input.
 std::string input_text(const recording::Reader& reader, const session::TimeRange& range) {
   const scene::Scene scene = scene::load_text(session::recorded_scene_text(reader), reader.identity().scene);
   if (scene.inputs.empty()) {
@@ -102,8 +102,8 @@ std::string input_text(const recording::Reader& reader, const session::TimeRange
   return text + "\n";
 }
 
-ExitCode export_input(const Options& options, const std::vector<std::string>& wishes) {
-  if (!wishes.empty()) {
+ExitCode export_input(const Options& options, const std::vector<std::string>& patterns) {
+  if (!patterns.empty()) {
     throw Failure(ExitCode::bad_input, "--input writes every input; nothing was written; leave the variables out");
   }
   const auto reader = session::open_recording(options.recording);
@@ -119,13 +119,13 @@ ExitCode export_variables(Options options) {
   const bool is_named_mat = std::filesystem::path(options.output).extension() == ".mat";
   options.is_mat = options.is_mat || (is_named_mat && !options.is_csv && !options.is_input);
   check_output(options);
-  std::vector<std::string> wishes = options.variables;
-  wishes.insert(wishes.end(), options.only.begin(), options.only.end());
-  if (options.is_input) return export_input(options, wishes);
-  if (wishes.empty()) wishes = {"*"};
+  std::vector<std::string> patterns = options.variables;
+  patterns.insert(patterns.end(), options.only.begin(), options.only.end());
+  if (options.is_input) return export_input(options, patterns);
+  if (patterns.empty()) patterns = {"*"};
   const session::TimeRange range = session::recorded_range(options.from, options.to);
   const auto reader = session::open_recording(options.recording);
-  const std::vector<plotting::Series> curves = session::read_series(*reader, wishes, session::Units::si, range);
+  const std::vector<plotting::Series> curves = session::read_series(*reader, patterns, session::Units::si, range);
   check_values(*reader, curves);
   if (options.output.empty() || options.output == "-") {
     plotting::write_csv(curves, std::cout);
@@ -157,7 +157,7 @@ void add_export(options::Command& program) {
                                   "value for each variable, SI units");
   options::Option input =
       verb.flag("--input", options->is_input,
-                "what the operator did, as 'run --input FILE' reads it; as often as variables were recorded, "
+                "the operator's inputs, in the format of 'run --input FILE'; as often as variables were recorded, "
                 "each value held for a step, straight lines between");
   csv.excludes(mat);
   input.excludes(mat);

@@ -1,4 +1,5 @@
-// `slewring extremes SCENE|--suite`: the hard cases of a scene, each judged by its bounds, and how near the edge it is.
+// `slewring extremes SCENE|--suite`: the hard cases of a scene, each judged by its bounds, and its distance from the
+// edge.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -18,7 +19,7 @@ namespace {
 constexpr int kMostWorkers = 64;
 
 struct Options {
-  analysis::ExtremesWish wish;
+  analysis::ExtremesOptions settings;
   std::string scene, scenes = "scenes";
   bool is_suite = false, is_json = false, is_quiet = false;
 };
@@ -32,13 +33,13 @@ ExitCode run(Options options) {
   if (options.is_suite == !options.scene.empty()) {
     throw Failure(ExitCode::bad_input, "a scene file or --suite is needed, one of both; nothing was run");
   }
-  options.wish.files =
+  options.settings.files =
       options.is_suite ? analysis::suite_files(options.scenes) : std::vector<std::string>{options.scene};
   session::count_interrupts();
   analysis::Extremes extremes;
   {
     ProgressLine line(options.is_quiet);
-    extremes = analysis::run_extremes(options.wish, [&line](std::string_view doing, double share) {
+    extremes = analysis::run_extremes(options.settings, [&line](std::string_view doing, double share) {
       line.show(doing, share);
       return session::interrupts() == 0;
     });
@@ -56,18 +57,21 @@ void add_extremes(options::Command& program) {
   options::Command verb =
       program.command("extremes", "hard cases of a scene: within their bounds, and how near the edge");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  analysis::ExtremesWish& wish = options->wish;
+  analysis::ExtremesOptions& settings = options->settings;
   verb.option("scene", options->scene, "scene file").value_name("SCENE");
   verb.flag("--suite", options->is_suite, "the repository's own machines instead of a scene");
   verb.option("--scenes", options->scenes, "folder of the suite's scenes").value_name("DIR").show_default();
   const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
     verb.option(name, to, text).one_value_each().value_name(type);
   };
-  repeated("--set", wish.overrides, "change a value of the scene for all cases; repeat for more", "PATH=VALUE");
-  repeated("--only", wish.only, "run these cases: names, or patterns with * and ?; repeat for more", "NAME");
-  verb.option("--folder", wish.folder, "where results are kept").value_name("DIR").show_default();
-  verb.flag("--anew", wish.is_anew, "compute also what the folder has already");
-  verb.option("--workers", wish.workers, "processes at once").between(1, kMostWorkers).value_name("N").show_default();
+  repeated("--set", settings.overrides, "change a value of the scene for all cases; repeat for more", "PATH=VALUE");
+  repeated("--only", settings.only, "run these cases: names, or patterns with * and ?; repeat for more", "NAME");
+  verb.option("--folder", settings.folder, "where results are kept").value_name("DIR").show_default();
+  verb.flag("--anew", settings.is_fresh, "compute also what the folder has already");
+  verb.option("--workers", settings.workers, "processes at once")
+      .between(1, kMostWorkers)
+      .value_name("N")
+      .show_default();
   verb.flag("--json", options->is_json, "print the table as JSON and nothing else");
   verb.flag("--quiet", options->is_quiet, "no progress");
   verb.footer(
@@ -82,7 +86,7 @@ void add_extremes(options::Command& program) {
   verb.action([options] { return run(*options); });
 }
 
-// the process of one case: no verb for people
+// the process of one case; not a verb for users
 void add_extremes_case(options::Command& program) {
   options::Command verb = program.command("extremes-case", "one hard case");
   verb.hide();

@@ -114,8 +114,8 @@ std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const
                          (outcome.view.session().required_roles & (bit(Role::mechanics) | bit(Role::hydraulics))) != 0;
   if (has_steps && !flags.has_samples()) {
     sentences.emplace_back(
-        "no sample of the physics arrived here, so that the flags of the steps are not known; record the session; keys "
-        "of an earlier version are made anew with 'slewring keys create'");
+        "no sample of the physics arrived here, so that the flags of the steps are missing; record the session; keys "
+        "of an earlier version must be replaced with 'slewring keys create'");
   }
   if (const std::uint64_t missed = flags.missed(outcome.begin); missed > 0) {
     sentences.push_back(

@@ -1,5 +1,5 @@
-// What the steps of a recording, or of a session while it ran, reported (core/step_report.h): a sentence for each flag
-// that a user should know of, with the first step that raised it.
+// Flags that the steps of a recording, or of a live session, have reported (core/step_report.h): a sentence for each
+// flag that matters to a user, with the first step that raised it.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@ namespace slew::cli {
 
 // Flags of the two physics nodes' samples: not converged, sub-step budget, clamp, energy from the coupling, cavitation
 // and pressures beyond the oil's law with the volume's name, deflections that are not small.
-// What happens in sound runs too, end stops and open relief valves, is left out. Of a free-running session also how
-// often its nodes went on without a sample. Throws Failure when the recording cannot be read.
+// Flags that occur in sound runs too, end stops and open relief valves, are left out. For a free-running session the
+// sentences also count steps without a sample. Throws Failure when the recording cannot be read.
 [[nodiscard]] std::vector<std::string> explain_flags(const recording::Reader& reader);
 // A sentence for each flag that was counted. volumes: names, in the order of the scene.
 [[nodiscard]] std::vector<std::string> flag_sentences(const node::FlagCounter& flags, SimDuration step,

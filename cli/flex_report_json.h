@@ -1,4 +1,4 @@
-// The report on a reduced flexible body for machines.
+// JSON of the report on a reduced flexible body.
 #pragma once
 
 #include "core/json.h"
@@ -7,7 +7,7 @@
 
 namespace slew::cli {
 
-// SI; frequencies in Hz. What only the whole model knows is null in a report on flexible files.
+// SI; frequencies in Hz. Values that need the whole model are null in a report on flexible files.
 [[nodiscard]] Json to_json(const flex::ReductionReport& report);
 [[nodiscard]] Json to_json(const flex::AttachmentComparison& comparison);
 

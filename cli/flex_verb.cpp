@@ -1,5 +1,5 @@
-// `slewring flex build FILE` and `slewring flex report FILE`: from a description of a flexible body to its flexible
-// files, and what the reduction keeps of the body.
+// `slewring flex build FILE` and `slewring flex report FILE`: makes flexible files from a description of a flexible
+// body, and reports on the reduction.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,9 +40,9 @@ struct ReportOptions {
   bool is_json = false;
 };
 
-// What libs/flex refuses, with its exit code. where: put before the text when not empty.
+// Turns refusals of libs/flex into failures with exit codes. where: put before the text when not empty.
 template <typename Call>
-auto told(const std::string& where, const Call& call) {
+auto with_exit_codes(const std::string& where, const Call& call) {
   const std::string before = where.empty() ? "" : where + ": ";
   try {
     return call();
@@ -53,7 +53,7 @@ auto told(const std::string& where, const Call& call) {
   }
 }
 
-// Size of the files of the set that are there, and how many.
+// Number and size of the existing files of the set.
 struct Present {
   std::uint64_t files = 0, bytes = 0;
 };
@@ -95,10 +95,10 @@ ExitCode build(const BuildOptions& options) {
   if (!options.prefix.empty()) overrides.push_back("prefix=" + options.prefix);
   const scene::FlexibleModel from = scene::load_flexible_file(options.file, overrides);
   const flex::FlexibleFileSet set = files_of(options, from.def);
-  const flex::Reduction all = told(options.file, [&] { return flex::reduce(from.model, from.reduction); });
-  const flex::TipCompliance tip = told(options.file, [&] { return flex::tip_compliance(from.model, all); });
+  const flex::Reduction all = with_exit_codes(options.file, [&] { return flex::reduce(from.model, from.reduction); });
+  const flex::TipCompliance tip = with_exit_codes(options.file, [&] { return flex::tip_compliance(from.model, all); });
   const std::uint64_t replaced = present(set).files;
-  told("", [&] { flex::write_flexible_files(set, all); });
+  with_exit_codes("", [&] { flex::write_flexible_files(set, all); });
   if (options.is_json) {
     fmt::print("{}\n", built_json(set, replaced, all, tip).dump(2));
     return ExitCode::ok;
@@ -111,10 +111,10 @@ ExitCode build(const BuildOptions& options) {
   return ExitCode::ok;
 }
 
-// Ordinals of the modes that are kept; empty: all.
+// Ordinals of the kept modes; empty: all.
 std::vector<int> kept_modes(const ReportOptions& options, const flex::ReducedBody& body) {
   if (!options.modes.empty()) {
-    return told("--modes", [&] {
+    return with_exit_codes("--modes", [&] {
       const std::vector<int> ordinals = flex::mode_list(options.modes);
       (void)flex::places_of(ordinals, body.modes());
       return ordinals;
@@ -142,7 +142,7 @@ void write_shapes(const ReportOptions& options, const flex::Reduction& all, std:
     kept.resize(all.body.modes());
     std::iota(kept.begin(), kept.end(), 1);
   }
-  told("", [&] { flex::write_text(options.svg, flex::mode_shape_svg(all, kept)); });
+  with_exit_codes("", [&] { flex::write_text(options.svg, flex::mode_shape_svg(all, kept)); });
 }
 
 void print_shapes(const ReportOptions& options) {
@@ -151,10 +151,10 @@ void print_shapes(const ReportOptions& options) {
 
 ExitCode report_description(const ReportOptions& options) {
   const scene::FlexibleModel from = scene::load_flexible_file(options.file, options.overrides);
-  const flex::Reduction all = told(options.file, [&] { return flex::reduce(from.model, from.reduction); });
+  const flex::Reduction all = with_exit_codes(options.file, [&] { return flex::reduce(from.model, from.reduction); });
   const std::vector<int> kept = kept_modes(options, all.body);
   const flex::ReductionReport report =
-      told(options.file, [&] { return flex::report_reduction(from.model, from.reduction, all, kept); });
+      with_exit_codes(options.file, [&] { return flex::report_reduction(from.model, from.reduction, all, kept); });
   const flex::AttachmentComparison attachments = flex::compare_attachments(from.model, from.reduction, all, kept);
   write_shapes(options, all, kept);
   if (options.is_json) {
@@ -168,7 +168,7 @@ ExitCode report_description(const ReportOptions& options) {
   return ExitCode::ok;
 }
 
-// "Model_Prefix" of a set that is named so, or by one of its files.
+// "Model_Prefix" of a set, from that name or from one of its files.
 std::string stem_of(const std::string& file) {
   const bool is_one = fs::path(file).extension() == ".dat" && file.find('_') != std::string::npos;
   return is_one ? file.substr(0, file.rfind('_')) : file;
@@ -177,11 +177,11 @@ std::string stem_of(const std::string& file) {
 ExitCode report_set(const ReportOptions& options) {
   if (!options.overrides.empty())
     throw Failure(ExitCode::bad_input,
-                  "--set changes a description; '" + options.file + "' is a set of flexible files; build it anew");
+                  "--set changes a description; '" + options.file + "' is a set of flexible files; build it again");
   const flex::Reduction all =
-      told("", [&] { return flex::read_flexible_files(flex::find_flexible_files(stem_of(options.file))); });
+      with_exit_codes("", [&] { return flex::read_flexible_files(flex::find_flexible_files(stem_of(options.file))); });
   const std::vector<int> kept = kept_modes(options, all.body);
-  const flex::ReductionReport report = told(options.file, [&] { return flex::report_files(all, kept); });
+  const flex::ReductionReport report = with_exit_codes(options.file, [&] { return flex::report_files(all, kept); });
   write_shapes(options, all, kept);
   if (options.is_json) {
     fmt::print("{}\n", to_json(report).dump(2));
@@ -223,7 +223,7 @@ void add_build(options::Command& verb) {
 }
 
 void add_report(options::Command& verb) {
-  options::Command part = verb.command("report", "what a reduction keeps of the body, and how well");
+  options::Command part = verb.command("report", "modes that a reduction keeps, and its accuracy");
   const auto options = std::make_shared<ReportOptions>();  // lives as long as the command line's callbacks
   part.option("file", options->file, "description of the body, or a set of flexible files as FOLDER/Model_Prefix")
       .required()

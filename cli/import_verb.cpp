@@ -27,7 +27,7 @@ void write(const std::string& path, const std::string& text, bool is_overwriting
   std::error_code error;
   if (!is_overwriting && std::filesystem::exists(path, error)) {
     throw Failure(ExitCode::bad_input,
-                  "'" + path + "' is there already; nothing was written; name another file or say --force");
+                  "'" + path + "' is there already; nothing was written; name another file or add --force");
   }
   std::ofstream out(path, std::ios::binary);
   out << text;

@@ -22,7 +22,7 @@ constexpr std::int64_t kAcquirePeriodNs = 1'000'000'000;  // a channel that was 
 Levers::Levers(const std::vector<scene::InputDef>& inputs) {
   for (const scene::InputDef& input : inputs) {
     if (levers_.size() == kUp.size()) break;
-    // who types is not in step with anything
+    // a person is not in step with the session
     if (input.controller == scene::ControllerMode::lockstep) continue;
     levers_.push_back({input.name, input.type == scene::InputType::digital});
   }
@@ -79,7 +79,7 @@ Keyboard::Keyboard(const scene::Scene& scene) : levers_(scene.inputs) {
                   "--input keyboard: standard input is not a terminal; nothing was "
                   "started; run it in a terminal, or use --input FILE");
   }
-  // keys at once and unseen; Ctrl-C stays a signal
+  // keys arrive at once and are not echoed; Ctrl-C stays a signal
   termios raw = saved_;
   raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   raw.c_cc[VMIN] = 0;
@@ -102,7 +102,7 @@ void Keyboard::publish(session::Observer& observer, std::size_t lever, wire::Con
   observer.send(input);
 }
 
-// asking again for a channel that is held would put it to neutral
+// a second request for a channel that is held would put it to neutral
 void Keyboard::acquire_missing(session::Observer& observer) {
   for (std::size_t i = 0; i < levers_.size(); ++i) {
     const wire::ControllerLease* lease = observer.view().lease(kName, levers_.channel(i));

@@ -2,8 +2,8 @@
 //
 // The first channels of the scene get a pair of keys each (q/a, w/s, e/d, r/f, t/g, y/h) that move the lever by a tenth
 // up and down; left/right are the first channel too, up/down the second. A digital channel is toggled by its upper key.
-// Inputs with a lockstep controller are left to it. Space puts everything to neutral. Levers stay where they are put,
-// as a terminal tells no key releases.
+// Inputs with a lockstep controller are left to it. Space puts everything to neutral. Levers keep their positions,
+// since a terminal reports no key releases.
 #pragma once
 
 #include <termios.h>
@@ -18,7 +18,7 @@
 
 namespace slew::cli {
 
-// What the keys have done to the levers. No terminal in it: for tests.
+// The lever positions that the keys have set. Independent of a terminal: for tests.
 class Levers {
  public:
   explicit Levers(const std::vector<scene::InputDef>& inputs);
@@ -52,7 +52,7 @@ class Keyboard {
   Keyboard& operator=(const Keyboard&) = delete;
 
   [[nodiscard]] const Levers& levers() const noexcept { return levers_; }
-  // Reads what was typed and publishes the levers every 50 ms.
+  // Reads the typed keys and publishes the levers every 50 ms.
   void poll(session::Observer& observer, std::int64_t now_ns);
 
  private:

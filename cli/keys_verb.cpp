@@ -1,4 +1,5 @@
-// `slewring keys create|add|revoke|check|export`: who may take part in sessions that leave this machine.
+// `slewring keys create|add|revoke|check|export`: keys of the processes that may take part in sessions beyond this
+// machine.
 #include <fmt/format.h>
 
 #include "cli/verbs.h"
@@ -50,7 +51,7 @@ ExitCode revoke(const Options& options) {
 
 ExitCode check(const Options& options) {
   const std::vector<keys::KeyFinding> findings = keys::check_keys(options.store);
-  constexpr std::size_t kNaming = 2;  // verdict, whose
+  constexpr std::size_t kNaming = 2;  // verdict, owner
   ReportTable table(
       {{.text = ""}, {.text = "", .json = "what"}, {.text = ""}, {.json = "problem"}, {.json = "expires"}}, kNaming);
   bool is_good = true;
@@ -78,7 +79,7 @@ ExitCode export_keys(const Options& options) {
 }  // namespace
 
 void add_keys(options::Command& program) {
-  options::Command verb = program.command("keys", "keys for sessions over a network: who may take part");
+  options::Command verb = program.command("keys", "keys for sessions over a network");
   verb.require_command();
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   const auto sub = [&](const char* name, const char* text, ExitCode (*act)(const Options&), const char* example) {
@@ -95,27 +96,26 @@ void add_keys(options::Command& program) {
         .show_default();
   };
   add_validity(sub("create", "a new store with keys for every role", create, "plant_keys --days 365"));
-  options::Command adding =
-      sub("add", "keys for one more: a second controller, somebody who only looks on, a guest for one session", add,
-          "plant_keys --role controller --name joystick --session 'truck_*'");
-  adding.option("--role", options->role, "what it may say and hear")
+  options::Command adding = sub("add", "keys for one more: a second controller, a viewer, a guest for one session", add,
+                                "plant_keys --role controller --name joystick --session 'truck_*'");
+  adding.option("--role", options->role, "decides what the holder may publish and receive")
       .one_of(keys::key_roles())
       .value_name("ROLE")
       .show_default();
   adding.option("--name", options->name, "its name; without it the role's").value_name("NAME");
   add_validity(adding);
   options::Command revoking =
-      sub("revoke", "lets one take part no longer, and makes all other keys anew", revoke, "plant_keys joystick");
-  revoking.option("name", options->name, "whose keys").required().value_name("NAME");
+      sub("revoke", "revokes the keys of one name, and makes new keys for all others", revoke, "plant_keys joystick");
+  revoking.option("name", options->name, "name of the keys").required().value_name("NAME");
   options::Command checking =
-      sub("check", "signatures, validity and permissions of a store or of what was exported", check, "plant_keys");
+      sub("check", "signatures, validity and permissions of a store or of exported keys", check, "plant_keys");
   checking.flag("--json", options->is_json, "print JSON and nothing else");
-  options::Command exporting = sub("export", "copies what the holders of these keys need", export_keys,
+  options::Command exporting = sub("export", "copies the files that the holders of these keys need", export_keys,
                                    "plant_keys hydraulics recorder --to for_crane2");
-  exporting.option("names", options->names, "whose keys").required().value_name("NAME");
+  exporting.option("names", options->names, "names of the keys").required().value_name("NAME");
   exporting.option("--to", options->to, "folder to copy into").required().value_name("DIR");
   verb.footer(
-      "What is protected and what is not: docs/security.md.\n\n"
+      "Scope of the protection: docs/security.md.\n\n"
       "Examples:\n"
       "  slewring keys create plant_keys\n"
       "  slewring keys export plant_keys hydraulics recorder --to for_crane2\n"

@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
   using namespace slew;
-  // a node's own options and help are the node's matter
+  // the node's program has its own options and help
   if (argc > 2 && std::string_view(argv[1]) == "node" && argv[2][0] != '-') return cli::become_node(argc, argv);
 
   options::Program program("slewring",

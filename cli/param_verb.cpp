@@ -30,15 +30,15 @@ struct Options {
   bool is_json = false;
 };
 
-// A parameter with its present value: the scene's, or what a running session computes with.
+// A parameter with its present value: the scene's, or the one in a running session.
 struct Present {
   const scene::ParameterInfo* about = nullptr;
   double value = 0;      // SI
   StepIndex step = -1;   // the value is the one before this step; -1: the scene's
-  std::string remark{};  // whether a change is under way
+  std::string remark{};  // a change that is not complete
 };
 
-// The parameters of a scene file, or of a session and what it says about them.
+// The parameters of a scene file, or of a session with its replies.
 class Source {
  public:
   explicit Source(const Options& options)
@@ -57,7 +57,7 @@ class Source {
     wire::ControlRequest request;
     request.action = wire::ControlAction::get_parameter;
     request.path = parameter.path;
-    wire::ControlReply reply = observer_->ask(request);
+    wire::ControlReply reply = observer_->request_reply(request);
     if (!reply.is_accepted) throw Failure(ExitCode::failed, parameter.path + ": " + reply.reason);
     present.value = reply.value;
     present.step = reply.header.step;
@@ -76,7 +76,7 @@ std::string value_text(double value, const scene::ParameterInfo& parameter) {
   return chosen_text(value, is_plain ? std::string_view() : info(parameter.dimension).si_unit);
 }
 
-// What the parameter may be.
+// The allowed values of the parameter.
 std::string range_text(const scene::ParameterInfo& parameter) {
   if (parameter.is_choice()) return scene::choice_list(parameter.choices);
   return scene::range_text(parameter.range, parameter.dimension);
@@ -148,7 +148,7 @@ ExitCode list(const Options& options) {
 // "at step 5880, on its way to a new value; the scene: 500 kg; can be changed ..."
 std::string circumstances(const Present& present, bool is_of_session) {
   const scene::ParameterInfo& parameter = *present.about;
-  std::string text = is_of_session && present.step < 0 ? "of the scene" : "as the scene states it";
+  std::string text = is_of_session && present.step < 0 ? "of the scene" : "as in the scene";
   if (present.step >= 0) text = fmt::format("at step {}", present.step);
   if (!present.remark.empty()) text += ", " + present.remark;
   if (present.value != parameter.value) text += "; the scene: " + value_text(parameter.value, parameter);
@@ -192,13 +192,13 @@ std::int64_t spread_ns(const std::string& text) {
 
 ExitCode set(const Options& options) {
   const std::string text = options.words.size() == 1 ? options.words[0] : options.words[0] + "=" + options.words[1];
-  const std::optional<SimDuration> asked =
+  const std::optional<SimDuration> spread =
       options.over.empty() ? std::nullopt : std::optional(SimDuration{spread_ns(options.over)});
   node::install_signal_handlers();
   const auto observer = session::find_session(options.session, session::Access::steer);
   const wire::SessionDescription& session = observer->view().session();
   scene::ParameterDirectory directory(scene::load_text(session.scene_text, session.scene_name));
-  const scene::Assignment assignment = directory.parse_assignment(text, asked);
+  const scene::Assignment assignment = directory.parse_assignment(text, spread);
   if (!assignment.status.is_ok()) {
     throw Failure(ExitCode::bad_input, "refused, nothing was changed: " + assignment.status.text);
   }
@@ -208,7 +208,7 @@ ExitCode set(const Options& options) {
   request.path = assignment.path;
   request.value = assignment.value;
   request.over_ns = assignment.over.ns;
-  const wire::ControlReply reply = observer->ask(request);
+  const wire::ControlReply reply = observer->request_reply(request);
   const std::string value = value_text(assignment.value, parameter);
   if (options.is_json) {
     fmt::print("{}\n", Json({{"path", assignment.path},

@@ -29,7 +29,7 @@ struct Options {
 
 using Readers = std::vector<std::unique_ptr<recording::Reader>>;
 
-// What tells the curves of several recordings apart: their scenes, or where those are alike their folders.
+// Labels of several recordings: their scenes, or where those are alike their folders.
 std::vector<std::string> labels_of(const Readers& readers) {
   std::vector<std::string> scenes, folders;
   for (const auto& reader : readers) {
@@ -64,7 +64,7 @@ std::vector<plotting::Series> read_beside(const Readers& readers, const std::vec
   return curves;
 }
 
-// As the file's name says: a page for .html, a picture otherwise.
+// The format follows the file's name: a page for .html, a picture otherwise.
 ExitCode draw(std::span<const plotting::Plot> plots, const plotting::PlotOptions& look, const std::string& output) {
   const std::string path = output.empty() ? "plot.svg" : output;
   const bool is_page = std::filesystem::path(path).extension() == ".html";
@@ -75,7 +75,7 @@ ExitCode draw(std::span<const plotting::Plot> plots, const plotting::PlotOptions
 
 ExitCode plot_beside(const Options& options) {
   if (options.variables.empty()) {
-    throw Failure(ExitCode::bad_input, "--with compares variables; nothing was written; name those to plot");
+    throw Failure(ExitCode::bad_input, "--with compares variables; nothing was written; name the variables to plot");
   }
   Readers readers;
   readers.push_back(session::open_recording(options.recording));

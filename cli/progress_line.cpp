@@ -13,7 +13,7 @@ namespace slew::cli {
 namespace {
 
 constexpr std::int64_t kTerminalPeriodNs = 200'000'000;
-constexpr double kKnown = 0.02;  // of the work: before it, a guess of the time left would only jump
+constexpr double kKnown = 0.02;  // share of the work: before it, the estimate of the time left would jump
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// Where a long work is, on standard error: rewritten in place on a terminal with the time that is left, a line for each
-// part elsewhere.
+// Progress of a long work on standard error: rewritten in place on a terminal with the time that is left, a line for
+// each part elsewhere.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // share: of all that is to be done, 0 to 1.
+  // share of the whole work that is done, 0 to 1.
   void show(std::string_view doing, double share);
   void clear();
 

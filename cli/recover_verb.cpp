@@ -1,4 +1,4 @@
-// `slewring recover REC`: a whole recording of what is sound in a damaged one.
+// `slewring recover REC`: makes a whole recording from the sound parts of a damaged one.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -76,9 +76,9 @@ void print(const recording::Recovery& recovery, const std::filesystem::path& tar
                                   counted(extent.lost, "tick or sample", "ticks and samples"))});
   }
   if (!extent.first_step) {
-    rows.add({"lost", "with which step it begins; what is missing is counted from step 0 on"});
+    rows.add({"lost", "the number of its first step; missing steps are counted from step 0 on"});
   }
-  if (recovery.was_cut) rows.add({"lost", "what was recorded behind the last step, if anything: the end is missing"});
+  if (recovery.was_cut) rows.add({"lost", "any data after the last step: the end is missing"});
   if (recovery.lost_channels > 0) {
     rows.add({"lost", fmt::format("the names of {}: its messages are there under '{}<number>'",
                                   counted(recovery.lost_channels, "topic", "topics"), recording::kLostChannelTopic)});
@@ -115,7 +115,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_recover(options::Command& program) {
-  options::Command verb = program.command("recover", "make a whole recording of what is sound in a damaged one");
+  options::Command verb = program.command("recover", "make a whole recording from the sound parts of a damaged one");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
   verb.option("-o,--output", options->output,

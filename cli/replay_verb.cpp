@@ -117,7 +117,7 @@ ExitCode run_until(const Options& options) {
 
 ExitCode run(const Options& options) {
   if (options.until.empty() && (options.goes_on || !options.saved.empty())) {
-    throw Failure(ExitCode::bad_input, "--then-live and --save need a time; nothing was done; say it with --until");
+    throw Failure(ExitCode::bad_input, "--then-live and --save need a time; nothing was done; set it with --until");
   }
   if (!options.until.empty() && !options.goes_on && options.saved.empty()) {
     throw Failure(ExitCode::bad_input,
@@ -201,7 +201,8 @@ void add_replay(options::Command& program) {
       .value_name("PACE")
       .group("Going on");
   verb.option("--set", options->run.scene.overrides,
-              "with --then-live: change a live parameter at that time, or who moves an input from there on, such as "
+              "with --then-live: change a live parameter at that time, or the controller of an input from there on, "
+              "such as "
               "Input_Lift.controller=sampled")
       .value_name("PATH=VALUE")
       .one_value_each()
@@ -213,7 +214,7 @@ void add_replay(options::Command& program) {
   node::add_session_options(verb, options->run.session, false);
   add_running_options(verb, options->run);
   verb.footer(
-      "Without --verify differences are counted and told, and the exit code is 0.\n\n"
+      "Without --verify differences are counted and reported, and the exit code is 0.\n\n"
       "Examples:\n"
       "  slewring replay runs/truck_crane-20260501-102030 --verify\n"
       "  slewring replay runs/truck_crane-20260501-102030 --until 8s --then-live --input keyboard");

@@ -1,4 +1,5 @@
-// A session from its scene, or from saved states, to its summary: `slewring run`, and what goes on behind a replay.
+// A session from its scene, or from saved states, to its summary: `slewring run`, and a session that continues a
+// replay.
 #pragma once
 
 #include "io_node/session_scene.h"
@@ -7,7 +8,7 @@
 
 namespace slew::cli {
 
-// Runs the session, records it, and prints what came of it.
+// Runs the session, records it, and prints its summary.
 [[nodiscard]] ExitCode run_session(session::RunOptions options, const io::SessionScene& session);
 
 // --out, --keep-free, --join-timeout, --rt, --cpu, --quiet.

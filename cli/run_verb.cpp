@@ -1,4 +1,4 @@
-// `slewring run SCENE`: runs a scene as processes or in one process, records it, and says what came of it.
+// `slewring run SCENE`: runs a scene as processes or in one process, records it, and prints its summary.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,19 +18,19 @@ namespace slew::cli {
 
 namespace {
 
-// All physics as one system: one process, and no clock can be promised.
+// All physics as one system: one process, without deadlines.
 void check_monolithic(const options::Command& verb) {
   for (const char* option : {"--remote", "--domain", "--interface", "--peer", "--join-timeout", "--rt", "--cpu"}) {
     if (!verb.has(option)) continue;
-    const std::string why =
-        std::string_view(option) == "--rt" ? "its steps take as long as they take" : "it is one system in one process";
+    const std::string why = std::string_view(option) == "--rt" ? "the duration of its steps has no bound"
+                                                               : "it is one system in one process";
     throw Failure(ExitCode::bad_input, fmt::format("a monolithic run takes no {}: {}; nothing was started; "
                                                    "leave one out",
                                                    option, why));
   }
 }
 
-// One process has no place for a controller, which step 0 would wait for.
+// A controller cannot take part in a run in one process, and step 0 would wait for it.
 void check_controllers(const scene::Scene& scene) {
   for (const scene::InputDef& input : scene.inputs) {
     if (input.controller == scene::ControllerMode::sampled) continue;

@@ -8,7 +8,7 @@ namespace slew::cli {
 
 void add_schema(options::Command& program) {
   options::Command verb = program.command("schema", "print the JSON Schema of scene files");
-  // they live as long as the command line's callbacks
+  // both live as long as the command line's callbacks
   const auto is_table = std::make_shared<bool>(false), is_flexible = std::make_shared<bool>(false);
   verb.flag("--table", *is_table, "as tables for people (Markdown): fields, dimensions, ranges, defaults");
   verb.flag("--flexible", *is_flexible, "of descriptions of flexible bodies instead");

@@ -1,4 +1,4 @@
-// `slewring sessions`: what runs on this domain.
+// `slewring sessions`: lists the sessions on this domain.
 #include <fmt/format.h>
 
 #include "cli/verbs.h"
@@ -34,7 +34,7 @@ std::string nodes_text(const session::FoundSession& session) {
     const bool is_paused = static_cast<Role>(role) == Role::io && node::is_pause(status);
     const std::string state = is_paused ? "paused" : std::string(node::to_text(status.state));
     text += (text.empty() ? "" : ", ") + std::string(node::to_text(static_cast<Role>(role))) + ' ' +
-            (session.is_heard[role] ? state : "not heard");
+            (session.has_status[role] ? state : "no status");
   }
   return text;
 }
@@ -45,7 +45,7 @@ Json to_json(const session::FoundSession& session) {
     if ((session.description.required_roles & (1u << role)) == 0) continue;
     const wire::NodeStatus& status = session.nodes[role];
     nodes.push_back({{"role", node::to_text(static_cast<Role>(role))},
-                     {"state", session.is_heard[role] ? node::to_text(status.state) : "not heard"},
+                     {"state", session.has_status[role] ? node::to_text(status.state) : "no status"},
                      {"host", host_of(status.host)},
                      {"pid", status.pid}});
   }

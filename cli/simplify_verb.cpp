@@ -1,5 +1,5 @@
-// `slewring simplify SCENE --error "Bag.position 1mm"`: what of a scene may be left out, tried, measured and written as
-// an overlay.
+// `slewring simplify SCENE --error "Bag.position 1mm"`: finds the parts of a scene that may be left out by trial,
+// measures the saving and writes an overlay.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -19,7 +19,7 @@ namespace {
 constexpr int kMostRepeats = 100;
 
 struct Options {
-  analysis::SimplifyWish wish;
+  analysis::SimplifyOptions settings;
   std::string overlay;
   bool is_json = false, is_quiet = false;
 };
@@ -33,25 +33,25 @@ std::string remark(const analysis::Simplification& result) {
 }
 
 ExitCode run(const Options& options) {
-  if (options.wish.scene.input == "keyboard") {
+  if (options.settings.scene.input == "keyboard") {
     throw Failure(ExitCode::bad_input,
                   "--input keyboard: every run needs the same input; nothing was run; write it into a "
                   ".csv file");
   }
-  const std::string target = analysis::overlay_target(options.wish.scene.file, options.overlay, "simplified");
+  const std::string target = analysis::overlay_target(options.settings.scene.file, options.overlay, "simplified");
   session::count_interrupts();
   analysis::Simplification result;
   {
     ProgressLine line(options.is_quiet);
-    result = analysis::simplify(options.wish, [&line](std::string_view doing, double share) {
+    result = analysis::simplify(options.settings, [&line](std::string_view doing, double share) {
       line.show(doing, share);
       return session::interrupts() == 0;
     });
   }
   if (result.helps()) {
-    scene::Overrides settings = options.wish.scene.overrides;
+    scene::Overrides settings = options.settings.scene.overrides;
     settings.insert(settings.end(), result.settings.begin(), result.settings.end());
-    analysis::write_overlay(options.wish.scene.file, settings, remark(result), target);
+    analysis::write_overlay(options.settings.scene.file, settings, remark(result), target);
   }
   if (options.is_json) {
     Json json = analysis::report_json(result);
@@ -68,26 +68,26 @@ ExitCode run(const Options& options) {
 
 void add_simplify(options::Command& program) {
   options::Command verb =
-      program.command("simplify", "what of a scene may be left out while chosen variables stay as they are");
+      program.command("simplify", "parts of a scene that may be left out while chosen variables stay as they are");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  analysis::SimplifyWish& wish = options->wish;
-  verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
-  verb.option("--error", wish.errors,
+  analysis::SimplifyOptions& settings = options->settings;
+  verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
+  verb.option("--error", settings.errors,
               "a variable and by how much it may change: a quantity, or a part of its range in %; repeat for more")
       .required()
       .value_name("'VARIABLE TOLERANCE'")
       .one_value_each();
-  verb.option("--until", wish.scene.duration, "how long each run is; without it the scene's duration")
+  verb.option("--until", settings.scene.duration, "how long each run is; without it the scene's duration")
       .value_name("TIME");
-  verb.option("--set", wish.scene.overrides, "change a value of the scene first; repeat for more")
+  verb.option("--set", settings.scene.overrides, "change a value of the scene first; repeat for more")
       .value_name("PATH=VALUE")
       .one_value_each();
-  verb.option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+  verb.option("--input", settings.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
       .value_name("SOURCE")
       .show_default();
   verb.option("-o,--overlay", options->overlay, "file to write, beside the scene; without it SCENE_simplified.yaml")
       .value_name("FILE");
-  verb.option("--repeats", wish.repeats, "timed runs of everything tried")
+  verb.option("--repeats", settings.repeats, "timed runs of everything tried")
       .between(1, kMostRepeats)
       .value_name("N")
       .show_default();
@@ -95,7 +95,7 @@ void add_simplify(options::Command& program) {
   verb.flag("--quiet", options->is_quiet, "no progress");
   verb.footer(
       "Every part is tried alone, then those that hold and save time together; all runs are in this process, with the\n"
-      "same input. The overlay includes the scene. What is judged and what not: "
+      "same input. The overlay includes the scene. Scope of the judgement: "
       "docs/howto/describe-and-simplify.md.\n\n"
       "Example:\n"
       "  slewring simplify scenes/truck_crane.yaml --error 'Bag.position 1mm' --error 'Cyl_Lift.force 1%'");

@@ -22,17 +22,17 @@ constexpr std::int64_t kLinesPeriodNs = 2'000'000'000;
 constexpr std::int64_t kFactorPeriodNs = 500'000'000;
 constexpr std::size_t kMostVariables = 6;
 
-// of a line on a terminal that is shown, with room for a text
+// shown width of a line on a terminal, with room for a text
 std::size_t terminal_width() {
   const std::size_t width = output_width();
   return width > 20 ? width : 100;
 }
 
-// "mechanics running", or what a node waits for
+// "mechanics running", or the role that a node waits for
 std::string node_text(const session::SessionView& view, Role role) {
   const session::NodeView& node = view.node(role);
   const std::string name(node::to_text(role));
-  if (!node.is_known) return name + " not heard";
+  if (!node.is_known) return name + ": no status";
   if (role == Role::io && view.is_paused()) return "paused";
   if (role == Role::io && node.health.is_waiting && node.status.state == wire::NodeState::holding) {
     return fmt::format("io holds, waits for {} at step {}", node::to_text(node.health.waiting_for),
@@ -60,7 +60,7 @@ void StatusLine::show(const std::string& text, std::int64_t now_ns) {
   std::fflush(stdout);
 }
 
-void StatusLine::say(const std::string& line) {
+void StatusLine::print_line(const std::string& line) {
   clear();
   std::fprintf(stderr, "%s\n", printable_lines(line).c_str());
 }

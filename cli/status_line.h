@@ -22,7 +22,7 @@ class StatusLine {
   [[nodiscard]] bool is_due(std::int64_t now_ns) const noexcept;
   void show(const std::string& text, std::int64_t now_ns);
   // A lasting line on standard error, above the status.
-  void say(const std::string& line);
+  void print_line(const std::string& line);
   void clear();
 
  private:
@@ -31,19 +31,19 @@ class StatusLine {
   bool is_shown_ = false;
 };
 
-// Terminal when standard output is one, else lines; off when nothing but the result may be printed.
+// Terminal when standard output is one, else lines; off when only the result may be printed.
 [[nodiscard]] StatusLine::Mode status_mode(bool is_quiet);
 
-// Session time, real-time factor, nodes, plotted variables, coupling lamps, from what an observer knows.
+// Session time, real-time factor, nodes, plotted variables and coupling lamps, from an observer's view.
 class StatusText {
  public:
   explicit StatusText(const scene::Scene& scene);
-  // To be called in every round: follows how fast the session runs.
+  // Called in every round: measures the session's speed.
   void measure(const session::SessionView& view, std::int64_t now_ns);
   [[nodiscard]] std::string text(const session::SessionView& view) const;
 
  private:
-  // nodes are named only when they are not simply running
+  // nodes are named only when their state is not just running
   [[nodiscard]] static std::string nodes_text(const session::SessionView& view);
   [[nodiscard]] std::string coupling_text(const session::SessionView& view) const;
   [[nodiscard]] std::string variables_text(const session::SessionView& view) const;

@@ -1,4 +1,4 @@
-// `slewring stress SCENE`: how well this machine keeps a scene's deadlines.
+// `slewring stress SCENE`: measures how well this machine keeps a scene's deadlines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace slew::cli {
 namespace {
 
 struct Options {
-  analysis::StressWish wish;
+  analysis::StressOptions settings;
   analysis::StressBounds bounds;
   std::optional<double> max_miss_percent, p99_us;
   std::vector<std::string> schedulings, loads;
@@ -41,7 +41,7 @@ void leave_out_repeats(std::vector<T>& values) {
 }
 
 void complete(Options& options) {
-  analysis::StressWish& wish = options.wish;
+  analysis::StressOptions& settings = options.settings;
   const bool all = options.is_matrix;
   if (options.schedulings.empty()) {
     options.schedulings = all ? std::vector<std::string>{"normal", "fifo"}
@@ -50,24 +50,25 @@ void complete(Options& options) {
   if (options.loads.empty()) {
     options.loads = all ? std::vector<std::string>{"none", "cpu", "mixed"} : std::vector<std::string>{"none"};
   }
-  if (wish.works_us.empty()) wish.works_us = all ? std::vector<double>{0, 200} : std::vector<double>{0};
+  if (settings.works_us.empty()) settings.works_us = all ? std::vector<double>{0, 200} : std::vector<double>{0};
   if (options.max_miss_percent) options.bounds.max_miss = *options.max_miss_percent / 100;
   if (options.p99_us) options.bounds.p99 = *options.p99_us * 1e-6;
   leave_out_repeats(options.schedulings);
   leave_out_repeats(options.loads);
-  leave_out_repeats(wish.works_us);
+  leave_out_repeats(settings.works_us);
   for (const std::string& text : options.schedulings) {
-    wish.schedulings.push_back(text == "fifo" ? analysis::Scheduling::fifo : analysis::Scheduling::normal);
+    settings.schedulings.push_back(text == "fifo" ? analysis::Scheduling::fifo : analysis::Scheduling::normal);
   }
   for (const std::string& text : options.loads) {
-    wish.loads.push_back(text == "cpu"     ? analysis::Load::cpu
-                         : text == "mixed" ? analysis::Load::mixed
-                                           : analysis::Load::none);
+    settings.loads.push_back(text == "cpu"     ? analysis::Load::cpu
+                             : text == "mixed" ? analysis::Load::mixed
+                                               : analysis::Load::none);
   }
-  wish.scene.pace = "real";
-  static_cast<void>(scene::load_scene(wish.scene));           // what is replaced below is refused as everywhere
-  wish.scene.overrides.emplace_back("session.overrun=slip");  // a cell goes on to its end
-  wish.scene.duration = fmt::format("{} s", wish.seconds);
+  settings.scene.pace = "real";
+  static_cast<void>(
+      scene::load_scene(settings.scene));  // the scene's errors are reported before its settings are replaced
+  settings.scene.overrides.emplace_back("session.overrun=slip");  // a cell goes on to its end
+  settings.scene.duration = fmt::format("{} s", settings.seconds);
 }
 
 ExitCode run(Options options) {
@@ -77,7 +78,7 @@ ExitCode run(Options options) {
   analysis::Stress stress;
   {
     ProgressLine line(options.is_quiet);
-    stress = analysis::run_stress(options.wish, options.bounds, [&line](std::string_view doing, double share) {
+    stress = analysis::run_stress(options.settings, options.bounds, [&line](std::string_view doing, double share) {
       line.show(doing, share);
       return session::interrupts() == 0;
     });
@@ -101,18 +102,18 @@ ExitCode run(Options options) {
 }
 
 void add_what(options::Command& verb, Options& options) {
-  analysis::StressWish& wish = options.wish;
-  verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
-  verb.option("--set", wish.scene.overrides, "change a value of the scene; repeat for more")
+  analysis::StressOptions& settings = options.settings;
+  verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
+  verb.option("--set", settings.scene.overrides, "change a value of the scene; repeat for more")
       .one_value_each()
       .value_name("PATH=VALUE");
-  verb.option("--step", wish.scene.step, "communication step, such as '1 ms'; without it the scene's")
+  verb.option("--step", settings.scene.step, "communication step, such as '1 ms'; without it the scene's")
       .value_name("TIME");
-  verb.option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+  verb.option("--input", settings.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
       .value_name("SOURCE")
       .show_default();
-  verb.flag("!--no-record", wish.scene.is_recording, "without a recorder");
-  verb.option("--seconds", wish.seconds, "session time of every cell; a quarter of it more for the yardstick")
+  verb.flag("!--no-record", settings.scene.is_recording, "without a recorder");
+  verb.option("--seconds", settings.seconds, "session time of every cell; a quarter of it more for the yardstick")
       .between(0.5, 86400.0)
       .value_name("S")
       .show_default();
@@ -139,13 +140,13 @@ void add_cells(options::Command& verb, Options& options) {
       .one_value_each()
       .value_name("LIST")
       .group("Cells");
-  verb.option("--add-work", options.wish.works_us, "CPU time added to every step of each physics node")
+  verb.option("--add-work", options.settings.works_us, "CPU time added to every step of each physics node")
       .between(0.0, 1e6)
       .comma_separated()
       .one_value_each()
       .value_name("US")
       .group("Cells");
-  verb.option("--cpu", options.wish.cpus, "where the nodes run, such as mechanics=1,hydraulics=0; else the scene's")
+  verb.option("--cpu", options.settings.cpus, "where the nodes run, such as mechanics=1,hydraulics=0; else the scene's")
       .value_name("ROLE=N")
       .group("Cells");
 }
@@ -169,15 +170,15 @@ void add_stress(options::Command& program) {
   add_what(verb, *options);
   add_cells(verb, *options);
   add_verdict(verb, *options);
-  node::add_network_options(verb, options->wish.session);
-  verb.option("--folder", options->wish.folder, "for recordings and files that come and go")
+  node::add_network_options(verb, options->settings.session);
+  verb.option("--folder", options->settings.folder, "for recordings and files that come and go")
       .value_name("DIR")
       .show_default();
   verb.option("-o,--output", options->page, "page with the largest responses over time").value_name("FILE");
   verb.flag("--json", options->is_json, "print the result as JSON and nothing else");
   verb.flag("--quiet", options->is_quiet, "no progress");
   verb.footer(
-      "Exit code 3 when a cell is over --max-miss or --p99, 7 when one could not be run. What is measured and how: "
+      "Exit code 3 when a cell is over --max-miss or --p99, 7 when one could not be run. Quantities and method: "
       "docs/realtime.md.\n\n"
       "Examples:\n"
       "  slewring stress scenes/truck_crane.yaml --rt --seconds 60 --max-miss 0.5 --p99 500\n"
@@ -185,7 +186,7 @@ void add_stress(options::Command& program) {
   verb.action([options] { return run(*options); });
 }
 
-// a process of other load: no verb for people
+// a process of other load; not a verb for users
 void add_stress_load(options::Command& program) {
   options::Command verb = program.command("stress-load", "one process of other load");
   verb.hide();

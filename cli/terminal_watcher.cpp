@@ -10,7 +10,7 @@ TerminalWatcher::TerminalWatcher(const session::RunOptions& options, const scene
 }
 
 void TerminalWatcher::begin() {
-  if (keyboard_) status_.say(keyboard_->levers().help());
+  if (keyboard_) status_.print_line(keyboard_->levers().help());
 }
 
 bool TerminalWatcher::update(session::Observer& observer, std::int64_t now_ns, bool is_ending) {

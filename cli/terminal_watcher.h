@@ -1,5 +1,4 @@
-// A run as a person at the terminal follows it: a status line, and levers on the keyboard where the scene's input is
-// `keyboard`.
+// Shows a run on the terminal: a status line, and levers on the keyboard where the scene's input is `keyboard`.
 #pragma once
 
 #include <optional>
@@ -17,7 +16,7 @@ class TerminalWatcher final : public session::RunWatcher {
 
   [[nodiscard]] bool reads_values() const override { return mode_ != StatusLine::Mode::off || keyboard_; }
   void begin() override;
-  void report(const std::string& message) override { status_.say(message); }
+  void report(const std::string& message) override { status_.print_line(message); }
   bool update(session::Observer& observer, std::int64_t now_ns, bool is_ending) override;
   void end() override { status_.clear(); }
 

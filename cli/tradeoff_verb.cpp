@@ -1,4 +1,4 @@
-// `slewring tradeoff SCENE`: error against cost of many settings of one scene, and which of them to take.
+// `slewring tradeoff SCENE`: error against cost of many settings of one scene, and the best of them.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -20,7 +20,7 @@ constexpr int kMostWorkers = 64;
 constexpr int kMostRepeats = 1000;
 
 struct Options {
-  analysis::TradeoffWish wish;
+  analysis::TradeoffOptions settings;
   std::string budget;
   std::vector<std::string> errors;
   std::string page, csv, overlay;
@@ -43,7 +43,7 @@ void write_file(const std::string& path, const std::string& text) {
 
 // the answer's settings beside the user's own changes
 scene::Overrides overlay_settings(const Options& options, const analysis::TradeoffRow& row) {
-  scene::Overrides overrides = options.wish.scene.overrides;
+  scene::Overrides overrides = options.settings.scene.overrides;
   for (std::string& one : analysis::overrides_of(row.settings)) overrides.push_back(std::move(one));
   return overrides;
 }
@@ -53,7 +53,7 @@ std::optional<analysis::Answer> answer(const Options& options, const analysis::T
   if (!options.budget.empty()) answer.question.budget = analysis::parse_budget(options.budget);
   for (const std::string& text : options.errors)
     answer.question.errors.push_back(analysis::parse_error(text, tradeoff));
-  if (!answer.question.is_asked()) return std::nullopt;
+  if (!answer.question.has_limits()) return std::nullopt;
   answer.row = analysis::best_row(tradeoff, answer.question);
   if (answer.row && *answer.row > 0) {
     analysis::write_overlay(tradeoff.file, overlay_settings(options, tradeoff.rows[*answer.row]),
@@ -64,7 +64,7 @@ std::optional<analysis::Answer> answer(const Options& options, const analysis::T
 }
 
 ExitCode run(Options options) {
-  if (options.wish.scene.input == "keyboard") {
+  if (options.settings.scene.input == "keyboard") {
     throw Failure(ExitCode::bad_input,
                   "--input keyboard: every run needs the same input; nothing was run; write it "
                   "into a .csv file");
@@ -72,13 +72,13 @@ ExitCode run(Options options) {
   // refused before anything has run
   if (!options.budget.empty()) static_cast<void>(analysis::parse_budget(options.budget));
   if (options.has_question())
-    options.overlay = analysis::overlay_target(options.wish.scene.file, options.overlay, "tradeoff");
-  options.wish.size = options.is_full ? analysis::GridSize::full : analysis::GridSize::modest;
+    options.overlay = analysis::overlay_target(options.settings.scene.file, options.overlay, "tradeoff");
+  options.settings.size = options.is_full ? analysis::GridSize::full : analysis::GridSize::modest;
   session::count_interrupts();
   analysis::Tradeoff tradeoff;
   {
     ProgressLine line(options.is_quiet);
-    tradeoff = analysis::trade_off(options.wish, [&line](std::string_view doing, double share) {
+    tradeoff = analysis::trade_off(options.settings, [&line](std::string_view doing, double share) {
       line.show(doing, share);
       return session::interrupts() == 0;
     });
@@ -108,24 +108,27 @@ ExitCode run_row(const RowOptions& options) {
 }
 
 void add_what(options::Command& verb, Options& options) {
-  analysis::TradeoffWish& wish = options.wish;
-  verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
+  analysis::TradeoffOptions& settings = options.settings;
+  verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
   const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
     verb.option(name, to, text).one_value_each().value_name(type);
   };
-  repeated("--set", wish.scene.overrides, "change a value of the scene for all rows; repeat for more", "PATH=VALUE");
-  repeated("--axis", wish.axes,
+  repeated("--set", settings.scene.overrides, "change a value of the scene for all rows; repeat for more",
+           "PATH=VALUE");
+  repeated("--axis", settings.axes,
            "values of a setting to try, such as session.step=0.5ms,1ms,2ms; repeat for the product. Without it the "
            "scene's own axes: step, coupling, formulation, integrators, tolerances, modes, contact",
            "PATH=VALUES");
-  repeated("--variables", wish.variables,
-           "whose error is shown: names, or patterns with * and ?; repeat for more; without it the forces of the "
-           "actuators and the place of the payload (mechanics.payload)",
-           "PATTERN");
+  repeated(
+      "--variables", settings.variables,
+      "variables whose error is shown: names, or patterns with * and ?; repeat for more; without it the forces of the "
+      "actuators and the place of the payload (mechanics.payload)",
+      "PATTERN");
   verb.flag("--full", options.is_full, "the whole product of the scene's own axes: may take hours");
-  verb.option("--until", wish.scene.duration, "how long to simulate, such as '5 s'; without it the scene's duration")
+  verb.option("--until", settings.scene.duration,
+              "how long to simulate, such as '5 s'; without it the scene's duration")
       .value_name("TIME");
-  verb.option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+  verb.option("--input", settings.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
       .value_name("SOURCE")
       .show_default();
 }
@@ -147,11 +150,14 @@ void add_answers(options::Command& verb, Options& options) {
 }
 
 void add_how(options::Command& verb, Options& options) {
-  analysis::TradeoffWish& wish = options.wish;
-  verb.option("--folder", wish.folder, "where results are kept; without it runs/tradeoff-SCENE").value_name("DIR");
-  verb.flag("--anew", wish.is_anew, "compute also what the folder has already");
-  verb.option("--workers", wish.workers, "processes at once").between(1, kMostWorkers).value_name("N").show_default();
-  verb.option("--repeats", wish.repeats, "timed runs of every row")
+  analysis::TradeoffOptions& settings = options.settings;
+  verb.option("--folder", settings.folder, "where results are kept; without it runs/tradeoff-SCENE").value_name("DIR");
+  verb.flag("--anew", settings.is_fresh, "compute also what the folder has already");
+  verb.option("--workers", settings.workers, "processes at once")
+      .between(1, kMostWorkers)
+      .value_name("N")
+      .show_default();
+  verb.option("--repeats", settings.repeats, "timed runs of every row")
       .between(1, kMostRepeats)
       .value_name("N")
       .show_default();
@@ -164,7 +170,7 @@ void add_how(options::Command& verb, Options& options) {
 }  // namespace
 
 void add_tradeoff(options::Command& program) {
-  options::Command verb = program.command("tradeoff", "error against cost of a scene's settings, and which to take");
+  options::Command verb = program.command("tradeoff", "error against cost of a scene's settings, and the best of them");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   add_what(verb, *options);
   add_answers(verb, *options);
@@ -179,7 +185,7 @@ void add_tradeoff(options::Command& program) {
   verb.action([options] { return run(*options); });
 }
 
-// the process of one row: no verb for people
+// the process of one row; not a verb for users
 void add_tradeoff_row(options::Command& program) {
   options::Command verb = program.command("tradeoff-row", "one row of a tradeoff");
   verb.hide();

@@ -1,4 +1,4 @@
-// `slewring variables`: what a scene or a running session offers to plot, watch and control by.
+// `slewring variables`: the variables of a scene or a running session, for plots, watches and controllers.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -23,7 +23,7 @@ missing_packages() {
   done
 }
 
-# Installs what is missing; without root says exactly how and ends with 7.
+# Installs what is missing; without root prints the command and ends with 7.
 need_packages() {
   local missing
   missing=$(missing_packages "$@" | sort -u | tr '\n' ' ')

@@ -146,7 +146,7 @@ class Bullet final : public Peer {
     const btVector3 inertia(moments[0][0], moments[1][1], moments[2][2]);
     btVector3 pivot = parent.axes.transpose() * (to_peer(body.p_PJ) - parent.center);
     const btVector3 to_center = placed.axes.transpose() * placed.center;
-    btMatrix3x3 turn = parent.axes.transpose() * to_peer(body.R_PJ);  // of the joint's frame in the parent's axes
+    btMatrix3x3 turn = parent.axes.transpose() * to_peer(body.R_PJ);  // the joint's frame in the parent's axes
     int inner = parent.link;
     const btVector3 z(0, 0, 1), zero(0, 0, 0);
     if (body.joint == Joint::universal) {

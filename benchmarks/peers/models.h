@@ -1,4 +1,4 @@
-// The mechanisms that are timed, and what a peer is told about them.
+// The mechanisms that are timed, and their data for a peer.
 #pragma once
 
 #include <string>

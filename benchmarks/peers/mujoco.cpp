@@ -1,4 +1,4 @@
-// MuJoCo 2.2.2. Forward dynamics of a tree is what its mj_forward() does without contacts, sensors and actuators:
+// MuJoCo 2.2.2. Forward dynamics of a tree is its mj_forward() without contacts, sensors and actuators:
 // composite inertias, bias forces, sparse L^T D L. Closures and contacts are its soft constraints, with the least
 // compliance that its default time constant of 0.02 s leaves.
 #include <mujoco/mujoco.h>

@@ -44,9 +44,9 @@ struct Mechanism {
   double friction = 0;  // coefficient
 };
 
-// Of all bodies in turn. Coordinates: angle, displacement, two angles; spherical: quaternion w x y z of the body in the
-// joint's frame; floating: position, then the quaternion, both in Ground. Speeds: their rates; spherical: angular
-// velocity from the parent in axes of the joint's frame; floating: velocity, angular velocity in Ground axes.
+// State of all bodies in turn. Coordinates: angle, displacement, two angles; spherical: quaternion w x y z of the body
+// in the joint's frame; floating: position, then the quaternion, both in Ground. Speeds: their rates; spherical:
+// angular velocity from the parent in axes of the joint's frame; floating: velocity, angular velocity in Ground axes.
 struct State {
   std::vector<double> q, u;
 };
@@ -55,15 +55,15 @@ class Peer {
  public:
   virtual ~Peer() = default;
   [[nodiscard]] virtual std::string name() const = 0;
-  // What it does with the mechanism: accelerations of a state, and their largest difference to ours relative to the
-  // largest of them; a step, empty: it cannot.
+  // Results for the mechanism: accelerations of a state, and their largest difference to ours relative to the largest
+  // of them; a step, empty: it has none.
   [[nodiscard]] virtual bool has_dynamics() const = 0;
   [[nodiscard]] virtual double tolerance() const = 0;
   [[nodiscard]] virtual std::string step_method() const = 0;
 
   // Takes a state and finds the accelerations u'.
   virtual void find_accelerations(const State& state) = 0;
-  // of the last call, by u
+  // accelerations of the last call, by u
   [[nodiscard]] virtual std::vector<double> accelerations() const = 0;
 
   // Sets the start of a run, and takes a step [s].

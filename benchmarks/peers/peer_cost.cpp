@@ -4,7 +4,7 @@
 //   peer_cost_mujoco        (or _simbody, _dart, _bullet)
 //
 // Batches of either take turns, and so do the mechanisms; medians are printed, one line a figure, separated by tabs:
-// peer, quantity, mechanism, ours, peer, what differs. table.py runs all programs and makes the tables of results.md.
+// peer, quantity, mechanism, ours, peer, the difference. table.py runs all programs and makes the tables of results.md.
 //
 // Ends with 1 when a peer's accelerations are not ours, or its motion is another after 0.1 s: then it is not the same
 // mechanism.
@@ -49,7 +49,7 @@ double median(std::vector<double> times) {
   return times[times.size() / 2];
 }
 
-// what is timed, and its times
+// a timed quantity, and its times
 struct Side {
   std::function<void()> begin;
   std::function<void(int)> call;
@@ -162,7 +162,7 @@ class Pair {
   std::vector<State> peer_states_;
 };
 
-// Adds what the pair can be timed at; false: not the same mechanism.
+// Adds the timed quantities of the pair; false: not the same mechanism.
 bool add(Pair& pair, const std::string& name, std::vector<Figure>& figures) {
   const Peer& peer = pair.peer();
   bool is_same = true;

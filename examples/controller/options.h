@@ -10,10 +10,10 @@ struct Option {
   std::string* text;  // or a text
 };
 
-// Fills what the options point to. 0: go on; 1: the help was printed; 2: a problem was told.
+// Fills the targets of the options. 0: go on; 1: the help was printed; 2: a problem was printed.
 int parse(const char* program, int argc, char** argv, const std::vector<Option>& options, const char* usage);
 
-// What every controller needs to know of its session.
+// A controller's options for its session.
 struct SessionOptions {
   std::string session;
   std::string name;
@@ -23,6 +23,6 @@ struct SessionOptions {
   double seconds = 15;  // gives up after this wall time
 
   void add_to(std::vector<Option>& options);
-  // 0, or 2 and the problem is told.
+  // 0, or 2 after printing the problem.
   int check(const char* program, const char* usage) const;
 };

@@ -1,5 +1,5 @@
 // A PID controller on one input of a running session: the integral stops at the stick's ends, the derivative is of the
-// measured value and filtered. Its sample time is the time between two blocks of variables, as the session tells it.
+// measured value and filtered. Its sample time is the time between two blocks of variables, from the session.
 //
 //   pid_controller --session crane --variable Cyl_Lift.stroke --channel Input_Lift --target 0.86 --kp 60 --ki 40
 #include <slewring_client.hpp>
@@ -17,7 +17,7 @@ constexpr char kUsage[] =
     "usage: pid_controller --session NAME [--variable Cyl_Lift.stroke] [--channel Input_Lift] [--target 0.86]\n"
     "         [--kp 60] [--ki 40] [--kd 2] [--filter 0.02] [--overlap 0.32] [--tolerance 0.001] [--seconds 15]\n"
     "         [--name pid] [--domain 0] [--interface lo] [--peers ADDRESS,ADDRESS]\n"
-    "--seconds is time of the session; a paused one is waited for; Ctrl-C ends it. Example, with `slewring run "
+    "--seconds is time of the session; the program waits during a pause; Ctrl-C ends it. Example, with `slewring run "
     "scenes/truck_crane.yaml --input none --duration 0`\n"
     "in another terminal:\n"
     "  pid_controller --session truck_crane --target 0.86 --kp 60 --ki 40\n";
@@ -48,13 +48,13 @@ double over_the_overlap(double u, double overlap, double rest) {
 
 volatile std::sig_atomic_t is_stopped = 0;  // by Ctrl-C: the channel is given back
 
-// Next block; false when the session has ended, or this program is to.
+// Next block; false when the session has ended, or this program is to end.
 bool next_block(slewring::Session& session) {
   while (is_stopped == 0) {
     try {
       return session.step(1);
     } catch (const slewring::Error& error) {
-      if (error.code() != SLEWRING_TIMEOUT) throw;  // that is a pause
+      if (error.code() != SLEWRING_TIMEOUT) throw;  // a timeout is a pause
     }
   }
   return false;

@@ -25,7 +25,7 @@ constexpr int kSteady = 100;  // values in a row within the tolerance
 struct Loop {
   std::string variable = "Cyl_Lift.stroke";
   std::string channel = "Input_Lift";
-  std::string take_over = "no";  // yes: from its holder, which only the channel's supervisor may
+  std::string take_over = "no";  // yes: takes the channel from its holder, which only the channel's supervisor may
   double target = 0.86;          // unit of the variable
   double tolerance = 1e-3;       // unit of the variable
   double gain = 20;              // stick per unit of error
@@ -44,7 +44,7 @@ slewring::Channel take(slewring::Session& session, const Loop& loop) {
   return loop.take_over == "yes" ? session.take_over(loop.channel) : session.acquire(loop.channel);
 }
 
-// Whether the target was reached before the time was over or the session ended; prints what came of it.
+// Whether the target was reached before the time was over or the session ended; prints the result.
 bool run(const SessionOptions& options, const Loop& loop) {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();

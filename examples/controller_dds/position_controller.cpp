@@ -1,6 +1,6 @@
 // Closes a position loop on a cylinder of a running session, from outside: it reads the variables that the nodes
-// publish and writes one input channel. It knows idl/slewring.idl and Cyclone DDS, nothing else; examples/controller is
-// the same with Slewring's client library.
+// publish and writes one input channel. It depends only on idl/slewring.idl and Cyclone DDS; examples/controller is the
+// same with Slewring's client library.
 //
 //   position_controller --session crane --variable Cyl_Lift.stroke --channel Input_Lift --target 0.86
 //
@@ -53,7 +53,7 @@ bool read_number(const char* text, double& number) {
   return end != text && *end == '\0' && std::isfinite(number);
 }
 
-// Fills the options; a problem is told with what was expected.
+// Fills the options; reports a problem with the expected value.
 bool parse(int argc, char** argv, Options& options) {
   const auto refuse = [](const char* key, const char* problem) {
     std::fprintf(stderr, "position_controller: %s: %s; nothing was moved\n%s", key, problem, kUsage);
@@ -147,7 +147,8 @@ Endpoints connect(const Options& options) {
       checked(dds_create_reader(subscriber, topic(&slewring_VariableDirectory_desc, "slewring/variable_directory"),
                                 lasting, nullptr),
               "the directory's reader");
-  // also the last blocks of before this reader was found: those of step 0, which a lockstep channel's first tick needs
+  // also the last blocks from before this reader was discovered: those of step 0, which a lockstep channel's first tick
+  // needs
   dds_qset_history(lasting, DDS_HISTORY_KEEP_LAST, 1024);
   e.variables = checked(
       dds_create_reader(subscriber, topic(&slewring_VariableBlock_desc, "slewring/variables"), lasting, nullptr),
@@ -174,7 +175,7 @@ void take_all(dds_entity_t reader, Use use) {
   }
 }
 
-// where the variable is: writer's role and position in that node's blocks
+// place of the variable: writer's role and position in that node's blocks
 struct Place {
   bool is_known = false;
   slewring_Role role = slewring_ROLE_MECHANICS;
@@ -200,11 +201,11 @@ class Loop {
       if (place_.index < block.first || place_.index >= block.first + block.values._length) return;
       waiting_.emplace_back(block.header.step, block.values._buffer[place_.index - block.first]);
     });
-    // without the channel only the newest is of use
+    // without the channel only the newest value is used
     if (!has_lease_ && waiting_.size() > 1) waiting_.erase(waiting_.begin(), waiting_.end() - 1);
   }
 
-  // answers the oldest value that waits; false when none does
+  // answers the oldest waiting value; false when there is none
   bool answer() {
     if (waiting_.empty()) return false;
     std::tie(step_, value_) = waiting_.front();
@@ -216,14 +217,14 @@ class Loop {
   void read_lease() {
     take_all<slewring_ControllerLease>(e_.lease, [&](const slewring_ControllerLease& lease) {
       if (options_.name != lease.controller || options_.channel != lease.channel) return;
-      // it may be another process of this name that asked, or that lost the channel
-      const bool is_told = lease.answers == 0;
-      if (is_told ? !has_lease_ : lease.answers < asked_from_ || lease.answers > sequence_) return;
+      // the lease may answer or inform another process of this name
+      const bool is_notice = lease.answers == 0;
+      if (is_notice ? !has_lease_ : lease.answers < requested_from_ || lease.answers > sequence_) return;
       const bool is_taken_away = has_lease_ && !lease.is_granted && *lease.holder == '\0';
       has_lease_ = lease.is_granted && options_.name == lease.holder;
       if (is_taken_away) {
         std::fprintf(stderr, "position_controller: %s\n", lease.reason);
-        asked_from_ = sequence_ + 1;
+        requested_from_ = sequence_ + 1;
       } else if (!lease.is_granted) {
         refusal_ = lease.reason;
       }
@@ -266,7 +267,7 @@ class Loop {
   double value_ = 0;
   std::int64_t step_ = -1;
   std::uint64_t sequence_ = std::random_device()() * (std::uint64_t{1} << 31);  // no other process's numbers
-  std::uint64_t asked_from_ = sequence_ + 1;  // first message that may ask for the channel
+  std::uint64_t requested_from_ = sequence_ + 1;  // first message that may request the channel
 };
 
 }  // namespace
@@ -289,7 +290,7 @@ int main(int argc, char** argv) {
   Loop loop(options, endpoints);
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
-  auto asked = begin - std::chrono::seconds(1);
+  auto requested = begin - std::chrono::seconds(1);
   int steady = 0;  // values in a row within the tolerance
   bool had_lease = false;
   while (std::chrono::duration<double>(Clock::now() - begin).count() < options.seconds && steady < 100) {
@@ -303,9 +304,9 @@ int main(int argc, char** argv) {
     loop.read_variable();
     had_lease |= loop.has_lease();
     if (!loop.has_lease()) {
-      // ask until the session answers
-      if (loop.has_place() && Clock::now() - asked > std::chrono::milliseconds(100)) {
-        asked = Clock::now();
+      // repeats the request until the session answers
+      if (loop.has_place() && Clock::now() - requested > std::chrono::milliseconds(100)) {
+        requested = Clock::now();
         loop.send(slewring_CONTROLLER_ACQUIRE, 0);
       }
       continue;

@@ -6,7 +6,7 @@
         while session.step():
             session.write(lift, 20 * (0.86 - session.value(stroke)))
 
-The library is found as libslewring_client.so by the system, or where the variable SLEWRING_CLIENT says.
+The library is found as libslewring_client.so by the system, or at the path in the variable SLEWRING_CLIENT.
 """
 
 import ctypes

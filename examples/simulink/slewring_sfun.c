@@ -15,8 +15,8 @@
  * Keys for a session that has them are in the environment of MATLAB: SLEWRING_KEYS=DIR, SLEWRING_IDENTITY=NAME.
  *
  * Build:  mex slewring_sfun.c -IPREFIX/include -LPREFIX/lib -lslewring_client
- * Model:  fixed-step solver with the same period; the inputs have no direct feed-through: what the session says in a
- * step does not depend on what the model answers in it. */
+ * Model:  fixed-step solver with the same period; the inputs have no direct feed-through: the session's values
+ * in a step do not depend on the model's values in that step. */
 #define S_FUNCTION_NAME slewring_sfun
 #define S_FUNCTION_LEVEL 2
 

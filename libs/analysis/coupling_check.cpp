@@ -19,14 +19,14 @@ namespace {
 using coupling::Level;
 using wire::Role;
 
-// of a port without leaks: the little that seals and hoses have
+// damping ratio assumed for a port without leaks: seals and hoses have a little
 constexpr double kLeastDamping = 0.02;
-// a tenth more mass than the machine has
+// a tenth of the machine's mass
 constexpr double kLargestParasiticMass = 0.1;
 
 constexpr std::string_view kNames[coupling::kLevels] = {"hold", "linear", "two", "tlm"};
 
-// The ports of one level at the start: their mobilities and oil columns, as if there were no others.
+// The ports of one level at the start: their mobilities and oil columns, each port alone.
 struct Ports {
   std::vector<std::size_t> port;
   coupling::PortMatrix W;
@@ -48,7 +48,7 @@ Ports ports_of(Level level, const coupling::PortLevels& levels, const coupling::
   return ports;
 }
 
-// Index among the ports of the one whose own oil column swings fastest.
+// Index of the port whose own oil column has the highest frequency.
 std::size_t fastest(const Ports& ports) {
   std::size_t found = 0;
   const std::size_t m = ports.port.size();
@@ -73,8 +73,8 @@ std::string swinging(const Ports& ports, Level level, const std::string& name,
   std::string remedy = safe < scene::kMinStep ? "" : "session.step " + duration_below(safe) + " or less";
   if (level != Level::two) remedy += (remedy.empty() ? "" : ", or ") + std::string("coupling 'two'");
   return fmt::format(
-      "{}: omega_H, the angle that the machine swings on its oil from one exchange to the next in {}, is {:.2g}; level "
-      "'{}' is right up to {:.2g}{}; the run may be wrong or unstable: use {}",
+      "{}: omega_H (oil-spring frequency times exchange interval {}) is {:.2g}; level "
+      "'{}' is valid up to {:.2g}{}; the run may be wrong or unstable: use {}",
       name, duration_text(H), omega_H, kNames[static_cast<std::size_t>(level)], limit, damping, remedy);
 }
 
@@ -91,17 +91,16 @@ std::string heavy_line(const Ports& ports, const scene::Scene& scene, double H) 
       duration_below(H * std::sqrt(kLargestParasiticMass / share)));
 }
 
-// free-running sides have samples that are a step old, or older
+// samples of free-running sides are a step old, or older
 std::string running_late(const Ports& ports, const std::string& name, double H) {
   const double omega_H = coupling::coupling_frequency(ports.W, ports.K, H);
   if (!(omega_H > coupling::kMostLate)) return {};
   const double safe = H * coupling::kMostLate / omega_H;
   const std::string step = safe < scene::kMinStep ? "" : "session.step " + duration_below(safe) + " or less, or ";
   return fmt::format(
-      "{}: free_running works with samples that are a step or more late, and the machine swings by omega_H {:.2g} on "
-      "its oil "
-      "in a step of {}; that is right up to {:.2g} by the steps that are late or lost; the run may be wrong or "
-      "unstable: use {}session.mode lockstep",
+      "{}: free_running works with samples that are a step or more late; omega_H is {:.2g} at a step of {}, and the "
+      "mode is valid up to {:.2g} over the number of late or lost steps; the run may be wrong or unstable: use "
+      "{}session.mode lockstep",
       name, omega_H, duration_text(H), coupling::kMostLate, step);
 }
 

@@ -1,4 +1,4 @@
-// Whether the communication step suits the coupling levels of a scene, before it runs.
+// Checks before a run whether the communication step suits the coupling levels of a scene.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace slew::analysis {
 
-// One sentence for every level whose ports are beyond its limit at the start state (coupling::omega_limit), with the
-// port that is the fastest, and a step that would suit it. Pre-condition: session is started and of this scene.
+// One sentence for every level whose ports are beyond its limit at the start state (coupling::omega_limit), with its
+// fastest port and a suitable step. Pre-condition: session is started and of this scene.
 [[nodiscard]] std::vector<std::string> coupling_warnings(const scene::Scene& scene,
                                                          const session::DirectSession& session);
 
-// The same of a scene that is not started yet; none when it cannot start, which its run tells.
+// The same for a scene that is not started yet; none when it cannot start, which its run reports.
 [[nodiscard]] std::vector<std::string> coupling_warnings(const scene::Scene& scene);
 
 }  // namespace slew::analysis

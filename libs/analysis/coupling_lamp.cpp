@@ -13,13 +13,13 @@ namespace {
 
 using coupling::Level;
 
-// of the range; an error beyond it is no figure any more
+// share of the range; an error beyond it is not quantified
 std::string share_of_range(double error) {
   return error < 1 ? fmt::format("{:.2g} %", 1e2 * error) : "100 % or more";
 }
 
 std::string remedy(double eta, Level level, const scene::SessionDef& session) {
-  // errors of levels that foresee their partner fall with the square of the step (docs/coupling-results.md)
+  // errors of levels with a partner model fall with the square of the step (docs/coupling-results.md)
   const double order = coupling::is_balanced(level) ? 2 : 1;
   const double green = session.step * std::pow(coupling::kGreenBelow / eta, 1 / order);
   std::string text;

@@ -1,4 +1,4 @@
-// The lamps of the coupling for people: what they stand for in errors, and what makes them green.
+// Texts for the lamps of the coupling: the errors that they stand for, and the changes that make them green.
 #pragma once
 
 #include <string>
@@ -13,9 +13,9 @@ namespace slew::analysis {
 [[nodiscard]] coupling::Lamp lamp_of(double eta) noexcept;
 [[nodiscard]] std::string_view lamp_text(coupling::Lamp lamp) noexcept;
 
-// "0.8 %" of the force's range; empty of a green lamp.
+// "0.8 %" of the force's range; empty for a green lamp.
 [[nodiscard]] std::string usual_force_error(double eta);
-// "force off by about 0.8 %, 6 % in one run of 20; ..."; empty of a green lamp. port: its number in the scene.
+// "force off by about 0.8 %, 6 % in one run of 20; ..."; empty for a green lamp. port: its number in the scene.
 [[nodiscard]] std::string explain_lamp(double eta, std::size_t port, const scene::Scene& scene);
 
 }  // namespace slew::analysis

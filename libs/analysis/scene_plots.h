@@ -1,4 +1,4 @@
-// The plots that a scene asks for, of a recording of it.
+// The plots that a scene defines, for a recording of it.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@
 
 namespace slew::analysis {
 
-// The scene's plots of a recording, without what it does not have.
+// The scene's plots of a recording, without missing variables.
 struct ScenePlots {
   std::vector<plotting::Plot> plots;
-  std::vector<std::string> left_out;  // a sentence for each plot that lacks something
+  std::vector<std::string> left_out;  // a sentence for each plot that lacks a variable
 };
 [[nodiscard]] ScenePlots read_plots(const scene::Scene& scene, const recording::Reader& reader);
 // The same from curves that keep what the plots need; of the reader nothing but its scene is read.

@@ -16,7 +16,7 @@ namespace {
 using hydraulics::ActuatorDef;
 using hydraulics::L90lsValveDef;
 
-constexpr double kFullyOpen = 0.9;      // of the maximum control signal
+constexpr double kFullyOpen = 0.9;      // share of the maximum control signal
 constexpr double kSettling = 1.0;       // s: spool, load sensing and pump have answered
 constexpr double kShortestStall = 0.5;  // s
 constexpr double kStandstill = 2e-3;    // m/s
@@ -36,7 +36,7 @@ struct Drive {
     if (actuator.motion == hydraulics::Motion::rotary) return direction > 0 ? "turn forwards" : "turn back";
     return direction > 0 ? "extend" : "retract";
   }
-  // above tank
+  // pressure above tank
   [[nodiscard]] double feed_limit() const {
     return (direction > 0 ? valve->maximum_ls_pressure_a : valve->maximum_ls_pressure_b) + valve->compensator_pressure;
   }
@@ -98,11 +98,11 @@ std::optional<Stall> find_stall(const session::Curves& all, const Drive& drive) 
   return longest;
 }
 
-// The load as the mechanics sees it: its mass and what each kilogram asks of the cylinder.
+// The load in the mechanics: its mass and the force that each kilogram takes of the cylinder.
 struct HeldLoad {
   std::string body;
   double mass = 0;   // kg, at the stall
-  double slope = 0;  // N/kg, of the static force against the direction
+  double slope = 0;  // N/kg, slope of the static force against the direction
 };
 
 // Value of a variable at a time.
@@ -175,7 +175,7 @@ std::vector<std::string> explain_stalls(const session::Curves& curves, const sce
       const std::optional<Stall> stall = find_stall(curves, drive);
       if (stall) sentences.push_back(sentence(curves, scene, drive, *stall));
     } catch (const Failure&) {
-      // the scene does not record what this looks at
+      // the scene does not record the variables that this needs
     }
   }
   return sentences;

@@ -1,6 +1,6 @@
 // Why a cylinder did not move although its valve was fully open: a sentence for the summary of a run.
 //
-// A stall is a time of at least half a second, from one second after the valve was told to open fully, in which a
+// A stall is a time of at least half a second, from one second after the full-opening command to the valve, in which a
 // double-acting cylinder does not move against its load. The pressure that would move it,
 //   p = (F + p_other A_other) / A,   F = (F_static + F_seal) / eta                                        (1)
 // (F_static: force that holds the load, eta: the cylinder's efficiency) is compared with the pressure at which an L90LS

@@ -21,9 +21,9 @@ using wire::Topic;
 constexpr std::size_t kNewBlocks = 4096;
 constexpr std::size_t kBeforeSession = 4096;
 constexpr std::size_t kWaitingSteps = 4096;
-constexpr std::int64_t kAskAgainNs = 200'000'000;
+constexpr std::int64_t kRequestIntervalNs = 200'000'000;
 constexpr std::int64_t kLongestSleepNs = 50'000'000;
-// more than a wait is late under load: the process was stopped, or its machine slept
+// a wait that is later than this is not load: the process was stopped, or its machine slept
 constexpr std::int64_t kStandstillNs = 200'000'000;
 
 std::string in_seconds(SimDuration time) {
@@ -33,7 +33,7 @@ std::string in_seconds(SimDuration time) {
   return text + " s";
 }
 
-// of a program whose command line is its own
+// environment variables of a program whose command line is its own
 transport::Protection protection_of_environment() {
   const auto value = [](const char* name, const char* otherwise) {
     const char* const text = std::getenv(name);
@@ -74,13 +74,13 @@ Answer ClientSession::join(const JoinOptions& options, SimDuration timeout, std:
   }
   if (!status.is_ok()) return {status.code == ExitCode::bad_input ? Code::bad_argument : Code::failed, status.text};
   if (!opened->wait_for([&] { return opened->has_session_; }, timeout)) {
-    return {Code::timeout, "no session '" + options.session + "' was heard in domain " +
+    return {Code::timeout, "no session '" + options.session + "' was found in domain " +
                                std::to_string(options.network.domain) + " on " + options.network.interface +
                                " within " + in_seconds(timeout) +
                                "; start it first, and compare its name, domain, interface, peers and keys"};
   }
   if (opened->description_.protocol != wire::kProtocolVersion) {
-    return {Code::refused, "session '" + options.session + "' speaks protocol version " +
+    return {Code::refused, "session '" + options.session + "' has protocol version " +
                                std::to_string(opened->description_.protocol) + ", this client library " +
                                std::to_string(wire::kProtocolVersion) + "; use one version on both sides"};
   }
@@ -99,7 +99,7 @@ ClientSession::~ClientSession() {
 
 // ---- receiving ------------------------------------------------------------------------------------------------
 
-// Time in which this process itself stood still is no time in which nothing came.
+// Time in which this process itself stood still does not count as waiting.
 template <typename Done>
 bool ClientSession::wait_for(Done done, SimDuration timeout) {
   std::int64_t seen_ns = monotonic_ns();  // when it was awake last, or is to be
@@ -154,18 +154,18 @@ void ClientSession::take_session(std::span<const std::byte> bytes) {
   description.scene_text.clear();
   description_ = std::move(description);
   has_session_ = true;
-  for (const Early& message : std::exchange(before_session_, {})) take(message.topic, message.bytes);
+  for (const PendingMessage& message : std::exchange(before_session_, {})) take(message.topic, message.bytes);
 }
 
-// io says when it is over and why; of one that was lost the others do. Where lost nodes are replaced, one that ends for
-// another reason than the loss of somebody is replaced too, or io says that it is over.
+// io reports the end and its cause. If io itself is lost, the other nodes' status counts. Where lost nodes are
+// replaced, a node that ends for another reason than the loss of a node is replaced too, or io reports the end.
 void ClientSession::take_status(std::span<const std::byte> bytes) {
   wire::NodeStatus status;
   if (!transport::decode(bytes, status) || !is_ours(status.header)) return;
   if (status.state < wire::NodeState::ended || status.header.role == Role::recorder) return;
   const bool is_of_io = status.header.role == Role::io;
-  const bool has_lost_somebody = status.exit_code == static_cast<std::int32_t>(ExitCode::node_lost);
-  if (!is_of_io && description_.rejoin_ns > 0 && !has_lost_somebody) return;
+  const bool has_lost_node = status.exit_code == static_cast<std::int32_t>(ExitCode::node_lost);
+  if (!is_of_io && description_.rejoin_ns > 0 && !has_lost_node) return;
   is_over_ = true;
   if (end_reason_.empty()) end_reason_ = status.reason;
 }
@@ -184,26 +184,26 @@ void ClientSession::take_directory(std::span<const std::byte> bytes) {
   wire::VariableDirectory message;
   if (!transport::decode(bytes, message) || !is_ours(message.header)) return;
   const auto role = static_cast<std::size_t>(message.header.role);
-  if (role >= untold_.size()) return;
-  if (!untold_[role]) untold_[role] = message.total;
-  // the same again after a reset
+  if (role >= unnamed_.size()) return;
+  if (!unnamed_[role]) unnamed_[role] = message.total;
+  // repeated after a reset
   if (message.entries.empty() || named(message.entries.front().name) != nullptr) return;
-  *untold_[role] -= std::min(*untold_[role], static_cast<std::uint32_t>(message.entries.size()));
+  *unnamed_[role] -= std::min(*unnamed_[role], static_cast<std::uint32_t>(message.entries.size()));
   for (std::size_t i = 0; i < message.entries.size(); ++i) {
     directory_.push_back({message.entries[i].name, message.entries[i].unit, message.header.role,
                           message.first + static_cast<std::uint32_t>(i)});
   }
 }
 
-// Each node's names come by themselves, however long after another's.
+// Each node's names arrive independently, however long after another's.
 bool ClientSession::has_whole_directory() const noexcept {
   return std::all_of(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles), [this](Role role) {
     const bool has_variables = role != Role::recorder && (description_.required_roles & wire::bit(role)) != 0;
-    return !has_variables || untold_[static_cast<std::size_t>(role)] == 0u;
+    return !has_variables || unnamed_[static_cast<std::size_t>(role)] == 0u;
   });
 }
 
-// of a reset: steps begin at 0 again, and what was computed before is of no use
+// after a reset: steps begin at 0 again, and earlier results are discarded
 void ClientSession::begin_epoch(std::uint32_t epoch) {
   epoch_ = epoch;
   new_blocks_.clear();
@@ -229,16 +229,16 @@ void ClientSession::take_lease(std::span<const std::byte> bytes) {
       std::find_if(channels_.begin(), channels_.end(), [&](const Channel& c) { return c.name == message.channel; });
   if (channel == channels_.end()) return;
   if (message.header.epoch > epoch_) begin_epoch(message.header.epoch);
-  // to another process of this name, or to what this one asked or wrote before it asked for the channel
+  // a lease for another process of this name, or an answer to a message from before the request for the channel
   const bool is_answer = message.answers != 0;
-  if (is_answer && (message.answers < channel->asked_from || message.answers > sequence_)) return;
+  if (is_answer && (message.answers < channel->requested_from || message.answers > sequence_)) return;
   const bool has_it = message.is_granted && message.holder == options_.controller;
-  if (channel->lease == Lease::asked && is_answer) {
+  if (channel->lease == Lease::requested && is_answer) {
     channel->lease = has_it ? Lease::held : Lease::refused;
     channel->answered = kJoinStep;
     if (has_it && message.header.step > 0) only_newest_ = true;
   } else if (channel->lease != Lease::held) {
-    return;  // told to another process, or why it was lost was said before
+    return;  // meant for another process, or the cause of the loss was published before
   } else if (!message.is_granted) {
     channel->lease = Lease::lost;
   }
@@ -270,10 +270,11 @@ Answer ClientSession::find(const std::string& variable, SimDuration timeout, int
     if (is_over_) return ended();
     const std::string others = std::to_string(directory_.size());
     if (!has_whole_directory()) {
-      return {Code::timeout, "session '" + options_.session + "' has not told all its variables within " +
-                                 in_seconds(timeout) + ": '" + variable + "' is not among " + others +
-                                 " so far; it is still starting, or its nodes are not all heard here: wait longer, or "
-                                 "see `slewring sessions`"};
+      return {Code::timeout,
+              "session '" + options_.session + "' has not published all its variables within " + in_seconds(timeout) +
+                  ": '" + variable + "' is not among " + others +
+                  " so far; it is still starting, or not all of its nodes reach this process: wait longer, or "
+                  "see `slewring sessions`"};
     }
     return {Code::refused, "session '" + options_.session + "' publishes no variable '" + variable + "', " + others +
                                " others; `slewring variables SCENE` lists them, recording.variables of the scene "
@@ -291,7 +292,7 @@ double ClientSession::value(int handle) const noexcept {
   return is_known ? values_[static_cast<std::size_t>(handle)] : std::numeric_limits<double>::quiet_NaN();
 }
 
-// The smallest distance of two blocks of one node is that of all.
+// The smallest distance of two blocks of one node holds for all nodes.
 void ClientSession::note_distance(const wire::Header& header) noexcept {
   const auto role = static_cast<std::size_t>(header.role);
   if (role >= newest_of_.size()) return;
@@ -301,8 +302,8 @@ void ClientSession::note_distance(const wire::Header& header) noexcept {
   newest_of_[role] = std::max(before, header.step);
 }
 
-// Of all the blocks between the first step and the present one those that came: read, passed over, or left out by the
-// session on purpose.
+// Blocks that should have arrived between the first step and the present one, less those that were read, passed over,
+// or left out by the session on purpose.
 std::uint64_t ClientSession::blocks_missed() const noexcept {
   if (steps_per_block_ == 0) return 0;
   const StepIndex due = steps_passed_ / steps_per_block_;
@@ -334,7 +335,7 @@ bool ClientSession::is_complete(const Block& block) const noexcept {
   return wanted_.empty() ? block.has_own : block.count == wanted_.size();
 }
 
-// each node's blocks come in order: what a later step has and this one lacks was lost
+// each node's blocks arrive in order: a block that a later step has and this one lacks was lost
 bool ClientSession::can_never_be_complete(std::map<StepIndex, Block>::const_iterator block) const noexcept {
   for (auto later = std::next(block); later != blocks_.end(); ++later) {
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
@@ -398,7 +399,7 @@ Answer ClientSession::step(Which which, SimDuration timeout) {
   if (in_time) return {};
   return {Code::timeout, "no block of variables came within " + in_seconds(timeout) + " after step " +
                              std::to_string(step_) +
-                             "; the session is paused, waits for somebody or is gone: see `slewring sessions`"};
+                             "; the session is paused, waits for a partner or is gone: see `slewring sessions`"};
 }
 
 Answer ClientSession::ended() const {
@@ -425,21 +426,21 @@ Answer ClientSession::send(const std::string& channel, wire::ControllerAction ac
 
 Answer ClientSession::acquire(const std::string& name, double how, SimDuration timeout, int& handle) {
   if (!is_name(name)) return {Code::bad_argument, "'" + name + "' is no name of a channel"};
-  drain();  // what was said before it asked is no answer
+  drain();  // messages from before the request are no answer
   auto channel = std::find_if(channels_.begin(), channels_.end(), [&](const Channel& c) { return c.name == name; });
   if (channel == channels_.end()) channel = channels_.insert(channels_.end(), Channel{name});
   const auto index = static_cast<std::size_t>(channel - channels_.begin());
   if (channels_[index].lease != Lease::held) {
-    channels_[index].lease = Lease::asked;
-    channels_[index].asked_from = sequence_ + 1;
+    channels_[index].lease = Lease::requested;
+    channels_[index].requested_from = sequence_ + 1;
   }
-  // asked again until it is answered: the first may go before the session is found
-  std::int64_t ask_ns = 0;
+  // the request is repeated until it is answered: the first may be sent before the session is discovered
+  std::int64_t request_ns = 0;
   Answer sent;
   const auto is_decided = [&] {
-    if (channels_[index].lease != Lease::asked || is_over_) return true;
-    if (monotonic_ns() < ask_ns) return false;
-    ask_ns = monotonic_ns() + kAskAgainNs;
+    if (channels_[index].lease != Lease::requested || is_over_) return true;
+    if (monotonic_ns() < request_ns) return false;
+    request_ns = monotonic_ns() + kRequestIntervalNs;
     sent = send(name, wire::ControllerAction::acquire, how, step_);
     return sent.code != Code::ok;
   };
@@ -452,7 +453,7 @@ Answer ClientSession::acquire(const std::string& name, double how, SimDuration t
   if (is_over_) return ended();
   channels_[index].lease = Lease::none;
   if (in_time) return {Code::refused, channels_[index].reason};
-  // what is granted after this is given back
+  // a channel that is granted after this is given back
   static_cast<void>(send(name, wire::ControllerAction::release, 0, kJoinStep));
   return {Code::timeout, "session '" + options_.session + "' did not answer for channel " + name + " within " +
                              in_seconds(timeout) + "; nothing was moved"};

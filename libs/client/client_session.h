@@ -1,7 +1,7 @@
-// A controller's view of one session: what slewring_client.h does, in C++ and without handles that may be wrong.
+// A controller's view of one session: the functions of slewring_client.h in C++, without handles that may be wrong.
 //
-// Blocks of variables are put together by step: a step is complete when every variable that was asked for has come of
-// it. Messages of an older epoch or of another session are passed over. One thread at a time.
+// Blocks of variables are put together by step: a step is complete when every requested variable of it has arrived.
+// Messages of an older epoch or of another session are ignored. One thread at a time.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ enum class Which : std::uint8_t { next, newest };
 
 class ClientSession {
  public:
-  // Fills `session`, or says why not.
+  // Fills `session`, or reports the cause of the failure.
   static Answer join(const JoinOptions& options, SimDuration timeout, std::unique_ptr<ClientSession>& session);
   ~ClientSession();
   ClientSession(const ClientSession&) = delete;
@@ -60,7 +60,7 @@ class ClientSession {
   Answer release(int channel);
   Answer step(Which which, SimDuration timeout);
   Answer write(int channel, double value);
-  // Next sentence that nobody asked for; false: none.
+  // Next unrequested sentence from the session; false: none.
   bool take_notice(std::string& text);
 
   [[nodiscard]] StepIndex present_step() const noexcept { return step_; }
@@ -73,26 +73,26 @@ class ClientSession {
   std::string notice;
 
  private:
-  enum class Lease : std::uint8_t { none, asked, held, refused, lost };
+  enum class Lease : std::uint8_t { none, requested, held, refused, lost };
   struct Channel {
     std::string name;
     Lease lease = Lease::none;
     std::string reason{};
-    std::uint64_t asked_from = 0;    // number of the first message that asked for it
-    StepIndex answered = kJoinStep;  // step of the last value that was written since it is held; -1: none
+    std::uint64_t requested_from = 0;  // number of the first message that requested it
+    StepIndex answered = kJoinStep;    // step of the last value that was written since it is held; -1: none
   };
-  // A message that came before the session was known: its writer was found before io's.
-  struct Early {
+  // A message received before the session was known: its writer was discovered before io's.
+  struct PendingMessage {
     wire::Topic topic;
     std::vector<std::byte> bytes;
   };
-  // Values of one step as they come.
+  // Values of one step as they arrive.
   struct Block {
     std::vector<double> values;
     std::vector<bool> has;
     std::size_t count = 0;
     bool has_own = false;      // the session's own block of the step
-    bool is_left_out = false;  // a node says that it leaves its values out
+    bool is_left_out = false;  // a node leaves its values out
   };
 
   explicit ClientSession(JoinOptions options);
@@ -120,26 +120,27 @@ class ClientSession {
   JoinOptions options_;
   std::unique_ptr<transport::Transport> transport_;
   bool has_session_ = false;
-  std::vector<Early> before_session_;
+  std::vector<PendingMessage> before_session_;
   wire::SessionDescription description_;
   bool is_over_ = false;
   std::string end_reason_;
   std::uint32_t epoch_ = 0;
   std::vector<Named> directory_;
-  std::array<std::optional<std::uint32_t>, wire::kRoles> untold_;  // variables that each role has yet to name
-  std::vector<Named> wanted_;                                      // by handle
-  std::deque<wire::VariableBlock> new_blocks_;                     // that came before step() was called
-  std::map<StepIndex, Block> blocks_;                              // not handed out yet
-  bool only_newest_ = false;    // of the next step: a channel was acquired in mid-run
-  std::vector<double> values_;  // of step_, by handle
+  std::array<std::optional<std::uint32_t>, wire::kRoles> unnamed_;  // variables that each role has yet to name
+  std::vector<Named> wanted_;                                       // by handle
+  std::deque<wire::VariableBlock> new_blocks_;                      // received before step() was called
+  std::map<StepIndex, Block> blocks_;                               // not handed out yet
+  bool only_newest_ = false;    // the next step is the newest: a channel was acquired in mid-run
+  std::vector<double> values_;  // values of step_, by handle
   StepIndex step_ = kJoinStep;
   std::array<std::optional<StepIndex>, wire::kRoles> newest_of_;  // step of each node's newest block
   StepIndex steps_per_block_ = 0;                                 // the smallest distance of two; 0: not known yet
-  StepIndex steps_passed_ = 0;                                    // from the first block of each epoch on
-  StepIndex blocks_come_ = 0;                                     // in them
+  StepIndex steps_passed_ = 0;                                    // counted from the first block of each epoch on
+  StepIndex blocks_come_ = 0;                                     // blocks that arrived in them
   std::vector<Channel> channels_;
   std::deque<std::string> notices_;
-  std::uint64_t sequence_;  // of the last message that was sent; drawn at random, as another process may have this name
+  std::uint64_t
+      sequence_;  // number of the last message that was sent; drawn at random, as another process may have this name
   std::vector<std::byte> buffer_;
 };
 

@@ -7,7 +7,7 @@
 
 #include "client/client_session.h"
 
-// what C sees as an opaque struct
+// the opaque struct of the C interface
 struct slewring_session {
   std::unique_ptr<slew::client::ClientSession> client;
 };
@@ -18,7 +18,7 @@ using slew::client::Answer;
 using slew::client::ClientSession;
 using slew::client::Code;
 
-// of a join that failed, when there is no session that could keep it
+// answer of a failed join, when there is no session that could keep it
 Answer& join_answer() {
   thread_local Answer answer;
   return answer;
@@ -45,11 +45,11 @@ std::string text_of(const char* text) {
   return text != nullptr ? text : "";
 }
 
-// Runs what may fail: no exception crosses the border to C.
+// Runs an action that may fail: no exception crosses the border to C.
 template <typename Action>
 int guarded(slewring_session* session, Action action) {
   if (session == nullptr) {
-    // after a join that failed its reason is what one wants to read
+    // after a failed join its reason is the useful text
     if (join_answer().text.empty()) join_answer().text = "the session is NULL";
     return SLEWRING_BAD_ARGUMENT;
   }

@@ -13,7 +13,7 @@
 // Order: join, find the variables, acquire the channels, then one round per step: wait, read, write. slewring_step()
 // gives every block of variables in order, as a lockstep channel needs them; slewring_latest() gives the newest.
 //
-// A result below zero is a code; slewring_error() then has the sentence: what happened, what you can do. Texts belong
+// A result below zero is a code; slewring_error() then has the sentence: what happened, what to do. Texts belong
 // to the library and stay until the next call for the same session. Units are those of slewring_variable_unit(), SI.
 // Time-outs are in seconds; 0 does not wait. A session's functions are for one thread at a time; several sessions may
 // have a thread each. No signal handler is set, nothing is printed.
@@ -37,21 +37,21 @@ typedef struct slewring_session slewring_session;
 
 enum {
   SLEWRING_OK = 0,
-  SLEWRING_TIMEOUT = -1,       // what was waited for did not come
-  SLEWRING_REFUSED = -2,       // the session said no, and why
+  SLEWRING_TIMEOUT = -1,       // no answer within the time
+  SLEWRING_REFUSED = -2,       // the session rejected the request; the text has the reason
   SLEWRING_LOST = -3,          // a channel was taken away: acquire it again to go on
   SLEWRING_ENDED = -4,         // the session is over
-  SLEWRING_BAD_ARGUMENT = -5,  // a handle, text or number that cannot be
+  SLEWRING_BAD_ARGUMENT = -5,  // an invalid handle, text or number
   SLEWRING_FAILED = -6         // network or memory
 };
 
-// Joins a session by its name and waits until it is heard. controller: own name, unique in the session. interface_name:
+// Joins a session by its name and waits until it is found. controller: own name, unique in the session. interface_name:
 // network interface, NULL or "": "lo"; peers: addresses of other hosts, separated by commas, NULL or "": none.
 // A session with keys needs SLEWRING_KEYS=DIR in the environment, and SLEWRING_IDENTITY=NAME when that is not
 // "controller" (`slewring keys`); an interface that leaves this machine is refused without, unless
 // SLEWRING_INSECURE_LAN=1 is there.
 // NULL on failure; on the same thread slewring_error(NULL) then has the reason and slewring_join_code() the code:
-// SLEWRING_TIMEOUT (no such session was heard), SLEWRING_REFUSED (another protocol version), SLEWRING_BAD_ARGUMENT
+// SLEWRING_TIMEOUT (no such session was found), SLEWRING_REFUSED (another protocol version), SLEWRING_BAD_ARGUMENT
 // (names, domain, interface, keys) or SLEWRING_FAILED.
 SLEWRING_API slewring_session* slewring_join(const char* session, const char* controller, unsigned domain,
                                              const char* interface_name, const char* peers, double timeout_s);
@@ -74,7 +74,7 @@ SLEWRING_API const char* slewring_variable_unit(const slewring_session* session,
 
 // Handle of a variable that step() is to read, >= 0, or a code. Find all variables before the first step().
 SLEWRING_API int slewring_find(slewring_session* session, const char* variable, double timeout_s);
-// Value at the present step; NaN before the first step() and for a handle that is none.
+// Value at the present step; NaN before the first step() and for an invalid handle.
 SLEWRING_API double slewring_value(const slewring_session* session, int variable);
 
 // Handle of a channel that this controller now holds, >= 0, or a code: SLEWRING_REFUSED when another one holds it.
@@ -94,11 +94,11 @@ SLEWRING_API long long slewring_present_step(const slewring_session* session);
 SLEWRING_API double slewring_time(const slewring_session* session);
 SLEWRING_API long long slewring_blocks_missed(const slewring_session* session);
 
-// Value computed from the present step: -1 to 1, digital 0 or 1; what is outside is held at the bound by the session.
+// Value computed from the present step: -1 to 1, digital 0 or 1; the session limits a value outside to the bound.
 SLEWRING_API int slewring_write(slewring_session* session, int channel, double value);
 
-// What the session has said about this controller's channels without being asked (out of step, back in it, put to
-// neutral), one sentence a call; NULL: nothing new.
+// Unrequested sentences from the session about this controller's channels (out of step, back in it, put to neutral),
+// one a call; NULL: no new one.
 SLEWRING_API const char* slewring_notice(slewring_session* session);
 
 #ifdef __cplusplus

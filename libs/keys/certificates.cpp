@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::hours kBackdated{24};
 
-// `openssl x509` and `req` of OpenSSL 3.0 cannot backdate, `ca` can; it wants a database for it
+// `openssl x509` and `req` of OpenSSL 3.0 cannot backdate, `ca` can; it needs a database for it
 constexpr const char* kConfig = R"([req]
 distinguished_name = name
 prompt = no
@@ -96,9 +96,10 @@ void make_certificate(const CertificateFiles& files, const CertificateFiles& aut
 }
 
 std::string subject_of(const fs::path& certificate) {
-  std::string said = run_openssl({"x509", "-in", certificate.string(), "-noout", "-subject", "-nameopt", "RFC2253"});
-  while (!said.empty() && (said.back() == '\n' || said.back() == ' ')) said.pop_back();
-  return said.substr(said.find('=') + 1);
+  std::string subject_line =
+      run_openssl({"x509", "-in", certificate.string(), "-noout", "-subject", "-nameopt", "RFC2253"});
+  while (!subject_line.empty() && (subject_line.back() == '\n' || subject_line.back() == ' ')) subject_line.pop_back();
+  return subject_line.substr(subject_line.find('=') + 1);
 }
 
 void sign(const fs::path& document, const fs::path& to, const CertificateFiles& signer) {

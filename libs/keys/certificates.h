@@ -6,34 +6,34 @@
 
 namespace slew::keys {
 
-// Since when keys are good and until when: from a day ago on, for the clocks of other machines may be behind.
+// Begin and end of the validity of keys. It begins a day ago, since the clocks of other machines may be behind.
 struct Validity {
   std::string from, to;  // 2026-11-23T00:00:00, UTC
 };
 [[nodiscard]] Validity validity_of(int days);
 [[nodiscard]] std::string utc_now();  // as above
 
-// A file that its owner alone may read.
+// Makes a key in a file that only its owner may read.
 void make_key(const std::filesystem::path& to);
 
-// What makes certificates, in a temporary folder of its own.
+// Files of a certificate, made in a temporary folder of its own.
 struct CertificateFiles {
-  std::filesystem::path certificate;  // is made
-  std::filesystem::path key;          // of the subject
+  std::filesystem::path certificate;  // the certificate that is made
+  std::filesystem::path key;          // key of the subject
 };
-// Signs its own. `subject`: /O=Slewring/CN=...
+// Makes a certificate that signs itself. `subject`: /O=Slewring/CN=...
 void make_authority(const CertificateFiles& files, const std::string& subject, const Validity& validity);
-// Signed by an authority.
+// Makes a certificate that an authority signs.
 void make_certificate(const CertificateFiles& files, const CertificateFiles& authority, const std::string& subject,
                       const Validity& validity);
 
 // "CN=mechanics,O=Slewring"
 [[nodiscard]] std::string subject_of(const std::filesystem::path& certificate);
 
-// S/MIME
+// Signs a document (S/MIME).
 void sign(const std::filesystem::path& document, const std::filesystem::path& to, const CertificateFiles& signer);
 
-// 1 to 39 hexadecimal digits that nobody has guessed before.
+// 1 to 39 random hexadecimal digits that were not drawn before.
 [[nodiscard]] std::string random_number();
 
 }  // namespace slew::keys

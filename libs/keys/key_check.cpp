@@ -1,4 +1,4 @@
-// What is not in order in a key store or in what was exported of one.
+// Lists the problems of a key store or of keys exported from one.
 #include <fmt/format.h>
 #include <sys/stat.h>
 
@@ -28,33 +28,34 @@ bool others_may_read(const fs::path& path) {
   return ::stat(path.c_str(), &status) == 0 && (status.st_mode & (S_IRWXG | S_IRWXO)) != 0;
 }
 
-// openssl's own words, on one line
-std::string reason_of(const std::string& said) {
-  const std::size_t from = said.find("error ");
-  std::string line = said.substr(from == std::string::npos ? 0 : from);
+// openssl's message on one line
+std::string reason_of(const std::string& output) {
+  const std::size_t from = output.find("error ");
+  std::string line = output.substr(from == std::string::npos ? 0 : from);
   line = line.substr(0, line.find('\n'));
   return line;
 }
 
 std::string problem_of_signature(const std::string& document, const std::string& authority) {
-  std::string said;
+  std::string output;
   const bool is_good =
-      try_openssl({"smime", "-verify", "-in", document, "-CAfile", authority, "-text", "-out", "/dev/null"}, said);
+      try_openssl({"smime", "-verify", "-in", document, "-CAfile", authority, "-text", "-out", "/dev/null"}, output);
   return is_good ? "" : fmt::format("{} is not signed by {}", document, authority);
 }
 
-// Of a signed document: whether it says what is signed today, line ends apart.
+// Problem of a signed governance document: it differs from the present text, line ends apart.
 std::string problem_of_governance(const fs::path& document) {
   std::string text = read_file(document);
   std::erase(text, '\r');
   if (text.find(governance_xml()) != std::string::npos) return "";
   return fmt::format(
-      "{} is that of another version and protects otherwise; 'slewring keys create' makes a store anew, to be exported "
+      "{} is of another version and has other protection rules; make a new store with 'slewring keys create' and "
+      "export it "
       "to every machine",
       document.string());
 }
 
-// As the document writes times, of which the later one is the greater text; empty: it names none.
+// End of the validity as the document writes times, of which the later one is the greater text; empty: it has none.
 std::string permissions_end(const std::string& document) {
   constexpr std::string_view kBegin = "<not_after>";
   const std::size_t from = document.find(kBegin);
@@ -67,9 +68,9 @@ KeyFinding check_identity(const fs::path& folder, const std::string& name) {
   transport::Network network;
   require(transport::protect(network, {folder.string(), name}));
   const transport::SecurityFiles& files = *network.security;
-  std::string said;
-  if (!try_openssl({"verify", "-CAfile", files.identity_authority, files.certificate}, said)) {
-    finding.problem = fmt::format("the certificate is not good: {}", reason_of(said));
+  std::string output;
+  if (!try_openssl({"verify", "-CAfile", files.identity_authority, files.certificate}, output)) {
+    finding.problem = fmt::format("the certificate is not good: {}", reason_of(output));
     return finding;
   }
   finding.expires = line_of(run_openssl({"x509", "-in", files.certificate, "-noout", "-enddate"}));

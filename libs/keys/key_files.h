@@ -1,4 +1,4 @@
-// Files and folders of a key store. What was there before is left as it is, with its mode.
+// Files and folders of a key store. Files that existed before are left as they are, with their mode.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace slew::keys {
 
-// Of a file or folder, with code 6.
+// Failure of a file or folder, with code 6.
 [[nodiscard]] Failure storage_failure(const std::filesystem::path& path, const std::string& why);
 
 // Throws Failure when it cannot be written.
@@ -17,12 +17,12 @@ void write_file(const std::filesystem::path& path, const std::string& text);
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
 enum class Folder : bool { made, was_there };
-// For this user alone, whatever the umask, when it is not there yet; as many above it as are missing with the umask's
+// Makes a folder for this user alone, whatever the umask, unless it exists; missing parent folders get the umask's
 // mode. Throws Failure.
 Folder make_private_folder(const std::filesystem::path& path);
 
-// A folder for this user alone under a name that nobody had and that begins as `path` does. It is removed at the end
-// unless it was moved away or is to be kept.
+// A folder for this user alone under an unused name that begins as `path` does. The destructor removes it unless it was
+// moved away or is to be kept.
 class UniqueFolder {
  public:
   explicit UniqueFolder(const std::filesystem::path& path);

@@ -24,7 +24,7 @@ using wire::Role;
 
 constexpr const char* kList = "identities.json";
 constexpr const char* kGovernanceText = "governance.xml";  // as it was signed
-constexpr const char* kOldConfig = "openssl.cnf";          // of stores that version 0.1.0 made
+constexpr const char* kOldConfig = "openssl.cnf";          // in stores of version 0.1.0
 constexpr const char* kViewer = "viewer";
 
 struct Allowed {
@@ -104,7 +104,7 @@ KeyStore KeyStore::create(const fs::path& folder, const std::string& session, in
     store.write_list();
     return store;
   } catch (...) {
-    // it was empty: all in it is of this call
+    // the folder was empty: this call made all files in it
     for (const auto& entry : fs::directory_iterator(folder, error)) fs::remove_all(entry.path(), error);
     if (found == Folder::made) fs::remove(folder, error);
     throw;
@@ -230,7 +230,7 @@ void KeyStore::revoke(const std::string& name) {
         fmt::format("there is no identity '{}'; nothing was changed; 'slewring keys check' lists them", name));
   }
   int days = revoked->days;
-  // both beside the store and under names that nobody has: it changes place with what is made
+  // both beside the store and under unused names: the new store changes place with the old one
   const UniqueFolder made(folder_);
   UniqueFolder old(folder_);
   KeyStore next(made.path());
@@ -248,14 +248,14 @@ void KeyStore::revoke(const std::string& name) {
     fs::rename(made.path(), folder_, error);
     std::error_code stuck;
     if (error) fs::rename(old.path(), folder_, stuck);
-    if (stuck) old.keep();  // all there is of the store
+    if (stuck) old.keep();  // the only copy of the store
   }
   if (error) throw storage_failure(folder_, "the store could not be replaced (" + error.message() + ")");
   take_over_foreign(old);
   identities_ = next.identities_;
 }
 
-// What is in the folder of a former store and not of it.
+// Moves foreign files of the former store's folder into the new one.
 void KeyStore::take_over_foreign(UniqueFolder& former) const {
   std::set<std::string> own = {kList,
                                kGovernanceText,

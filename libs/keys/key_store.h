@@ -1,8 +1,8 @@
 // A key store: the authorities of a set of machines, and an identity with keys for every role that takes part. Made and
 // changed with the openssl command line; read by nodes through transport/protection.h.
 //
-// The packaged DDS knows no list of revoked certificates: to revoke an identity the authorities are made anew, and with
-// them all other identities, whose holders need them again.
+// The packaged DDS has no list of revoked certificates: to revoke an identity, the authorities and all other identities
+// are made again, and their holders need the new ones.
 #pragma once
 
 #include <filesystem>
@@ -19,35 +19,35 @@ namespace slew::keys {
 
 struct KeyIdentity {
   std::string name;           // 1 to 63 letters, digits, '_', '-', '.'
-  std::string role;           // of key_roles()
+  std::string role;           // one of key_roles()
   std::string session = "*";  // sessions that it may take part in, with * and ?
   int days = 0;               // validity
 };
 
 struct KeyFinding {
-  std::string identity;  // empty: of the store as a whole
+  std::string identity;  // empty: the store as a whole
   std::string problem;   // empty: good
   std::string expires;   // as openssl writes it; empty: unknown
 };
 
 class KeyStore {
  public:
-  // Makes the authorities and an identity for every role. A folder that is there keeps its mode. Throws Failure when it
-  // holds anything; nothing is left behind then.
+  // Makes the authorities and an identity for every role. An existing folder keeps its mode. Throws Failure when it
+  // holds any file; nothing is left behind then.
   static KeyStore create(const std::filesystem::path& folder, const std::string& session, int days);
   // Throws Failure (bad_input) when there is no store.
   static KeyStore open(const std::filesystem::path& folder);
 
   [[nodiscard]] const std::vector<KeyIdentity>& identities() const noexcept { return identities_; }
 
-  // Throws Failure (bad_input) when there is one of the name, or anything else in the store.
+  // Throws Failure (bad_input) when an identity has this name, or another file of the store.
   void add(const KeyIdentity& identity);
-  // Makes the authorities and all other identities anew. Until that is done, the store is as it was; what is in its
-  // folder beside them stays.
+  // Makes new authorities and all other identities again. Until that is done, the store is as it was; other files in
+  // its folder stay.
   void revoke(const std::string& name);
-  // Copies what holders of these identities need into a folder, which may hold others of the same authority. Never the
-  // authorities' own keys. Throws Failure when the folder belongs to another authority, is a store or holds something
-  // else, or an identity is unknown.
+  // Copies the files that holders of these identities need into a folder, which may hold others of the same authority.
+  // Never copies the authorities' own keys. Throws Failure when the folder belongs to another authority, is a store or
+  // holds other files, or an identity is unknown.
   void export_to(const std::filesystem::path& folder, const std::vector<std::string>& names) const;
 
  private:
@@ -65,8 +65,8 @@ class KeyStore {
   std::vector<KeyIdentity> identities_;
 };
 
-// Of a store or of what was exported: signatures, validity, keys that fit their certificates, files that others may
-// read. One entry for the folder and one for each identity. Throws Failure when it is none.
+// Checks a store or exported keys: signatures, validity, keys that fit their certificates, files that others may read.
+// One entry for the folder and one for each identity. Throws Failure when the folder holds no keys.
 [[nodiscard]] std::vector<KeyFinding> check_keys(const std::filesystem::path& folder);
 
 }  // namespace slew::keys

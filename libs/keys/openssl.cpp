@@ -17,19 +17,19 @@ constexpr int kLookAgain = 20;  // ms
 
 }  // namespace
 
-bool try_openssl(const std::vector<std::string>& arguments, std::string& said) {
+bool try_openssl(const std::vector<std::string>& arguments, std::string& output) {
   if (::access(kOpenssl, X_OK) != 0) {
     throw Failure(ExitCode::resources,
                   fmt::format("{} is not there; install the package openssl; nothing was changed", kOpenssl));
   }
   ChildProcess openssl("openssl", kOpenssl, arguments);
-  said.clear();
+  output.clear();
   const auto listen = [&] {
-    for (const std::string& line : openssl.take_lines()) said += line + '\n';
+    for (const std::string& line : openssl.take_lines()) output += line + '\n';
   };
   while (!openssl.poll_end()) {
-    pollfd output{openssl.output_fd(), POLLIN, 0};
-    ::poll(&output, 1, kLookAgain);
+    pollfd pipe{openssl.output_fd(), POLLIN, 0};
+    ::poll(&pipe, 1, kLookAgain);
     listen();
   }
   listen();
@@ -37,9 +37,9 @@ bool try_openssl(const std::vector<std::string>& arguments, std::string& said) {
 }
 
 std::string run_openssl(const std::vector<std::string>& arguments) {
-  std::string said;
-  if (try_openssl(arguments, said)) return said;
-  throw Failure(ExitCode::failed, fmt::format("openssl {} failed: {}", arguments.front(), said));
+  std::string output;
+  if (try_openssl(arguments, output)) return output;
+  throw Failure(ExitCode::failed, fmt::format("openssl {} failed: {}", arguments.front(), output));
 }
 
 }  // namespace slew::keys

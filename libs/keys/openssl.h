@@ -7,10 +7,11 @@
 
 namespace slew::keys {
 
-// Standard output and error. Throws Failure: resources when there is no openssl, failed with its last words otherwise.
+// Returns standard output and error. Throws Failure: resources when openssl is not installed, failed with its last
+// output otherwise.
 std::string run_openssl(const std::vector<std::string>& arguments);
 
-// Whether it ended with code 0; its words are in `said`.
-[[nodiscard]] bool try_openssl(const std::vector<std::string>& arguments, std::string& said);
+// Whether it ended with code 0; its output is in `output`.
+[[nodiscard]] bool try_openssl(const std::vector<std::string>& arguments, std::string& output);
 
 }  // namespace slew::keys

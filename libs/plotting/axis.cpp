@@ -8,10 +8,10 @@
 namespace slew::plotting {
 namespace {
 
-constexpr int kMostTicks = 100;             // whatever goes wrong, a plot stays a plot
+constexpr int kMostTicks = 100;             // limit in case of wrong arithmetic
 constexpr double kNearZero = 0.25;          // a range that begins below this part of its end begins at zero
-constexpr double kNearTick = 0.05;          // of a step
-constexpr double kSmallestSpan = 1e-9;      // of the magnitude: below it, a curve is a constant with rounding
+constexpr double kNearTick = 0.05;          // share of a step
+constexpr double kSmallestSpan = 1e-9;      // share of the magnitude: below it, a curve is a constant with rounding
 constexpr double kSmallestNumber = 1e-290;  // below it, ticks would lose their digits
 constexpr double kLargestPlainLabel = 1e5;
 constexpr double kSmallestPlainLabel = 1e-3;
@@ -33,7 +33,7 @@ void widen(double& low, double& high) {
   high += margin;
 }
 
-// thousands of a unit are left to the label of the axis
+// the axis label takes factors of a thousand
 int exponent_of(const Axis& axis) {
   const double largest = std::max(std::abs(axis.low), std::abs(axis.high));
   if (largest < kLargestPlainLabel && largest >= kSmallestPlainLabel) return 0;

@@ -23,7 +23,7 @@ class Column {
     ++count_;
   }
 
-  // hands the samples that matter to the line, in their order, and starts anew
+  // moves the significant samples to the line, in their order, and empties the column
   void move_to(Polyline& line, const Series& series) {
     if (count_ == 0) return;
     std::array<std::size_t, 4> kept = {first_, smallest_, largest_, last_};

@@ -1,10 +1,10 @@
-// Curves over time as a page to look around in: one file that asks for nothing else, panels as in plot_svg, one time
-// axis for all.
+// Curves over time as an interactive page: one file without external resources, panels as in plot_svg, one time axis
+// for all.
 //
-// The wheel and a dragged range zoom, with shift the range is moved, a double click shows all; panels scale to what is
-// seen. Under the pointer each curve tells the value of the last sample that is not later, and that sample's time. A
-// click on a name hides its curve. Columns of a pixel show the least and the largest value, so that nothing is lost in
-// long recordings. Values have seven digits.
+// The wheel and a dragged range zoom, with shift the range is moved, a double click shows all; panels scale to the
+// visible part. Under the pointer each curve shows the value and the time of its last sample that is not later. A click
+// on a name hides its curve. Columns of a pixel show the least and the largest value, so that no peak is lost in long
+// recordings. Values have seven digits.
 #pragma once
 
 #include <span>

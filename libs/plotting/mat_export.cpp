@@ -87,7 +87,7 @@ bool holds(matvar_t* variable, const char* field, std::span<const double> expect
   return found->data != nullptr && std::memcmp(found->data, expected.data(), expected.size_bytes()) == 0;
 }
 
-// The library does not tell of every write that failed, and reads a cut file as variables without name or values.
+// The library does not report every write that failed, and reads a cut file as variables without name or values.
 bool is_as_written(const std::filesystem::path& path, std::span<const std::string> names,
                    std::span<const Series> series) {
   const File file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));

@@ -1,8 +1,8 @@
 // Curves as a MAT-file (level 5, compressed) for MATLAB, Octave and scipy.io.
 //
 // One struct for each curve: name (as in the session), unit, time [s], value (columns of equal length). It is called
-// like the curve, made valid for MATLAB: "Cyl_Lift.force" is Cyl_Lift_force. One more struct, `recording`, says where
-// the curves come from.
+// like the curve, made valid for MATLAB: "Cyl_Lift.force" is Cyl_Lift_force. One more struct, `recording`, has the
+// origin of the curves.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct MatOrigin {
 };
 
 // Names of MATLAB variables, one for each curve and none twice: letters, digits and '_', a letter first, at most 63, no
-// word of the language. What differs only in characters that were replaced gets _2, _3 ...
+// keyword of the language. Names that differ only in replaced characters get _2, _3 ...
 [[nodiscard]] std::vector<std::string> mat_names(std::span<const Series> series);
 
 // Writes a new file or replaces one, and reads it back. Errors: storage; bad_input for a curve that is too long for the

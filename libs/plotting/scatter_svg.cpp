@@ -16,9 +16,9 @@ namespace {
 constexpr double kScatterLeft = 78, kScatterRight = 110, kScatterTop = 84, kScatterBottom = 56;
 constexpr double kScatterLegendRow = 18;
 constexpr double kMarkRadius = 4.5;
-constexpr int kFewDecades = 2;  // with no more of them, 2 and 5 are labelled too
+constexpr int kFewDecades = 2;  // up to this many, 2 and 5 are labelled too
 
-// Whole decades around what is shown; at least one.
+// Whole decades around the shown values; at least one.
 struct LogAxis {
   int low = 0, high = 1;  // powers of ten
   [[nodiscard]] double fraction(double value) const { return (std::log10(value) - low) / (high - low); }
@@ -70,7 +70,7 @@ class ScatterPicture {
     return mark.x > 0 && std::isfinite(mark.x) && mark.y >= 0 && std::isfinite(mark.y);
   }
 
-  // what is zero has a place only when there is a floor
+  // a value of zero is drawn only when there is a floor
   [[nodiscard]] double shown_y(const Mark& mark) const { return std::max(mark.y, floor_); }
   [[nodiscard]] bool is_on_floor(const Mark& mark) const { return mark.y < s_.y_floor || mark.y == 0; }
 
@@ -131,7 +131,7 @@ class ScatterPicture {
 
   void draw_floor() {
     draw_line("zero dash", kScatterLeft, y_of(s_.y_floor), right_, y_of(s_.y_floor));
-    // nothing is below the floor
+    // the space below the floor is free for its label
     put("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kScatterLeft + 6, y_of(s_.y_floor) + 13,
         escaped(s_.y_floor_label));
   }

@@ -1,9 +1,8 @@
-// Marks over two logarithmic axes as a picture: self-contained SVG. For error over cost: what lies lower left is
-// better.
+// Marks over two logarithmic axes as a picture: self-contained SVG. For error over cost: lower left is better.
 //
 // Marks of a group share a colour and are joined by a line in their order; each has its label beside it and its figures
-// in a tooltip. A value that is zero or below the floor is drawn on the floor, hollow: no more is known of it than
-// that. Values that are not finite, or not positive on x, are left out.
+// in a tooltip. A value that is zero or below the floor is drawn on the floor, hollow. Values that are not finite, or
+// not positive on x, are left out.
 #pragma once
 
 #include <string>

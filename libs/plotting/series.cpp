@@ -7,7 +7,8 @@
 namespace slew::plotting {
 namespace {
 
-constexpr double kLongestWay = 1.5;  // of the spacing; more: a sample is missing, whatever the rounding of times
+constexpr double kLongestSpacing =
+    1.5;  // in spacings; more: a sample is missing, with a margin for the rounding of times
 
 std::vector<double> sorted_instants(const Series& curve) {
   std::vector<double> instants = curve.time;
@@ -48,7 +49,7 @@ void keep_common_instants(std::span<Series> curves) {
 }
 
 bool is_gap(const Series& curve, std::size_t i) noexcept {
-  return curve.spacing > 0 && curve.time[i] - curve.time[i - 1] > kLongestWay * curve.spacing;
+  return curve.spacing > 0 && curve.time[i] - curve.time[i - 1] > kLongestSpacing * curve.spacing;
 }
 
 void part_at_gaps(std::span<Series> curves) {

@@ -1,4 +1,4 @@
-// One curve over time: plain numbers with a name and a unit, wherever they come from.
+// One curve over time: plain numbers with a name and a unit, from any source.
 #pragma once
 
 #include <cstddef>
@@ -23,10 +23,10 @@ struct Series {
 // missing.
 void keep_common_instants(std::span<Series> curves);
 
-// Samples are missing between this one and the one in front of it. Pre-condition: i > 0.
+// Whether samples are missing between this one and the one in front of it. Pre-condition: i > 0.
 [[nodiscard]] bool is_gap(const Series& curve, std::size_t i) noexcept;
 
-// A value that is none (NaN) in the place of the first of missing samples, so that no line is drawn over them.
+// Puts NaN in the place of the first of missing samples, so that no line is drawn over them.
 void part_at_gaps(std::span<Series> curves);
 
 }  // namespace slew::plotting

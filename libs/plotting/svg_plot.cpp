@@ -35,7 +35,7 @@ constexpr double kPixelsPerValueTick = 38;
 struct Panel {
   std::string unit{};
   std::vector<const Series*> series{};
-  std::string heading{};  // of the plot, in its first panel
+  std::string heading{};  // heading of the plot, in its first panel
   double legend_top = 0;  // y of the first legend row's base line
   double top = 0;         // y of the plot area
   Axis axis{};

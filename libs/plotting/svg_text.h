@@ -1,4 +1,4 @@
-// The look that all pictures share: fonts and colours.
+// The common look of all pictures: fonts and colours.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 
 namespace slew::plotting {
 
-// told apart also with a colour deficiency and in print
+// distinguishable also with a colour deficiency and in print
 inline constexpr std::array<std::string_view, 8> kColours = {"#1b6ca8", "#d95f02", "#2a9d5c", "#b8327a",
                                                              "#7b5cc4", "#b8860b", "#2ba3b8", "#5f6670"};
 

@@ -13,7 +13,7 @@ using wire::Topic;
 
 namespace {
 
-// The sample of a topic, where its reader looks for it.
+// Stores the sample of a topic where its reader looks for it.
 void hand_over(PartnerSamples& partners, Topic topic, const coupling::OwnSample& sample) noexcept {
   if (topic == Topic::mechanism) partners.mechanism = &sample.mechanism;
   if (topic == Topic::actuators) partners.actuators = &sample.actuators;
@@ -36,7 +36,7 @@ PartnerSamples DirectSession::partners_at_start(Role role) const noexcept {
   PartnerSamples partners;
   for (const node::Reading& reading : node::kReadings) {
     if (reading.reader != role || part(reading.writer) == nullptr) continue;
-    // what a role publishes as INIT stands in next_ until it starts
+    // the INIT sample of a role stands in next_ until it starts
     const auto& samples = reading.start == node::StartSample::init ? next_ : now_;
     hand_over(partners, reading.sample, samples[index(reading.writer)]);
   }

@@ -1,5 +1,5 @@
-// The physics of a scene stepped by hand in this process, without nodes and messages: what the nodes compute from INIT
-// and the ticks, in the same order. For replay and for a look at the start state.
+// The physics of a scene stepped by hand in this process, without nodes and messages: it computes the nodes' results
+// from INIT and the ticks, in the same order. For replay and for a look at the start state.
 #pragma once
 
 #include <array>
@@ -20,23 +20,23 @@
 
 namespace slew::session {
 
-// How many steps old the newest samples are that mechanics and hydraulics have of each other at step n, below
-// kKeptSamples: lost and late samples. For scenes in mode free_running, whose sides bridge such gaps.
+// Age in steps of the newest samples that mechanics and hydraulics have of each other at step n, below kKeptSamples:
+// lost and late samples. For scenes in mode free_running, whose sides bridge such gaps.
 using SampleAges = std::function<StepIndex(StepIndex n)>;
 inline constexpr StepIndex kKeptSamples = 128;
 
 class DirectSession {
  public:
-  // Without ages every sample that the scene exchanges comes in time.
+  // Without ages every sample of the scene's exchange arrives in time.
   explicit DirectSession(const scene::Scene& scene, SampleAges ages = {});
 
   // INIT: start states and samples 0. After reset() again.
   Status start();
   void reset();
-  // In the place of start(): the states of one step, at which mechanics and hydraulics have exchanged. Error
+  // Replaces start(): loads the states of one step, at which mechanics and hydraulics have exchanged. Error
   // (bad_input): a state is missing or not this scene's.
   Status load(std::span<const io::SavedState> states);
-  // The states after step n-1, in the place of the nodes'. Pre-condition: can_save().
+  // Returns the nodes' states after step n-1. Pre-condition: can_save().
   [[nodiscard]] std::vector<io::SavedState> save(StepIndex n) const;
   [[nodiscard]] Status can_save() const;
 
@@ -44,11 +44,11 @@ class DirectSession {
   void step(StepIndex n, std::span<const wire::Command> commands, std::span<const double> controls) noexcept;
 
   [[nodiscard]] const coupling::Subsystem* subsystem(wire::Role role) const noexcept;
-  // Those of mechanics and hydraulics, of each in its order.
+  // Variables of mechanics and hydraulics, each in its order.
   [[nodiscard]] std::vector<ElementVariable> variables() const;
   // Hash of the role's state now, 0 when the scene has no such role.
   [[nodiscard]] std::uint64_t state_hash(wire::Role role) const noexcept;
-  // What a physics role published last.
+  // Last published sample of a physics role.
   [[nodiscard]] const coupling::OwnSample& sample(wire::Role role) const noexcept;
   // Whether the role has a sample of this step.
   [[nodiscard]] bool has_sample(wire::Role role, StepIndex step) const noexcept {
@@ -61,12 +61,12 @@ class DirectSession {
   [[nodiscard]] const coupling::ActuatorSample& actuators() const noexcept {
     return sample(wire::Role::hydraulics).actuators;
   }
-  // Mechanics' hash at its INIT sample.
+  // Hash of mechanics at its INIT sample.
   [[nodiscard]] std::uint64_t init_hash() const noexcept { return init_hash_; }
-  // What the role's part of the last step reported, and how long it took [ns of the wall clock].
+  // Report of the role's part of the last step, and its duration [ns of the wall clock].
   [[nodiscard]] const StepReport& report(wire::Role role) const noexcept;
   [[nodiscard]] std::int64_t step_time_ns(wire::Role role) const noexcept;
-  // Why the last step failed, as "Arm is not finite" or the subsystem's own text; empty when it did not.
+  // Cause of the last step's failure, as "Arm is not finite" or the subsystem's own text; empty when it succeeded.
   [[nodiscard]] std::string failure() const;
 
  private:
@@ -91,11 +91,11 @@ class DirectSession {
   SubsystemFamily family_;
   std::array<std::unique_ptr<coupling::Subsystem>, kParts> parts_;
   node::ExchangeRules rules_;
-  SampleAges ages_;  // empty: as the scene exchanges
-  // of the last steps, by step, where the samples that a step uses are not those of its own instant
+  SampleAges ages_;  // empty: the ages of the scene's exchange
+  // samples of the last steps, by step, where a step uses samples of other instants than its own
   std::vector<Exchanged> history_;
   std::array<coupling::OwnSample, kParts> now_, next_;  // at t_n, t_{n+1}
-  std::array<StepReport, kParts> reports_{};            // of the last step
+  std::array<StepReport, kParts> reports_{};            // reports of the last step
   std::array<std::int64_t, kParts> step_ns_{};
   std::uint64_t init_hash_ = 0;
 };

@@ -33,7 +33,7 @@ constexpr int kRoundMs = 20;
 // after io is through, or a node is lost, the others have their own linger and this time
 constexpr std::int64_t kGraceNs = 2'000'000'000;
 constexpr std::int64_t kTermNs = 1'500'000'000;
-// a recorder closes when the disk has confirmed all that waited: 64 MiB of its own and what the system holds back
+// a recorder closes when the disk has confirmed all waiting data: 64 MiB of its own and the system's buffers
 constexpr std::int64_t kWritingNs = 600'000'000'000;
 // a node that is killed again and again has a cause that a restart does not remove
 constexpr int kMostRestarts = 3;
@@ -54,7 +54,7 @@ class Supervisor {
         name_(scene.name),
         give_up_after_(duration_of_seconds(scene.session.give_up_after)),
         rejoin_(duration_of_seconds(scene.session.rejoin)),
-        is_refusal_told_(options.is_refusal_told) {
+        is_refusal_reported_(options.is_refusal_reported) {
     const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
     require(scene::parse_cpu_places(places, cpus_));
     for (const scene::CpuPlace& place : cpus_) {
@@ -77,11 +77,11 @@ class Supervisor {
       look_after_children();
       start_again();
       start_others_when_io_is_there();
-      obey_interrupts();
+      apply_interrupts();
       enforce_deadlines();
       update_watcher();
     }
-    look_after_children();  // last words of the one that ended last
+    look_after_children();  // last output of the node that ended last
     observer_->drain();
     watcher_.end();
     return outcome();
@@ -92,15 +92,15 @@ class Supervisor {
     Role role = Role::io;
     std::unique_ptr<ChildProcess> process;
     bool is_reported = false;
-    bool is_asked_to_end = false;  // a signal is then no accident, even for one that does not catch it yet
+    bool has_end_request = false;  // a signal is then no accident, even if the node does not catch it yet
     int restarts = 0;
-    int given_up_before = 0;  // processes of its role, when it was started
-    bool is_awaited = false;  // it was killed, and is started again, or by somebody else, when io holds its place
+    int given_up_before = 0;             // number of given-up processes of its role when it was started
+    bool is_awaited = false;             // it was killed; it or another process takes its place while io holds that
     bool is_replaced_elsewhere = false;  // by a process that was started by hand
     bool is_killed_as_lost = false;
-    bool is_failure_told = false;
-    bool has_come = false;           // into the place that it was started for
-    std::int64_t not_before_ns = 0;  // of its next start
+    bool is_failure_reported = false;
+    bool has_come = false;           // it has taken the place that it was started for
+    std::int64_t not_before_ns = 0;  // earliest time of its next start
   };
 
   // values are needed by the watcher, and for the summary
@@ -231,16 +231,16 @@ class Supervisor {
            !transport::is_given_up(observer_->view().session(), view.status.header);
   }
 
-  // What was heard of it last; null: nothing.
-  [[nodiscard]] const NodeView* heard_of(const Node& node) const {
+  // The last view of the process; null: none was received.
+  [[nodiscard]] const NodeView* view_of(const Node& node) const {
     const NodeView& view = observer_->view().node(node.role);
     const bool is_it = view.is_known && view.status.pid == static_cast<std::uint32_t>(node.process->pid());
     return is_it ? &view : nullptr;
   }
 
-  // io holds a place until who came for it is ready.
+  // io holds a place until the replacement is ready.
   [[nodiscard]] bool has_come(const Node& node) const {
-    const NodeView* view = heard_of(node);
+    const NodeView* view = view_of(node);
     if (view == nullptr) return false;
     const wire::NodeState state = view->status.state;
     const bool has_stepped =
@@ -248,10 +248,10 @@ class Supervisor {
     return has_stepped || (state >= wire::NodeState::ready && state < wire::NodeState::ended);
   }
 
-  // io holds the place further for the next one: it has given up this one, or never heard of it.
+  // io holds the place for another process: it has given up this one, or never received from it.
   [[nodiscard]] bool is_place_free(const Node& node) const {
-    const bool was_unheard = node.process->poll_end()->signal == 0 && heard_of(node) == nullptr;
-    return has_lost_its_place(node) || was_unheard;
+    const bool was_unseen = node.process->poll_end()->signal == 0 && view_of(node) == nullptr;
+    return has_lost_its_place(node) || was_unseen;
   }
 
   void kill_those_given_up() {
@@ -272,7 +272,7 @@ class Supervisor {
       if (!node.is_awaited) continue;
       if (observer_->view().is_over() || deadline_ns_ != 0) {
         node.is_awaited = false;
-        // who asked the session to end did not wait for it
+        // after a request to end no replacement is awaited
         if (interrupts() > 0) continue;
         report_kill(node, "; the others end with code 4 and close the recording; run the session again");
       } else if (is_place_free(node)) {
@@ -286,18 +286,18 @@ class Supervisor {
     }
   }
 
-  // Without a pipe or a process for it the place is held all the same.
+  // If a pipe or a process cannot be made, io holds the place all the same.
   void start_in_its_place(Node& node) {
     try {
       node.process = make(node.role);
     } catch (const Failure& failure) {
       node.not_before_ns = monotonic_ns() + kStartAgainNs;
-      if (std::exchange(node.is_failure_told, true)) return;
+      if (std::exchange(node.is_failure_reported, true)) return;
       return watcher_.report(std::string("slewring: ") + failure.what() +
                              "; the others hold, and it is tried again until one comes or they end");
     }
     node.given_up_before = places_given_up(node.role);
-    node.is_awaited = node.is_reported = node.is_killed_as_lost = node.is_failure_told = node.has_come = false;
+    node.is_awaited = node.is_reported = node.is_killed_as_lost = node.is_failure_reported = node.has_come = false;
     ++node.restarts;
   }
 
@@ -333,10 +333,10 @@ class Supervisor {
     // every node is refused alike: once is enough
     constexpr std::string_view kRefused = "; to allow it, run as root, or set 'rtprio 95'";
     if (line.find(kRefused) != std::string::npos) {
-      if (is_refusal_told_) return;
-      is_refusal_told_ = true;
+      if (is_refusal_reported_) return;
+      is_refusal_reported_ = true;
     }
-    // what follows from another node's failure is kept apart from the cause
+    // messages that follow from another node's failure are kept apart from the cause
     const bool is_consequence = line.find("io ended the session") != std::string::npos ||
                                 line.find("because of a fault elsewhere") != std::string::npos;
     const bool is_warning = line.find("warning") != std::string::npos;
@@ -345,7 +345,7 @@ class Supervisor {
     if (std::find(kept.begin(), kept.end(), line) == kept.end()) kept.push_back(line);
   }
 
-  void say_kill(const Node& node, const std::string& what_follows) {
+  void report_process_end(const Node& node, const std::string& what_follows) {
     watcher_.report("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
                     ") " + node.process->poll_end()->text() + what_follows);
   }
@@ -356,8 +356,8 @@ class Supervisor {
                          awaited.restarts + 1, kMostRestarts);
     }
     return fmt::format(
-        "; it was started again {} times and is not any more; the others hold for {} in case that somebody else starts "
-        "one ('slewring node {} --session {}'), and then end with code 4 and close the recording",
+        "; it was started again {} times and will not be started any more; the others hold for {} for another process, "
+        "started with 'slewring node {} --session {}', and then end with code 4 and close the recording",
         kMostRestarts, node::seconds_text(rejoin_), awaited.process->name(), options_.session.session);
   }
 
@@ -371,13 +371,13 @@ class Supervisor {
     node.is_reported = true;
     const ProcessEnd& end = *node.process->poll_end();
     node.has_come = node.has_come || has_come(node);
-    // whose place io holds further
+    // io holds the place of a replacement that did not become ready
     const bool has_not_come = node.restarts > 0 && end.exit_code != 0 && !node.has_come && is_place_held(node);
     if (has_not_come) node.not_before_ns = monotonic_ns() + kStartAgainNs;
-    if ((end.signal != 0 || has_lost_its_place(node) || has_not_come) && !node.is_asked_to_end) {
+    if ((end.signal != 0 || has_lost_its_place(node) || has_not_come) && !node.has_end_request) {
       if (is_place_held(node)) {
         node.is_awaited = true;
-        return say_kill(node, what_follows_of(node));
+        return report_process_end(node, what_follows_of(node));
       }
       report_kill(node,
                   node.role == Role::recorder
@@ -400,7 +400,7 @@ class Supervisor {
 
   void send(Node& node, int signal) {
     if (node.process->poll_end()) return;
-    node.is_asked_to_end = true;
+    node.has_end_request = true;
     if (signal == SIGKILL) {
       const bool has_written = node.role == Role::recorder && is_recorder_awaited_;
       watcher_.report("slewring: the " + node.process->name() + " node (process " +
@@ -409,17 +409,17 @@ class Supervisor {
                                    : ") does not end; it was killed"));
     }
     node.process->send_signal(signal);
-    node.process->send_signal(SIGCONT);  // one that is stopped takes its signal only then
+    node.process->send_signal(SIGCONT);  // a stopped process takes its signal only then
   }
 
   void send_to_all(int signal) {
     for (Node& node : nodes_) send(node, signal);
   }
 
-  // The session is over; who does not end by itself is killed, a recorder only when it has had time to write.
+  // The session is over: kills the processes that have not ended, a recorder only after its time to write.
   void kill_the_rest(std::int64_t now_ns) {
     for (Node& node : nodes_) {
-      if (node.role != Role::recorder || now_ns > asked_ns_ + kWritingNs) {
+      if (node.role != Role::recorder || now_ns > end_request_ns_ + kWritingNs) {
         send(node, SIGKILL);
       } else if (!node.process->poll_end() && !is_recorder_awaited_) {
         is_recorder_awaited_ = true;
@@ -430,13 +430,14 @@ class Supervisor {
     }
   }
 
-  // A Ctrl-C behind the first signal kills who is left, and so does the first one when only a slow disk is waited for.
-  void obey_interrupts() {
+  // A Ctrl-C after the first signal kills the remaining processes; the first one does too when only a slow disk is
+  // waited for.
+  void apply_interrupts() {
     const int count = interrupts();
-    if (count == obeyed_) return;
-    const bool is_first = std::exchange(obeyed_, count) == 0;
+    if (count == applied_) return;
+    const bool is_first = std::exchange(applied_, count) == 0;
     const int meant = ctrl_cs();
-    const bool is_ctrl_c = meant != std::exchange(obeyed_ctrl_cs_, meant);
+    const bool is_ctrl_c = meant != std::exchange(applied_ctrl_cs_, meant);
     if (is_ctrl_c && (!is_first || is_recorder_awaited_)) return send_to_all(SIGKILL);
     end_session();
   }
@@ -446,9 +447,9 @@ class Supervisor {
     is_ending_ = true;
     if (deadline_ns_ == 0) deadline_ns_ = end_deadline_ns();
     if (is_ours(Role::io)) {
-      // io ends the session in order: END, the recorder closes, everybody leaves; its code is in the recording
+      // io ends the session in order: END, the recorder closes, all nodes leave; its code is in the recording
       const bool is_ctrl_c = interrupt_code() == static_cast<int>(ExitCode::interrupted);
-      nodes_.front().is_asked_to_end = true;
+      nodes_.front().has_end_request = true;
       nodes_.front().process->send_signal(is_ctrl_c ? SIGINT : SIGTERM);
       return;
     }
@@ -463,8 +464,8 @@ class Supervisor {
     if (now_ns > deadline_ns_ + kTermNs) {
       deadline_ns_ = now_ns;
       kill_the_rest(now_ns);
-    } else if (now_ns > deadline_ns_ && asked_ns_ == 0) {
-      asked_ns_ = now_ns;
+    } else if (now_ns > deadline_ns_ && end_request_ns_ == 0) {
+      end_request_ns_ = now_ns;
       send_to_all(SIGTERM);
     }
   }
@@ -479,7 +480,7 @@ class Supervisor {
     if (!watcher_.update(*observer_, now_ns, deadline_ns_ != 0)) end_session();
   }
 
-  // The newest recording of this scene since the start: for a recorder that could not say its path.
+  // The newest recording of this scene since the start: for a recorder that could not report its path.
   [[nodiscard]] std::string find_recording() const {
     std::string newest;
     std::error_code error;
@@ -499,21 +500,21 @@ class Supervisor {
     for (const Node& node : nodes_) {
       if (node.is_replaced_elsewhere) continue;
       const ProcessEnd& end = *node.process->poll_end();
-      // one that had to be killed although nobody asked the session to end is a lost one
+      // a node that was killed without a request to end the session is a lost one
       const ExitCode of_killed = interrupt_code() != 0 ? ExitCode::terminated : ExitCode::node_lost;
       const auto of_node = end.signal != 0 ? of_killed : static_cast<ExitCode>(end.exit_code);
       if (node.role == Role::io) {
         of_io = of_node;
-      } else if (of_others == ExitCode::ok && !(node.is_asked_to_end && of_node == ExitCode::terminated)) {
+      } else if (of_others == ExitCode::ok && !(node.has_end_request && of_node == ExitCode::terminated)) {
         of_others = of_node;
       }
     }
-    const bool was_asked_to_end = of_io == ExitCode::interrupted || of_io == ExitCode::terminated;
-    if (interrupt_code() != 0 && (of_io == ExitCode::ok || was_asked_to_end)) {
+    const bool had_end_request = of_io == ExitCode::interrupted || of_io == ExitCode::terminated;
+    if (interrupt_code() != 0 && (of_io == ExitCode::ok || had_end_request)) {
       return static_cast<ExitCode>(interrupt_code());
     }
-    // io was asked to end because of another one
-    if (was_asked_to_end && nodes_.front().is_asked_to_end && of_others != ExitCode::ok) return of_others;
+    // io received a request to end because of another node
+    if (had_end_request && nodes_.front().has_end_request && of_others != ExitCode::ok) return of_others;
     return of_io != ExitCode::ok ? of_io : of_others;
   }
 
@@ -521,7 +522,7 @@ class Supervisor {
     RunOutcome outcome;
     outcome.code = code();
     outcome.has_begun = are_others_started_ && observer_->view().has_session();
-    // nobody says "io ended it" when io has said why
+    // the message "io ended it" is left out when io has reported a cause
     outcome.messages = causes_.empty() && !is_node_killed_ ? consequences_ : causes_;
     outcome.recording = recording_;
     if (recording_.empty() && is_ours(Role::recorder) && are_others_started_) outcome.recording = find_recording();
@@ -530,7 +531,7 @@ class Supervisor {
     outcome.steps = std::max<StepIndex>(0, outcome.view.step() - begin_);
     outcome.wall_time = clock_.running();
     outcome.paused_time = clock_.paused();
-    outcome.is_refusal_told = is_refusal_told_;
+    outcome.is_refusal_reported = is_refusal_reported_;
     return outcome;
   }
 
@@ -540,20 +541,20 @@ class Supervisor {
   SimDuration step_;
   std::uint32_t roles_;
   std::vector<scene::CpuPlace> cpus_;
-  std::string name_;         // of the scene
+  std::string name_;         // name of the scene
   std::vector<Node> nodes_;  // io first, when it is ours
   std::unique_ptr<Observer> observer_;
   SimDuration give_up_after_;  // silence after which the others give a node up
   SimDuration rejoin_;         // time that io holds the place of a physics node that is lost; 0: it does not
   bool are_others_started_ = false;
   bool is_node_killed_ = false;
-  bool is_recorder_awaited_ = false;  // it still writes when everybody else has ended
+  bool is_recorder_awaited_ = false;  // the recorder still writes after all others have ended
   bool is_ending_ = false;
-  bool is_refusal_told_;
-  int obeyed_ = 0;  // signals, and of them those by Ctrl-C that were meant
-  int obeyed_ctrl_cs_ = 0;
+  bool is_refusal_reported_;
+  int applied_ = 0;  // number of applied signals, and of applied Ctrl-Cs
+  int applied_ctrl_cs_ = 0;
   std::int64_t deadline_ns_ = 0;
-  std::int64_t asked_ns_ = 0;  // when those that were left were asked to end
+  std::int64_t end_request_ns_ = 0;  // time of the request to the remaining nodes to end
   std::int64_t started_wall_ns_ = 0;
   bool has_stepped_ = false;
   RunClock clock_;

@@ -29,7 +29,7 @@ class InProcessRun {
     wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
     wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
     io::IoConfig config = io::make_config(session, wish);
-    config.name_check = {};  // nobody else is on this bus
+    config.name_check = {};  // no other process is on this bus
     config.join_timeout = node::kNoTimeout;
     roles_ = config.required_roles;
     io_ = std::make_unique<io::IoNode>(endpoint(Role::io), std::move(config));
@@ -97,7 +97,7 @@ class InProcessRun {
     for (node::Node* node : nodes_) {
       const ExitCode code = node->member().exit_code();
       const std::string& reason = node->member().reason();
-      // the node that failed first says why; the others only that it did
+      // the node that failed first reports the cause, the others only the consequence
       const bool is_consequence = reason.find("io ended the session") == 0 ||
                                   reason.find("the session was ended because of a fault elsewhere") == 0;
       if (code == ExitCode::ok || reason.empty()) continue;

@@ -10,7 +10,7 @@
 namespace slew::session {
 namespace {
 
-// a signal handler can reach nothing else than statics
+// a signal handler can reach statics only
 std::atomic<int> count{0};
 std::atomic<int> code{0};
 std::atomic<int> meant{0};

@@ -39,7 +39,7 @@ class Monolithic {
     next_ = -1;
   }
 
-  // Time 0, by whoever asks first.
+  // Time 0, by the first subsystem that calls it.
   Status start() {
     if (next_ >= 0) return Status::ok();
     if (Status status = monolith_->start(); !status.is_ok()) return status;
@@ -49,7 +49,7 @@ class Monolithic {
   }
 
   void change_parameter(StepIndex n, const coupling::ParameterChange& change) {
-    if (n < next_) return;  // another subsystem has told it, and the step was done
+    if (n < next_) return;  // another subsystem has started the step already, and it was done
     const std::optional<double> now = monolith_->parameter(change.path);
     if (!now) return;
     auto path = std::find(paths_.begin(), paths_.end(), change.path);
@@ -57,7 +57,7 @@ class Monolithic {
     ramps_.begin(static_cast<int>(path - paths_.begin()), *now, change.value, n, change.over, H_);
   }
 
-  // From t_n to t_n+1, by whoever steps first.
+  // From t_n to t_n+1, by the first subsystem that steps.
   void advance(StepIndex n, std::span<const double> controls) {
     if (n < next_ || !failure_.empty()) return;
     ramps_.apply(n, [this](int path, double value) {
@@ -87,7 +87,7 @@ class Monolithic {
     const monolith::SceneEquations& equations = monolith_->equations();
     return {equations.circuit_state(), equations.circuit_vapour(), work_, impulse_};
   }
-  // Empty: all is well.
+  // Empty: no failure.
   [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
 
  private:
@@ -95,7 +95,7 @@ class Monolithic {
   SimDuration H_;
   std::unique_ptr<monolith::Monolith> monolith_;
   std::vector<double> F_, work_, impulse_;  // by port; work and impulse of the last step
-  std::vector<std::string> paths_;          // of the parameters that were changed; the index is a ramp's handle
+  std::vector<std::string> paths_;          // paths of the changed parameters; the index is a ramp's handle
   coupling::ParameterRamps ramps_{kMostRamps};
   StepIndex next_ = -1;  // step that is not done yet; -1: not started
   std::string failure_;
@@ -103,7 +103,7 @@ class Monolithic {
 
 namespace {
 
-// One part of it as a subsystem: Shown follows.
+// One part of the system as a subsystem: Shown follows.
 template <typename Shown>
 class Part : public coupling::Subsystem {
  public:
@@ -172,7 +172,7 @@ class Part : public coupling::Subsystem {
   Shown shown_;
 
  private:
-  OwnSample last_;  // that was good
+  OwnSample last_;  // last good sample
 };
 
 class MechanicsPart final : public Part<mechanics::MechanicsSubsystem> {

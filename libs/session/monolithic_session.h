@@ -1,7 +1,7 @@
 // A session whose physics is one system (libs/monolith), seen as the subsystems of any other: the same samples,
-// variables and parameters, so that driver, recorder and replay need not know.
+// variables and parameters, so that driver, recorder and replay do not depend on it.
 //
-// The subsystems of a session share one monolith. The one whose step comes first integrates it to the end of that step,
+// The subsystems of a session share one monolith. The first subsystem to step integrates it to the end of that step,
 // stopped at every change that a tick makes; each then shows its own part of the state through the subsystem that
 // computes it elsewhere (follow()). A flex node takes part as always: it has no state of its own.
 // Not for real time: a step allocates and its cost is not bounded.
@@ -17,7 +17,7 @@ namespace slew::session {
 
 class Monolithic;
 
-// The subsystems of one session, split or monolithic as the scene says. Null where the scene has nothing of the kind.
+// The subsystems of one session, split or monolithic as the scene selects. Null where the scene has no such subsystem.
 // The scenes (all alike) outlive the subsystems. Not for several threads.
 class SubsystemFamily {
  public:

@@ -18,9 +18,9 @@ namespace {
 
 // reactions to a signal are at most this late
 constexpr SimDuration kLongestWait = milliseconds(20);
-constexpr SimDuration kAskAgain = milliseconds(250);
-// what io_node answered before its end may come behind the word of its end
-constexpr SimDuration kLastWords = milliseconds(200);
+constexpr SimDuration kRequestInterval = milliseconds(250);
+// io_node's replies from before its end may arrive after its last status
+constexpr SimDuration kLastReplies = milliseconds(200);
 
 }  // namespace
 
@@ -95,22 +95,23 @@ std::uint64_t Observer::send(wire::ControlRequest request) {
   return request.request;
 }
 
-// This program hears io_node and knows its readers. Whether io_node knows this program's writers, nobody tells.
-bool Observer::wait_until_heard() {
-  const auto is_heard = [this] {
+// This program receives from io_node and sees its readers. The middleware does not report whether io_node sees this
+// program's writers.
+bool Observer::wait_until_matched() {
+  const auto is_matched = [this] {
     const NodeView& io = view_.node(wire::Role::io);
     return io.health.header.session == view_.session().header.session &&
            transport_->matched_readers(Topic::control_request) > 0 && transport_->matched_readers(Topic::state) > 0;
   };
-  return wait_for([&] { return is_gone() || is_heard(); }, kAnswerTimeout) && !is_gone();
+  return wait_for([&] { return is_gone() || is_matched(); }, kAnswerTimeout) && !is_gone();
 }
 
 bool Observer::is_gone() const noexcept {
   return !view_.has_session() || view_.is_over();
 }
 
-wire::ControlReply Observer::ask(wire::ControlRequest request, SimDuration at_most,
-                                 const std::function<void()>& send_first) {
+wire::ControlReply Observer::request_reply(wire::ControlRequest request, SimDuration at_most,
+                                           const std::function<void()>& send_first) {
   if (request.request == 0) request.request = draw_number();
   wire::ControlReply answer;
   bool is_answered = false;
@@ -119,22 +120,22 @@ wire::ControlReply Observer::ask(wire::ControlRequest request, SimDuration at_mo
     answer = reply;
     is_answered = true;
   };
-  if (wait_until_heard()) {
-    // again until it is heard: io_node takes a copy for what it is
+  if (wait_until_matched()) {
+    // repeated until it is received: io_node recognises a copy
     const std::int64_t end_ns = monotonic_ns() + at_most.ns;
     while (!is_answered && !is_gone() && node::stop_requested.load() == 0 && monotonic_ns() < end_ns) {
       if (send_first) send_first();
       send(request);
-      wait_for([&] { return is_answered || is_gone(); }, kAskAgain);
+      wait_for([&] { return is_answered || is_gone(); }, kRequestInterval);
     }
-    if (is_gone()) wait_for([&] { return is_answered; }, kLastWords);
+    if (is_gone()) wait_for([&] { return is_answered; }, kLastReplies);
   }
   on_reply_ = nullptr;
-  if (!is_answered) say_why_not_answered(at_most);
+  if (!is_answered) throw_unanswered(at_most);
   return answer;
 }
 
-void Observer::say_why_not_answered(SimDuration waited) const {
+void Observer::throw_unanswered(SimDuration waited) const {
   if (is_gone()) {
     const std::string& reason = view_.node(wire::Role::io).status.reason;
     throw Failure(ExitCode::failed, "session '" + session_ + "' ended before it answered" +

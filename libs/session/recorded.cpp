@@ -1,5 +1,7 @@
 #include "session/recorded.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -40,7 +42,7 @@ Topic topic_of(const recording::RecordedChannel& channel) {
   return Topic::count;
 }
 
-// A damaged chunk ends the reading; what was in front of it counts.
+// A damaged chunk ends the reading; the messages in front of it count.
 void read_all(const Reader& reader, const recording::MessageFilter& filter,
               const std::function<Visit(const recording::RecordedMessage&)>& visit) {
   const Status status = reader.for_each(filter, visit);
@@ -67,7 +69,7 @@ std::optional<wire::SessionDescription> description_of(const Reader& reader) {
   filter.topics.emplace_back(node::to_text(Topic::session));
   std::optional<wire::SessionDescription> found;
   wire::SessionDescription session;
-  // a damaged part behind the description is none of its business
+  // a damaged part behind the description does not matter
   static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
     const bool is_it = transport::decode(message.payload, session) &&
                        node::to_text(session.header.session) == reader.identity().session_id &&

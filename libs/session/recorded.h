@@ -1,4 +1,4 @@
-// What a recording holds, for the verbs that read one: the session as an observer would have seen it, and variables as
+// Contents of a recording, for the verbs that read one: the session as an observer would have seen it, and variables as
 // curves.
 #pragma once
 
@@ -30,7 +30,7 @@ using node::TickSpan;
 // Messages of these topics.
 [[nodiscard]] recording::MessageFilter only(std::initializer_list<wire::Topic> topics);
 
-// Session, nodes, health and the names of all variables; values and extremes of the variables only when asked for.
+// Session, nodes, health and the names of all variables; values and extremes of the variables only on request.
 enum class Values : std::uint8_t { none, all };
 // patterns: of variables that the view keeps as curves.
 [[nodiscard]] SessionView view_recording(const recording::Reader& reader, Values values,
@@ -81,8 +81,8 @@ struct ClosingCounts {
 // Failure when neither can be read.
 [[nodiscard]] std::vector<scene::Asset> recorded_manifest(const recording::Reader& reader);
 
-// Folder beside a recording in which the files of its scene are kept: those of flexible bodies, of which a session's
-// text has only the names.
+// Folder beside a recording with the files of its scene: those of flexible bodies, of which a session's text has only
+// the names.
 [[nodiscard]] std::string recorded_assets(const std::string& recording);
 // Copies the scene's files there; nothing when it has none. Throws Failure.
 void keep_assets(const scene::Scene& scene, const std::string& folder, const std::string& recording);

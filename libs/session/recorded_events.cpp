@@ -21,8 +21,8 @@ std::string with_reason(std::string text, const std::string& reason) {
   return reason.empty() ? text : text + ": " + reason;
 }
 
-// in recordings of protocol version 3 the request alone says it, where it was recorded
-std::string asked(const wire::ControlReply& reply, const Requests& requests) {
+// in recordings of protocol version 3 only the request has the text, where it was recorded
+std::string request_text(const wire::ControlReply& reply, const Requests& requests) {
   if (!reply.asked.empty()) return reply.asked;
   const auto request = requests.find(reply.request);
   return request == requests.end() ? "request" : node::to_text(request->second);
@@ -41,14 +41,14 @@ std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
   const auto topic = [](Topic which) { return std::string(node::to_text(which)); };
   recording::MessageFilter filter;
   filter.topics = {topic(Topic::control_request)};
-  // a damaged chunk ends the reading; what was in front of it counts
+  // a damaged chunk ends the reading; the messages in front of it count
   static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
     wire::ControlRequest request;
     if (transport::decode(message.payload, request)) requests[request.request] = std::move(request);
     return Visit::go_on;
   }));
   filter.topics = {topic(Topic::control_reply), topic(Topic::controller_lease)};
-  std::set<std::uint64_t> answered;  // who has not heard its answer is told it again
+  std::set<std::uint64_t> answered;  // a reply is resent to a requester that has not received it
   static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
     wire::ControlReply reply;
     wire::ControllerLease lease;
@@ -60,7 +60,7 @@ std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
       if (reply.request != 0 && !answered.insert(reply.request).second) return Visit::go_on;
       const std::string answer = reply.is_accepted ? " accepted" : " refused";
       const std::string text =
-          reply.request == 0 ? reply.reason : with_reason(asked(reply, requests) + answer, reply.reason);
+          reply.request == 0 ? reply.reason : with_reason(request_text(reply, requests) + answer, reply.reason);
       events.push_back({reply.header.step, reply.header.epoch, text});
     }
     return Visit::go_on;

@@ -1,5 +1,5 @@
-// What happened in a recorded session besides its steps: requests and io's answers, what io did by itself (overruns,
-// load shedding), and who got and lost a controller's channel.
+// Events of a recorded session besides its steps: requests and io's replies, io's own actions (overruns, load
+// shedding), and changes of the holder of a controller's channel.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 namespace slew::session {
 
 struct RecordedEvent {
-  StepIndex step = 0;  // from which it holds
+  StepIndex step = 0;  // step from which it holds
   std::uint32_t epoch = 0;
   std::string text;
 };
 
-// In the order in which they were said.
+// In the order of publication.
 [[nodiscard]] std::vector<RecordedEvent> recorded_events(const recording::Reader& reader);
 
 }  // namespace slew::session

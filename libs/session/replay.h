@@ -2,7 +2,7 @@
 //
 // The physics runs in this process without nodes and messages (direct_session.h). Equal hashes in every sample mean
 // that every bit of every state was the same. Another build, C library or family of processors may differ in the last
-// bit: the recording's build is told.
+// bit: the output names the recording's build.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +26,9 @@ struct ReplayResult {
   std::uint64_t compared = 0;  // samples whose hash was compared
   std::uint64_t different = 0;
   std::uint64_t unrecorded = 0;        // computed steps without a recorded sample
-  std::uint64_t unreached_steps = 0;   // recorded ticks that nothing was computed with
+  std::uint64_t unreached_steps = 0;   // recorded ticks that were not computed
   std::uint64_t unreached_hashes = 0;  // recorded samples of steps that were not computed
-  std::string end;                     // where the ticks that were not reached begin, by name; empty: all were
+  std::string end;                     // name of the first tick that was not reached; empty: all were
   double compute_time = 0;             // s
   std::vector<std::string> gaps;       // in the ticks, behind which states follow; what is between was not compared
   std::string problem;                 // first difference, or gap without states behind it, by name; empty: none
@@ -37,16 +37,16 @@ struct ReplayResult {
   [[nodiscard]] bool is_whole() const noexcept { return unreached_steps == 0 && unreached_hashes == 0 && gaps.empty(); }
 };
 
-// Until where a recording is computed, and the session as it is there.
+// End of the computed part of a recording, and the session's states there.
 struct ReplayEnd {
-  StepIndex step = 0;  // of the last epoch; the next one at which all nodes exchange
+  StepIndex step = 0;  // step of the last epoch; replay continues to the next one at which all nodes exchange
   io::SavedSession saved;
 };
 
 // Throws Failure when the recording lacks its scene or its ticks.
-// assets: folder of the files that belong to the scene; those that the recording's manifest names must be there alike.
-// end: null computes everything; else up to its step, which is set to the one that was reached, and what is saved
-// there.
+// assets: folder of the files that belong to the scene; the files in the recording's manifest must be there unchanged.
+// end: null computes everything; otherwise replay stops at its step, and sets the step that was reached and the saved
+// states.
 [[nodiscard]] ReplayResult replay(const recording::Reader& reader, OnDifference on_difference,
                                   const std::string& assets, ReplayEnd* end = nullptr);
 

@@ -8,12 +8,12 @@
 namespace slew::session {
 namespace {
 
-// a reason that travels from node to node is cut on the wire, and gets a node's name in front
-constexpr std::size_t kTelling = 100;  // characters
+// a reason that is forwarded from node to node is cut on the wire, and gets a node's name in front
+constexpr std::size_t kCompared = 100;  // characters
 
 std::string_view reason_of(std::string_view message) {
   const std::size_t colon = message.find(": ");
-  return colon == std::string_view::npos ? message : message.substr(colon + 2).substr(0, kTelling);
+  return colon == std::string_view::npos ? message : message.substr(colon + 2).substr(0, kCompared);
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ std::vector<std::string> without_echoes(const std::vector<std::string>& messages
     bool is_echo = false;
     for (std::size_t j = 0; j < messages.size() && !is_echo; ++j) {
       const bool has_reason = i != j && messages[i].find(reason_of(messages[j])) != std::string::npos;
-      // of two that say the same, the shorter one is the source; of two equal ones the first
+      // of two equal texts the shorter one is the source; of two of equal length the first
       const bool is_longer = messages[i].size() > messages[j].size() || (messages[i] == messages[j] && i > j);
       is_echo = has_reason && is_longer;
     }

@@ -1,4 +1,4 @@
-// What a run was asked to do, and what came of it.
+// Options of a run, and its outcome.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace slew::session {
 
 class Observer;
 
-// Follows a run while it goes on: a status line, a keyboard, a measurement. This one reports messages alone.
+// Follows a run: a status line, a keyboard, a measurement. This one reports messages alone.
 class RunWatcher {
  public:
   RunWatcher() = default;
@@ -30,7 +30,7 @@ class RunWatcher {
   virtual void begin() {}
   // A message of the run or of one of its nodes: a line on standard error.
   virtual void report(const std::string& message);
-  // Some 50 times a second. False asks the session to end; is_ending: it has been asked.
+  // Called some 50 times a second. False requests the end of the session; is_ending: the request was sent.
   virtual bool update(Observer& observer, std::int64_t now_ns, bool is_ending);
   // The last node has ended.
   virtual void end() {}
@@ -40,14 +40,14 @@ struct RunOptions {
   scene::SceneOptions scene;
   node::SessionOptions session;
   std::string runs = "runs";           // folder of the recordings
-  double keep_free_mb = 256;           // room that a recording leaves to others
-  std::vector<std::string> remote;     // roles that somebody else starts
+  double keep_free_mb = 256;           // disk space that a recording leaves free
+  std::vector<std::string> remote;     // roles that are started elsewhere
   std::optional<double> join_timeout;  // s, longest wait for nodes and lockstep controllers; none: the nodes' own
   bool is_in_process = false;
   bool is_monolithic = false;
-  std::string rtol;  // of a monolithic run; empty: the scene's
+  std::string rtol;  // relative tolerance of a monolithic run; empty: the scene's
   bool is_real_time = false;
-  bool is_refusal_told = false;   // that it was refused: not once more
+  bool is_refusal_reported = false;   // that it was refused: not once more
   std::string cpus;               // "mechanics=1, hydraulics=0"; empty: as the scene says
   double added_work_us = 0;       // CPU time that every step of a physics node burns beside its own
   std::vector<std::string> kept;  // patterns of variables whose curves the outcome's view keeps
@@ -55,11 +55,11 @@ struct RunOptions {
   bool is_json = false;
   bool is_quiet = false;
 
-  // Folder of the scene file: its assets are there.
+  // Folder of the scene file and its assets.
   [[nodiscard]] std::string assets() const;
 };
 
-// Wall time of a run, looked at again and again. Time in which a paused session does no step is counted apart.
+// Wall time of a run, measured repeatedly. Time in which a paused session does no step is counted apart.
 class RunClock {
  public:
   void measure(std::int64_t now_ns, StepIndex step, bool is_paused) noexcept;
@@ -75,8 +75,8 @@ class RunClock {
 struct RunOutcome {
   ExitCode code = ExitCode::ok;
   bool has_begun = false;             // the session came into being
-  bool is_refusal_told = false;       // of real-time scheduling or locked memory
-  std::vector<std::string> messages;  // why it did not end well, the cause first
+  bool is_refusal_reported = false;   // a refusal of real-time scheduling or locked memory was reported
+  std::vector<std::string> messages;  // causes of a failure, the first cause first
   std::string recording;              // path; empty: none
   SessionView view;                   // as seen while it ran
   double wall_time = 0;               // s, from the first tick to the last, without pauses

@@ -15,8 +15,8 @@ using wire::Topic;
 
 namespace {
 
-// directories of 64 messages a node, some statuses; more than that is not said once
-constexpr std::size_t kMostEarly = 1024;
+// directories of 64 messages a node, some statuses: a session publishes no more than that once
+constexpr std::size_t kMostPending = 1024;
 
 }  // namespace
 
@@ -34,10 +34,10 @@ void SessionView::take_sample(std::span<const std::byte> bytes, Sample& sample) 
 
 void SessionView::take(Topic topic, std::span<const std::byte> bytes, std::optional<double> time) {
   // topics arrive in any order; those that are said only once must wait for the session they belong to
-  const bool is_said_once =
+  const bool is_published_once =
       topic == Topic::node_status || topic == Topic::variable_directory || topic == Topic::controller_lease;
-  if (!session_ && is_said_once && early_.size() < kMostEarly) {
-    early_.push_back({topic, {bytes.begin(), bytes.end()}});
+  if (!session_ && is_published_once && pending_.size() < kMostPending) {
+    pending_.push_back({topic, {bytes.begin(), bytes.end()}});
     return;
   }
   switch (topic) {
@@ -77,8 +77,8 @@ void SessionView::take_lease(std::span<const std::byte> bytes) {
   leases_[{lease.controller, lease.channel}] = lease;
 }
 
-// A session that starts under the same name after this one takes its place; one that only claims the name does not,
-// and one that is withdrawn gives the place back.
+// A session that starts under the same name after this one takes its place. A session that only claims the name does
+// not. A withdrawn session gives the place back.
 void SessionView::take_session(std::span<const std::byte> bytes) {
   wire::SessionDescription session;
   if (!transport::decode(bytes, session) || (!name_.empty() && session.name != name_)) return;
@@ -86,21 +86,21 @@ void SessionView::take_session(std::span<const std::byte> bytes) {
     return other && other->header.session == session.header.session;
   };
   if (session.header.phase == wire::Phase::ended) {
-    if (is_it(rival_)) rival_.reset();
-    if (is_it(session_)) look_at(std::exchange(rival_, std::nullopt));
+    if (is_it(claimant_)) claimant_.reset();
+    if (is_it(session_)) look_at(std::exchange(claimant_, std::nullopt));
     return;
   }
   if (session.header.phase != wire::Phase::running) return;
-  // its owner says anew how it stands
+  // its owner publishes its new state
   if (is_it(session_)) {
     session_ = std::move(session);
     return;
   }
   if (session_ && session.started_ns < session_->started_ns) {
-    rival_ = std::move(session);
+    claimant_ = std::move(session);
     return;
   }
-  rival_ = std::exchange(session_, std::nullopt);
+  claimant_ = std::exchange(session_, std::nullopt);
   look_at(std::move(session));
 }
 
@@ -109,7 +109,7 @@ void SessionView::look_at(std::optional<wire::SessionDescription> session) {
   nodes_ = {};
   variables_ = {};
   named_ = {};
-  has_told_ = {};
+  has_directory_ = {};
   index_.clear();
   leases_.clear();
   flags_ = {};
@@ -118,7 +118,7 @@ void SessionView::look_at(std::optional<wire::SessionDescription> session) {
   step_ = kJoinStep;
   if (!session_) return;
   name_ = session_->name;
-  for (const Early& early : std::exchange(early_, {})) take(early.topic, early.bytes);
+  for (const PendingMessage& message : std::exchange(pending_, {})) take(message.topic, message.bytes);
 }
 
 void SessionView::take_health(std::span<const std::byte> bytes) {
@@ -143,7 +143,7 @@ void SessionView::take_directory(std::span<const std::byte> bytes) {
   const auto role = static_cast<std::size_t>(directory.header.role);
   std::vector<VariableView>& variables = variables_[role];
   if (curves_) curves_->take(directory);
-  has_told_[role] = true;
+  has_directory_[role] = true;
   if (variables.size() < directory.total) variables.resize(directory.total);
   for (std::size_t i = 0; i < directory.entries.size(); ++i) {
     const std::size_t at = directory.first + i;
@@ -221,7 +221,7 @@ bool SessionView::has_whole_directory() const noexcept {
   for (const Role role : wire::kNodeRoles) {
     const auto index = static_cast<std::size_t>(role);
     if (role == Role::recorder || (session_->required_roles & bit(role)) == 0) continue;
-    if (!has_told_[index] || named_[index] < variables_[index].size()) return false;
+    if (!has_directory_[index] || named_[index] < variables_[index].size()) return false;
   }
   return true;
 }

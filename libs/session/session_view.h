@@ -1,6 +1,6 @@
-// What an observer knows of a session: who takes part, how each node does, the variables' names, values and extremes.
+// An observer's view of a session: its processes and their health, the variables' names, values and extremes.
 //
-// Fed with messages, from a live transport or from a recording. Messages of other sessions are passed over.
+// Fed with messages, from a live transport or from a recording. Messages of other sessions are ignored.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ struct NodeView {
   wire::Health health;
   StepTimes times;
   std::uint64_t steps_seen = 0;  // Health::steps_done of the last health message
-  // blocks of its variables, and those of them without values: left out under load
+  // blocks of its variables, and the number of blocks without values: left out under load
   std::uint64_t blocks = 0, blocks_left_out = 0;
   std::optional<StepIndex> left_out_since;
 };
@@ -44,12 +44,12 @@ struct VariableView {
   double value = std::numeric_limits<double>::quiet_NaN();
   double min = std::numeric_limits<double>::infinity();
   double max = -std::numeric_limits<double>::infinity();
-  StepIndex step = kJoinStep;  // of the value
+  StepIndex step = kJoinStep;  // step of the value
 };
 
 class SessionView {
  public:
-  // name: of the session to look at; empty takes the first one that is heard.
+  // name of the session to look at; empty takes the first one that is received.
   explicit SessionView(std::string name = {}) : name_(std::move(name)) {}
 
   // time: of the message in the session [s]; none: that of its step.
@@ -68,15 +68,15 @@ class SessionView {
   void set_times(wire::Role role, const StepTimes& times) { nodes_[static_cast<std::size_t>(role)].times = times; }
   // Highest step that a message of the session has named.
   [[nodiscard]] StepIndex step() const noexcept { return step_; }
-  // Somebody has paused the session: it stands because it was told to, not because it waits for a node.
+  // The session stands because a pause was requested, not because it waits for a node.
   [[nodiscard]] bool is_paused() const noexcept;
-  // io_node has said that the session is over.
+  // io_node has published the session's end.
   [[nodiscard]] bool is_over() const noexcept;
 
   // All variables known so far, by role and index.
   [[nodiscard]] std::vector<const VariableView*> variables() const;
   [[nodiscard]] const VariableView* find(std::string_view name) const;
-  // Its values are left out at present: who publishes them is to do less.
+  // Its values are left out at present, to reduce the load of their publisher.
   [[nodiscard]] bool is_left_out(std::string_view name) const;
   // io_node's last answer to this controller about a channel; null before.
   [[nodiscard]] const wire::ControllerLease* lease(const std::string& controller, const std::string& channel) const;
@@ -88,7 +88,7 @@ class SessionView {
   // Of all blocks of variables that have come, whatever their order.
   [[nodiscard]] std::uint64_t variables_digest() const noexcept { return variables_digest_; }
 
-  // Every node that offers variables has told all their names.
+  // Every node that offers variables has published all their names.
   [[nodiscard]] bool has_whole_directory() const noexcept;
 
  private:
@@ -103,19 +103,20 @@ class SessionView {
   void take_sample(std::span<const std::byte> bytes, Sample& sample);
   [[nodiscard]] NodeView* node_of(const wire::Header& header);
 
-  struct Early {
+  struct PendingMessage {
     wire::Topic topic;
     std::vector<std::byte> bytes;
   };
 
   std::string name_;
   std::optional<wire::SessionDescription> session_;
-  std::optional<wire::SessionDescription> rival_;  // of the same name; the one to look at when session_ is withdrawn
-  std::vector<Early> early_;                       // kept messages that came before the session was known
+  std::optional<wire::SessionDescription>
+      claimant_;                         // another session of the same name; it takes over when session_ is withdrawn
+  std::vector<PendingMessage> pending_;  // messages received before the session was known
   std::array<NodeView, wire::kRoles> nodes_;
   std::array<std::vector<VariableView>, wire::kRoles> variables_;
-  std::array<std::uint32_t, wire::kRoles> named_{};  // variables whose name has come
-  std::array<bool, wire::kRoles> has_told_{};        // how many it has
+  std::array<std::uint32_t, wire::kRoles> named_{};  // number of variables whose name has arrived
+  std::array<bool, wire::kRoles> has_directory_{};   // whether a role's directory has arrived
   std::map<std::string, std::pair<std::size_t, std::size_t>, std::less<>> index_;
   std::map<std::pair<std::string, std::string>, wire::ControllerLease> leases_;
   StepIndex step_ = kJoinStep;

@@ -34,7 +34,7 @@ void take(const transport::Received& message, Found& found) {
       const auto role = static_cast<std::size_t>(status.header.role);
       if (role >= wire::kRoles) return;
       FoundSession& session = found[status.header.session];
-      session.is_heard[role] = true;
+      session.has_status[role] = true;
       session.nodes[role] = std::move(status);
       return;
     }
@@ -52,7 +52,7 @@ void take(const transport::Received& message, Found& found) {
 
 bool is_running(const FoundSession& session) {
   const auto io = static_cast<std::size_t>(wire::Role::io);
-  const bool is_over = session.is_heard[io] && session.nodes[io].state >= wire::NodeState::ended;
+  const bool is_over = session.has_status[io] && session.nodes[io].state >= wire::NodeState::ended;
   return !session.description.name.empty() && !is_over;
 }
 

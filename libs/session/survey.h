@@ -1,4 +1,4 @@
-// Which sessions run on a domain.
+// The sessions that run on a domain.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@ namespace slew::session {
 struct FoundSession {
   wire::SessionDescription description;
   std::array<wire::NodeStatus, wire::kRoles> nodes{};
-  std::array<bool, wire::kRoles> is_heard{};
+  std::array<bool, wire::kRoles> has_status{};
   StepIndex step = kJoinStep;
 };
 
-// All sessions that speak within the time, by name; while there are none, waits on up to the longest time. Those that
+// All sessions that publish within the time, by name; while there are none, waits on up to the longest time. Those that
 // are over are left out.
 [[nodiscard]] std::vector<FoundSession> find_sessions(const node::SessionOptions& options, SimDuration time,
                                                       SimDuration longest);

@@ -25,7 +25,7 @@ std::vector<std::string> always_recorded(const scene::Scene& scene) {
 }
 
 bool has_owner(const scene::Scene& scene, std::string_view owner) {
-  auto& mutable_scene = const_cast<scene::Scene&>(scene);  // the tables bind to mutable Defs; nothing here writes
+  auto& mutable_scene = const_cast<scene::Scene&>(scene);  // the tables bind to mutable Defs; this code does not write
   const auto fits = [owner](const scene::ElementRef& element) { return scene::fits_pattern(element.name, owner); };
   const auto sections = scene::single_sections(mutable_scene), elements = scene::elements(mutable_scene);
   return std::any_of(sections.begin(), sections.end(), fits) || std::any_of(elements.begin(), elements.end(), fits);

@@ -1,7 +1,7 @@
-// What a scene has and its recording.variables leave out: told before a run, and by who asks a recording for it.
+// Warns about scene variables that recording.variables does not select: before a run, and when a recording lacks one.
 //
-// Which quantities an element has is known to its built model alone. Here a name is one of the scene when the part in
-// front of its first dot is an element, or a section, of the scene.
+// Only the built model has the quantities of an element. Here a name is one of the scene when the part in front of its
+// first dot is an element, or a section, of the scene.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace slew::session {
 
-// Those of the names and patterns that belong to the scene and that no pattern of recording.variables can meet.
+// Names and patterns that belong to the scene and that no pattern of recording.variables can meet.
 [[nodiscard]] std::vector<std::string> unrecorded(const scene::Scene& scene, std::span<const std::string> patterns);
 
 // A sentence for every plot of which something will not be drawn for that reason.
@@ -22,7 +22,7 @@ namespace slew::session {
 // "[Cyl_*, Bag.position.y]"
 [[nodiscard]] std::string recorded_patterns_text(const scene::Scene& scene);
 
-// Why a recording has nothing that fits these patterns. names: what it has.
+// Reason why a recording has no variable that fits these patterns. names: its variables.
 [[nodiscard]] std::string why_missing(const recording::Reader& reader, std::span<const std::string> patterns,
                                       std::span<const std::string> names);
 

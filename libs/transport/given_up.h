@@ -1,5 +1,5 @@
-// Processes whose place in a session was given to others (SessionDescription.given_up): whatever they still say counts
-// for nobody.
+// Processes whose place in a session was given to others (SessionDescription.given_up): their later messages are
+// ignored.
 #pragma once
 
 #include <algorithm>

@@ -14,7 +14,7 @@ struct SharedDomain {
   std::weak_ptr<CycloneDomain> domain;
 };
 
-// Cyclone has one domain of a number in a process; a program may join several sessions in it.
+// Cyclone allows one domain of a number in a process; a program may join several sessions in it.
 Status shared_domain(const Network& network, std::shared_ptr<CycloneDomain>& domain) {
   static std::mutex mutex;
   static std::map<std::uint32_t, SharedDomain> opened;

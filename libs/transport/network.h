@@ -1,4 +1,5 @@
-// How a process reaches the others, whatever middleware carries the messages: a network, and an endpoint on it.
+// The connection of a process to the others, whatever middleware carries the messages: a network, and an endpoint on
+// it.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +15,18 @@
 namespace slew::transport {
 
 inline constexpr std::uint32_t kMaxDomain = 230;  // its UDP ports are below 65536
-inline constexpr int kMaxProcesses = 60;          // of one domain on one host
-inline constexpr const char* kAnySession = "*";   // of a pure reader: messages of all sessions of the domain
+inline constexpr int kMaxProcesses = 60;          // per domain on one host
+inline constexpr const char* kAnySession =
+    "*";  // session name of a pure reader: messages of all sessions of the domain
 
-// Files of DDS Security: who may take part, and what this process may write and read (docs/security.md).
+// Files of DDS Security: which processes may take part, and what this process may write and read (docs/security.md).
 struct SecurityFiles {
   std::string identity_authority;     // certificate that signed those of all processes, PEM
   std::string permissions_authority;  // certificate that signed governance and permissions, PEM
-  std::string governance;             // what is protected and how, signed (S/MIME)
-  std::string certificate;            // of this process, PEM
+  std::string governance;             // rules of the protection, signed (S/MIME)
+  std::string certificate;            // certificate of this process, PEM
   std::string private_key;            // PEM
-  std::string permissions;            // of this process, signed (S/MIME)
+  std::string permissions;            // permissions of this process, signed (S/MIME)
   bool operator==(const SecurityFiles&) const = default;
 };
 
@@ -38,19 +40,19 @@ struct Network {
 
 struct Endpoint {
   std::string session;  // name, or kAnySession
-  std::string role;     // how others name this endpoint in messages, "mechanics"
+  std::string role;     // name of this endpoint in messages of others, "mechanics"
   TopicSet writes;      // publish() of another topic is refused
   TopicSet reads;
-  // Receives also the last blocks of variables of before it was found, since it answers each, and of the answers to
-  // controllers none of before, since they were another one's.
+  // A controller receives the last blocks of variables from before it was discovered, since it answers each of them. It
+  // receives no earlier answers to controllers, since those belong to another process.
   bool is_controller = false;
 };
 
 // Messages sent on this interface go beyond this machine. False too when there is no such interface.
 [[nodiscard]] bool leaves_machine(const std::string& interface);
 
-// Fills `transport`, or says which interface, peer or number is wrong and what there is instead. Endpoints of one
-// process in one domain share the network of the first. Thread-safe.
+// Fills `transport`, or reports which interface, peer or number is wrong and which ones exist. Endpoints of one process
+// in one domain share the network of the first. Thread-safe.
 [[nodiscard]] Status open_transport(const Network& network, const Endpoint& endpoint,
                                     std::unique_ptr<Transport>& transport);
 

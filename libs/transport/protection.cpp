@@ -9,7 +9,7 @@
 namespace slew::transport {
 
 SecurityFiles key_files(const std::filesystem::path& store, const std::string& identity) {
-  // as a child process in another folder sees it as well
+  // absolute path: a child process in another folder reads it too
   const std::filesystem::path folder = std::filesystem::absolute(store).lexically_normal();
   const std::filesystem::path own = folder / identity;
   return {folder / kIdentityAuthority, folder / kPermissionsAuthority,
@@ -36,8 +36,8 @@ Status protect(Network& network, const Protection& protection) {
   return Status::error(
       ExitCode::bad_input,
       fmt::format(
-          "--interface {} leaves this machine, and without keys whoever is on that network can read and steer the "
-          "session; nothing was started; name a key store with --keys ('slewring keys create' makes one), or say "
+          "--interface {} leaves this machine, and without keys every program on that network can read and steer the "
+          "session; nothing was started; name a key store with --keys ('slewring keys create' makes one), or add "
           "--insecure-lan",
           network.interface));
 }

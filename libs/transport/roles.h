@@ -15,30 +15,30 @@ inline constexpr int kIoPriority = 30;  // the clock goes before the nodes that 
 inline constexpr int kPhysicsPriority = 20;
 inline constexpr int kRecorderPriority = 10;  // in `real` pace no node waits for it: it compresses behind the physics
 
-// What a session must have for a role to be required.
+// What a session must have so that a role is required.
 enum class Needed : std::uint8_t { always, with_mechanics, with_hydraulics, with_modes, to_record, never };
 
 struct RoleTraits {
   wire::Role role;
   std::string_view name;  // in options, messages and certificates
   Needed needed;
-  bool is_follower;    // publishes samples every k-th step, which no other node waits for in the step itself
-  int priority;        // of SCHED_FIFO with --rt; 0: none
-  wire::Topic sample;  // the topic by which the others notice it: of its samples, else of its status
+  bool is_follower;    // publishes samples every k-th step, for which no other node waits in the step itself
+  int priority;        // SCHED_FIFO priority with --rt; 0: none
+  wire::Topic sample;  // the topic by which other nodes notice the role: its sample, else its status
   TopicSet writes;
   TopicSet reads;
-  TopicSet reads_on_request;  // beside `reads`, for who asks for it; keys allow it
+  TopicSet reads_on_request;  // additional topics that a program may subscribe to; keys allow it
 };
 
-// All roles in the order of wire::Role: first the five nodes, then what takes part from outside.
+// All roles in the order of wire::Role: first the five nodes, then the roles that take part from outside.
 [[nodiscard]] std::span<const RoleTraits> roles() noexcept;
 [[nodiscard]] const RoleTraits& traits(wire::Role role) noexcept;
 [[nodiscard]] std::optional<wire::Role> role_of(std::string_view name) noexcept;
-// What keys let a role read.
+// Topics that keys let a role read.
 [[nodiscard]] TopicSet topics_readable(wire::Role role) noexcept;
-// Bits of the nodes that write a topic.
+// One bit for each node that writes a topic.
 [[nodiscard]] std::uint32_t writers_of(wire::Topic topic) noexcept;
-// Bits of the nodes that read a topic.
+// One bit for each node that reads a topic.
 [[nodiscard]] std::uint32_t readers_of(wire::Topic topic) noexcept;
 // A physics node has the samples of its partners among the topics that it reads.
 [[nodiscard]] bool is_sample(wire::Topic topic) noexcept;

@@ -6,7 +6,7 @@ namespace slew::transport {
 namespace {
 
 constexpr std::int32_t kStepDepth = 1024;     // 200 ms at 5 kHz
-constexpr std::int32_t kDialogueDepth = 256;  // questions and answers of a few partners
+constexpr std::int32_t kDialogueDepth = 256;  // requests and replies of a few partners
 
 constexpr std::array<TopicTraits, wire::kTopics> kTraits = {{
     {wire::Topic::session, "slewring/session", "slewring::SessionDescription", 4, 1},

@@ -82,7 +82,7 @@ template <>
 inline constexpr wire::Topic kTopicOf<wire::Health> = wire::Topic::health;
 template <>
 inline constexpr wire::Topic kTopicOf<wire::ResendRequest> = wire::Topic::resend;
-// the one that recordings have; physics nodes say it on Topic::checkpoint
+// recordings have Topic::state; physics nodes publish their parts on Topic::checkpoint
 template <>
 inline constexpr wire::Topic kTopicOf<wire::StatePart> = wire::Topic::state;
 

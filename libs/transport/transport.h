@@ -21,13 +21,13 @@ struct Received {
   wire::Topic topic = wire::Topic::session;
   std::span<const std::byte> bytes;  // encapsulation header (4 bytes) and CDR
   std::int64_t source_ns = 0;        // writer's wall clock at the write
-  // Tells the writers of controller_input apart, also after one was lost from sight and found again. 0: not known.
+  // Number of the writer of controller_input, the same after the writer was lost and discovered again. 0: not known.
   std::uint64_t writer = 0;
 };
 
-// What the transport knows of a writer.
+// State of a writer, as the transport sees it.
 struct WriterSight {
-  bool has_left = false;  // it is known to be there no more
+  bool has_left = false;  // the transport no longer sees the writer
   std::string process{};  // "process 812 on crane2"; empty: not known
 };
 
@@ -41,22 +41,22 @@ class Transport {
   // Next received message of any subscribed topic; false when there is none now. One thread only.
   virtual bool take(Received& message) = 0;
 
-  // Who is behind Received::writer. Thread of take().
+  // The process behind Received::writer. Thread of take().
   [[nodiscard]] virtual WriterSight see_writer(wire::Topic, std::uint64_t) { return {}; }
 
   // Blocks until a message may be there or the monotonic deadline passes.
   virtual void wait_until(std::int64_t monotonic_deadline_ns) = 0;
 
-  // For messages about a JOIN that does not come about: who writes a topic as the transport sees it, e.g.
-  // "host:pid type slewring::Tick"; empty when the transport cannot tell.
+  // Writers of a topic as the transport sees them, e.g. "host:pid type slewring::Tick", for messages about a JOIN that
+  // fails; empty when the transport has no such list.
   [[nodiscard]] virtual std::vector<std::string> discovered_writers(wire::Topic topic) = 0;
 
-  // Readers of other processes that a message on this topic reaches now; a topic that keeps nothing loses what is sent
-  // earlier.
+  // Number of readers in other processes that a message on this topic reaches now; a topic that keeps no messages loses
+  // the earlier ones.
   [[nodiscard]] virtual std::size_t matched_readers(wire::Topic topic) const = 0;
 
-  // Who is in this session with a type or QoS that keeps them and this endpoint from hearing each other, a sentence
-  // each; without this they would only be silent. Thread-safe.
+  // Processes of this session that do not match this endpoint by type or QoS, a sentence each; without this report they
+  // would only be silent. Thread-safe.
   [[nodiscard]] virtual std::vector<std::string> misfits() = 0;
 };
 

@@ -1,7 +1,8 @@
 // The messages between the processes of a session, as plain structs. idl/slewring.idl is the same on the wire.
 //
 // Caps are the constants below and of the same name in the IDL; exceeding one is an error at load. Every message starts
-// with a Header that says who speaks in which session; one that does not fit is counted per cause, never applied.
+// with a Header that names the writer's role and session; a message that does not fit is counted per cause, never
+// applied.
 #pragma once
 
 #include <array>
@@ -21,7 +22,7 @@ inline constexpr std::uint32_t kProtocolVersion = 5;
 inline constexpr std::size_t kMaxChannels = 64;
 inline constexpr std::size_t kMaxCommandsPerTick = 16;
 inline constexpr std::size_t kMaxVariablesPerBlock = 1024;
-inline constexpr std::size_t kMaxVariables = 65'536;       // of one node
+inline constexpr std::size_t kMaxVariables = 65'536;       // per node
 inline constexpr StepIndex kMaxStep = StepIndex{1} << 53;  // 285,000 years at 1 ms
 inline constexpr std::size_t kMaxNameLength = 63;          // characters: names, paths of parameters, units
 inline constexpr std::size_t kMaxReasonLength = 255;       // characters: sentences, hosts, builds, file names
@@ -34,7 +35,7 @@ inline constexpr std::int64_t kLeastGiveUpNs = 500'000'000;
 inline constexpr std::int64_t kMostGiveUpNs = 60'000'000'000;
 inline constexpr std::size_t kMaxGivenUp = 64;                   // processes of one session
 inline constexpr std::size_t kMaxStatePart = 8192;               // bytes
-inline constexpr std::size_t kMaxStateBytes = 64 * 1024 * 1024;  // of one node
+inline constexpr std::size_t kMaxStateBytes = 64 * 1024 * 1024;  // per node
 
 using SessionId = std::array<std::uint8_t, 16>;
 
@@ -57,21 +58,21 @@ enum class Phase : std::uint8_t { join, init, running, ended };
 
 struct Header {
   SessionId session{};
-  Role role = Role::observer;     // of the writer
-  std::uint32_t incarnation = 0;  // tells processes of one role apart; not 0
+  Role role = Role::observer;     // role of the writer
+  std::uint32_t incarnation = 0;  // distinguishes processes of one role; not 0
   std::uint32_t epoch = 0;        // grows by one with every reset
   Phase phase = Phase::join;
   StepIndex step = kJoinStep;
   bool operator==(const Header&) const = default;
 };
 
-// What every physics sample carries beside the physics.
+// Part of every physics sample beside the physics.
 struct SampleState {
   coupling::Level level = coupling::Level::two;
   coupling::Quality quality = coupling::Quality::ok;
   StepIndex used_step = 0;       // partner step this sample was computed from
-  std::uint32_t lost = 0;        // partner samples that never came
-  std::uint64_t state_hash = 0;  // of the writer's whole state at t_step
+  std::uint32_t lost = 0;        // partner samples that never arrived
+  std::uint64_t state_hash = 0;  // hash of the writer's whole state at t_step
   std::uint32_t flags = 0;       // StepFlag bits of the finished step
   std::int32_t offender = -1;
   std::uint32_t substeps = 0;
@@ -140,7 +141,7 @@ struct Asset {
 
 enum class Pace : std::uint8_t { real, free };
 
-// A process that was silent for too long or died: its role is another one's, whatever it still says.
+// A process that was silent for too long or died: its role is free for another one, and its later messages are ignored.
 struct GivenUp {
   Role role = Role::io;
   std::uint32_t incarnation = 0;
@@ -148,9 +149,10 @@ struct GivenUp {
 };
 
 // Published by io_node, transient-local: all that another node needs to take part. In phase JOIN it only claims the
-// name and is for other io nodes; in phase RUNNING the session is to be joined. Said again when a process is given up.
+// name and is for other io nodes; in phase RUNNING nodes join the session. Published again when a process is given up.
 struct SessionDescription {
-  Header header;  // step: -1, or who joins takes the state that io has, and the session is, or begins, at this step
+  Header
+      header;  // step: -1, or a joining node takes the state that io holds, and the session is, or begins, at this step
   std::uint32_t protocol = kProtocolVersion;
   std::string name;
   std::string scene_name;
@@ -166,7 +168,7 @@ struct SessionDescription {
   std::uint32_t pid = 0;
   std::int64_t started_ns = 0;  // wall clock
   // from protocol version 4 on
-  std::int64_t rejoin_ns = 0;     // how long the place of a physics node that is lost is held; 0: it is not
+  std::int64_t rejoin_ns = 0;     // how long io holds the place of a lost physics node; 0: it does not
   std::vector<GivenUp> given_up;  // at most kMaxGivenUp
   // from protocol version 5 on
   std::int64_t give_up_ns = kGiveUpNs;  // silence after which a node is given up
@@ -175,7 +177,7 @@ struct SessionDescription {
 
 enum class NodeState : std::uint8_t { checking, joining, initialising, ready, running, holding, ended, fault };
 
-// One writer and topic that a node has heard: the evidence of JOIN.
+// One writer and topic from which a node has received: the evidence of JOIN.
 struct Heard {
   Role role = Role::io;
   std::uint32_t incarnation = 0;
@@ -194,7 +196,7 @@ struct NodeStatus {
   std::uint64_t self_test = 0;
   std::vector<Heard> heard;             // at most kMaxHeard
   StepIndex recorded_step = kJoinStep;  // recorder: all steps up to here are stored
-  std::string reason;                   // why fault, at most kMaxReasonLength characters
+  std::string reason;                   // cause of fault, at most kMaxReasonLength characters
   std::int32_t exit_code = 0;
   bool operator==(const NodeStatus&) const = default;
 };
@@ -220,7 +222,7 @@ struct Health {
   std::uint64_t overruns = 0;
   std::uint64_t resends_asked = 0;
   std::uint64_t resends_answered = 0;
-  std::uint64_t refused_messages = 0;  // that nothing can be done with: damaged, another session's, a second writer's
+  std::uint64_t refused_messages = 0;  // damaged messages, another session's, a second writer's
   double step_time_mean = 0;           // s, of Subsystem::step over the last second
   double step_time_max = 0;            // s
   std::int64_t slip_ns = 0;            // io_node: wall time given up so far
@@ -233,13 +235,13 @@ struct Health {
   Quantiles input_latency;         // io_node
   double response_recent = 0;      // s, largest since the last health message
   std::array<double, 4> waited{};  // s, for io (of io: controllers), mechanics, hydraulics, flex, all judged steps
-  std::int64_t allocations = -1;   // of the loop since READY, without the middleware's; -1: not counted
-  std::int64_t carrier_allocations = -1;  // of the middleware in the loop's thread; -1: not counted
-  std::uint64_t steps_due = 0;            // io_node: that the wall clock has asked for in this epoch
-  std::uint64_t steps_skipped = 0;        // io_node: of them given up with the slip
-  std::int64_t lag_ns = 0;                // io_node: behind the wall clock of the epoch, pauses apart; negative: ahead
-  std::int64_t rest_ns = 0;               // io_node: of it, what was not given up
-  std::uint64_t transitions = 0;          // io_node: changes that the overrun policy made
+  std::int64_t allocations = -1;   // heap calls of the loop since READY, without the middleware's; -1: not counted
+  std::int64_t carrier_allocations = -1;  // heap calls of the middleware in the loop's thread; -1: not counted
+  std::uint64_t steps_due = 0;            // io_node: steps that the wall clock requires in this epoch
+  std::uint64_t steps_skipped = 0;        // io_node: steps of steps_due given up with the slip
+  std::int64_t lag_ns = 0;        // io_node: delay behind the wall clock of the epoch, pauses apart; negative: ahead
+  std::int64_t rest_ns = 0;       // io_node: part of lag_ns that was not given up
+  std::uint64_t transitions = 0;  // io_node: changes that the overrun policy made
   bool operator==(const Health&) const = default;
 };
 
@@ -269,9 +271,9 @@ struct VariableBlock {
 enum class ControllerAction : std::uint8_t { acquire, write, release };
 inline constexpr double kTakeOver = 1;  // value of an `acquire` that takes the channel from its holder
 
-// From a controller to one input channel. Only the lease holder's values are used.
+// A value from a controller for one input channel. Only the lease holder's values are used.
 struct ControllerInput {
-  std::string session;     // session name: a controller need not know the id
+  std::string session;     // session name: a controller does not need the id
   std::string controller;  // its name, unique in the session
   std::string channel;     // input name, "Input_Lift"
   ControllerAction action = ControllerAction::write;
@@ -283,12 +285,12 @@ struct ControllerInput {
 
 struct ControllerLease {
   Header header;
-  std::string controller;  // whom this answers, or tells
+  std::string controller;  // the controller that this answers or informs
   std::string channel;
   bool is_granted = false;
-  std::string holder;  // who holds the channel now; empty: nobody
+  std::string holder;  // controller that holds the channel now; empty: none
   std::string reason;
-  std::uint64_t answers = 0;  // `sequence` of the ControllerInput that this answers; 0: nobody asked
+  std::uint64_t answers = 0;  // `sequence` of the ControllerInput that this answers; 0: unrequested
   bool operator==(const ControllerLease&) const = default;
 };
 
@@ -298,36 +300,37 @@ struct ControlRequest {
   std::string session;
   std::uint64_t request = 0;  // drawn at random by the sender
   ControlAction action = ControlAction::set_parameter;
-  std::string path;           // of the parameter
+  std::string path;           // the parameter's path
   double value = 0;           // SI; `step`: number of steps
   std::int64_t over_ns = -1;  // -1: the parameter's default ramp
   bool operator==(const ControlRequest&) const = default;
 };
 
 struct ControlReply {
-  Header header;  // step: from which it holds
+  Header header;  // step: the first one with the change
   std::uint64_t request = 0;
   bool is_accepted = false;
   double value = 0;  // get_parameter: SI, at present
   std::string reason;
-  std::string asked;  // what was requested, in words, at most kMaxReasonLength characters; empty: nothing (request 0)
+  std::string asked;  // text of the request, at most kMaxReasonLength characters; empty: no request (request 0)
   bool operator==(const ControlReply&) const = default;
 };
 
-// "I miss this step of your topic": answered by publishing the cached message again. Of topic checkpoint, from io to a
-// physics node: its state at this step is wanted; of topic state, to io: the one it has of a role.
+// Requests a missing step of a topic: the writer publishes the cached message again. With topic checkpoint, from io to
+// a physics node, it requests the node's state at this step; with topic state, from a node to io, the state that io
+// holds of a role.
 struct ResendRequest {
-  Header header;         // step: first one missing
-  Role role = Role::io;  // whose message is missing, whose state is wanted
+  Header header;         // step: first missing one
+  Role role = Role::io;  // role of the missing message or of the requested state
   std::uint8_t topic = 0;
   StepIndex last_step = 0;  // last one missing
   bool operator==(const ResendRequest&) const = default;
 };
 
-// Bytes of a node's whole state at a step, one part of several. Nobody but the same role's program reads them.
+// Bytes of a node's whole state at a step, one part of several. Only the same role's program reads them.
 struct StatePart {
-  Header header;              // step: the one that the state holds at
-  Role role = Role::io;       // whose state
+  Header header;              // step at which the state holds
+  Role role = Role::io;       // role that the state belongs to
   std::uint64_t request = 0;  // ControlRequest::request that it belongs to; 0: none
   std::uint64_t state_hash = 0;
   std::uint32_t total = 0;  // bytes of the state

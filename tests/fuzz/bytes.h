@@ -1,4 +1,4 @@
-// Input of a fuzzer as a sequence of choices; what is not there any more is 0.
+// Input of a fuzzer as a sequence of choices; 0 after its end.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,7 @@ class Choices {
     std::memcpy(&value, &bits, sizeof value);
     return value;
   }
-  // of a usual size, mostly
+  // usual sizes, mostly
   double usual() noexcept {
     const std::uint8_t first = byte();
     return first < 250 ? (static_cast<double>(first) - 125) / 100 : number();

@@ -1,4 +1,5 @@
-// The sample decoder: any bytes of any message are read or refused, and what is read says the same when it is encoded.
+// The sample decoder: any bytes of any message are decoded or refused, and a decoded message is encoded to the same
+// contents.
 //
 // The first byte is the topic, modulo kTopicNumbers so that kept inputs stay those of their topic when topics are
 // added.
@@ -19,7 +20,7 @@ void try_as(transport::Bytes bytes) {
   static Message message, again;
   static transport::ByteBuffer encoded, encoded_again;
   if (!transport::decode(bytes, message)) return;
-  // texts may hold what a writer of ours refuses, such as a NUL
+  // texts may hold characters that our writer refuses, such as a NUL
   if (!transport::encode(message, encoded)) return;
   fuzz::require(transport::decode(encoded, again));
   fuzz::require(transport::encode(again, encoded_again));
@@ -84,7 +85,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       try_as<wire::StatePart>(bytes);
       break;
     case wire::Topic::count:
-      break;  // and what is beyond is no topic
+      break;  // a larger number is no topic
   }
   return 0;
 }

@@ -1,4 +1,4 @@
-// The controller gate: whatever controllers say and when, controls stay finite and within their channel's scale, and a
+// The controller gate: with any values at any times, controls stay finite and within their channel's scale, and a
 // channel without a holder takes no controller's value.
 #include <cmath>
 #include <string>
@@ -42,22 +42,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::int64_t now_ns = 0;
   while (choices.has_more()) {
     const std::size_t channel = choices.below(3);
-    const std::string& who = kControllers[choices.below(4)];
+    const std::string& controller = kControllers[choices.below(4)];
     switch (choices.below(8)) {
       case 0:
-        static_cast<void>(gate.acquire(channel, who.empty() ? "joystick" : who, now_ns));
+        static_cast<void>(gate.acquire(channel, controller.empty() ? "joystick" : controller, now_ns));
         break;
       case 1:
-        static_cast<void>(gate.take_over(channel, who.empty() ? "joystick" : who, now_ns));
+        static_cast<void>(gate.take_over(channel, controller.empty() ? "joystick" : controller, now_ns));
         break;
       case 2:
-        static_cast<void>(gate.release(channel, who, step - static_cast<StepIndex>(choices.below(8))));
+        static_cast<void>(gate.release(channel, controller, step - static_cast<StepIndex>(choices.below(8))));
         break;
       case 3: {
         const double value = choices.usual();
         const StepIndex based_on = step - static_cast<StepIndex>(choices.below(16)) + 4;
         const std::uint64_t refused = gate.rejected_no_lease();
-        const bool is_taken = gate.write(channel, who, value, step, now_ns, based_on);
+        const bool is_taken = gate.write(channel, controller, value, step, now_ns, based_on);
         fuzz::require(!is_taken || (std::isfinite(value) && gate.rejected_no_lease() == refused));
         break;
       }

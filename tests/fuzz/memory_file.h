@@ -27,7 +27,7 @@ class MemoryFile {
   int fd_;
 };
 
-// A file that a fuzzer writes; TMPDIR says where.
+// A file that a fuzzer writes, in the folder TMPDIR.
 inline std::filesystem::path written_file(const std::string& ending) {
   return std::filesystem::temp_directory_path() / ("slewring_fuzz_" + std::to_string(getpid()) + ending);
 }

@@ -1,5 +1,5 @@
-// States in parts: whatever parts come in whatever order, a state is whole when each of its parts has come and holds
-// the bytes of its own parts alone; what has no place in it changes nothing.
+// States in parts: with any parts in any order, a state is whole when each of its parts has arrived, and holds the
+// bytes of its own parts alone; a part without a place in it changes nothing.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -53,7 +53,7 @@ wire::StatePart some_part(fuzz::Choices& choices) {
   return part;
 }
 
-// What CheckpointParts ought to hold: the places of one state that have come.
+// Expected contents of CheckpointParts: the places of one state that have arrived.
 class Expected {
  public:
   [[nodiscard]] static bool has_place(const wire::StatePart& part) {

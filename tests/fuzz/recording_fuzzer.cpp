@@ -84,7 +84,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint64_t readable = read_all(file.path());
   recording::Recovery recovery;
   const Status status = recording::recover(file.path(), recovered, recovery);
-  // what was recovered is whole, and has at least what could be read of the damaged file
+  // the recovered file is whole, and has at least the readable messages of the damaged file
   if (status.is_ok() && !recovery.was_whole) {
     std::unique_ptr<recording::Reader> reader;
     fuzz::require(recording::Reader::open(recovered, reader).is_ok());

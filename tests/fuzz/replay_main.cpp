@@ -15,7 +15,7 @@
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-// of the fuzzers that have one
+// defined by the fuzzers that need it
 extern "C" [[gnu::weak]] std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                                              unsigned int seed);
 
@@ -57,24 +57,25 @@ namespace {
 
 constexpr std::size_t kLongest = 65'536;
 
-// what a failed claim was about, for the signal handler
+// text of a failed claim, for the signal handler
 char now[512];
 
-extern "C" void tell(int signal) {
+extern "C" void report_fatal_signal(int signal) {
   static_cast<void>(std::fprintf(stderr, "the claim failed, or the program, with signal %d on %s\n", signal, now));
   std::_Exit(1);
 }
 
-// A sanitizer tells more, where it has a handler.
-void tell_of(int signal) {
+// A sanitizer reports more, where it has a handler.
+void report_signal(int signal) {
   struct sigaction present {};
   const bool is_known = sigaction(signal, nullptr, &present) == 0;
-  if (is_known && (present.sa_flags & SA_SIGINFO) == 0 && present.sa_handler == SIG_DFL) std::signal(signal, tell);
+  if (is_known && (present.sa_flags & SA_SIGINFO) == 0 && present.sa_handler == SIG_DFL)
+    std::signal(signal, report_fatal_signal);
 }
 
 void give(const Input& input, const std::string& name) {
   std::snprintf(now, sizeof now, "%s", name.c_str());
-  // as a copy whose end is its own: a sanitizer sees what is read beyond
+  // a copy with its own end: a sanitizer sees reads beyond it
   const Input copy(input.begin(), input.end());
   LLVMFuzzerTestOneInput(copy.data(), copy.size());
 }
@@ -114,7 +115,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: %s CHANGED FOLDER_OR_FILE...; there are no inputs\n", argv[0]);
     return 2;
   }
-  for (const int signal : {SIGILL, SIGTRAP, SIGABRT, SIGSEGV, SIGFPE}) tell_of(signal);
+  for (const int signal : {SIGILL, SIGTRAP, SIGABRT, SIGSEGV, SIGFPE}) report_signal(signal);
   std::vector<Input> inputs;
   for (const std::filesystem::path& path : files) {
     std::ifstream file(path, std::ios::binary);

@@ -1,5 +1,5 @@
-// Files of saved sessions: any file is read as it was written or refused; what is read can be written and read again,
-// and its states go through the parts in which they are given to the nodes.
+// Files of saved sessions: any file is read as it was written or refused; its contents can be written and read again,
+// and its states go through the parts in which the nodes receive them.
 //
 // Most changes break the check sum, and the reader goes no further. So three of four changed inputs get the right one
 // again.

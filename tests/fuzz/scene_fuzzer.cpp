@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const scene::Scene scene = scene::load_text({reinterpret_cast<const char*>(data), size}, "fuzz.yaml");
     static_cast<void>(scene::parameters(scene));
-    // what a session publishes of it is a scene again
+    // the scene text that a session publishes is a scene again
     const scene::Scene again = scene::load_text(scene.expanded_text, "fuzz.yaml");
     fuzz::require(again.expanded_text == scene.expanded_text);
   } catch (const scene::LoadError& error) {

@@ -1,5 +1,5 @@
-// States as nodes load them: whatever bytes say that they are a node's state, they are refused, which leaves the node
-// as after a reset, or they become a state that can be stepped and shown, the same one each time.
+// States as nodes load them: any bytes in the place of a node's state are refused, which leaves the node as after a
+// reset, or they become a state that can be stepped and shown, the same one each time.
 //
 // An input is a list of changes to a state that the node has just saved: the kept inputs outlive changes of layouts.
 // Sums are made right after the changes, in three of four inputs.
@@ -25,9 +25,9 @@ constexpr StepIndex kStep = 30;
 
 // ---- layouts, as in libs/node/checkpoint.cpp and libs/core/state_bytes.h -------------------------------------------
 
-constexpr std::size_t kSaid = 30;  // bytes in front of the sum
+constexpr std::size_t kFront = 30;  // bytes in front of the sum
 constexpr std::size_t kSum = sizeof(std::uint64_t);
-constexpr std::size_t kHeader = 32, kLengthAt = 16, kSumAt = 24;  // of a subsystem's own bytes
+constexpr std::size_t kHeader = 32, kLengthAt = 16, kSumAt = 24;  // offsets in a subsystem's own bytes
 
 std::uint64_t sum_of(const std::byte* data, std::size_t size) {
   StateHash hash;
@@ -44,10 +44,10 @@ void repair_own(std::vector<std::byte>& bytes, std::size_t begin) {
   std::memcpy(header + kSumAt, &sum, sizeof sum);
 }
 
-void repair_said(std::vector<std::byte>& bytes) {
-  if (bytes.size() < kSaid + kSum) return;
-  const std::uint64_t sum = sum_of(bytes.data(), kSaid);
-  std::memcpy(bytes.data() + kSaid, &sum, sizeof sum);
+void repair_front(std::vector<std::byte>& bytes) {
+  if (bytes.size() < kFront + kSum) return;
+  const std::uint64_t sum = sum_of(bytes.data(), kFront);
+  std::memcpy(bytes.data() + kFront, &sum, sizeof sum);
 }
 
 // Bytes, whole numbers and lengths that are others.
@@ -154,10 +154,10 @@ class Machine {
   }
   [[nodiscard]] Loaded loaded(coupling::Subsystem& subsystem, const coupling::PartnerSamples& partners) const {
     Loaded loaded{&subsystem, {}, partners, scene_.inputs.size(), 0};
-    wire::SampleState said;
-    said.state_hash = subsystem.state_hash();
-    node::save_node(subsystem, said, kStep, loaded.saved);
-    fuzz::require(loaded.saved.bytes.size() > kSaid + kSum + kHeader);
+    wire::SampleState published;
+    published.state_hash = subsystem.state_hash();
+    node::save_node(subsystem, published, kStep, loaded.saved);
+    fuzz::require(loaded.saved.bytes.size() > kFront + kSum + kHeader);
     subsystem.reset();
     loaded.reset_hash = subsystem.state_hash();
     return loaded;
@@ -184,15 +184,15 @@ void try_physics(const Loaded& of, bool has_right_sums, fuzz::Choices& choices) 
   node::Checkpoint checkpoint = of.saved;
   change(checkpoint.bytes, choices);
   if (has_right_sums) {
-    repair_said(checkpoint.bytes);
-    repair_own(checkpoint.bytes, kSaid + kSum);
+    repair_front(checkpoint.bytes);
+    repair_own(checkpoint.bytes, kFront + kSum);
   }
   const auto require_refused = [&](const Status& status) {
     fuzz::require(status.code == ExitCode::bad_input && !status.text.empty());
     fuzz::require(of.subsystem->state_hash() == of.reset_hash);
   };
-  // as a copy whose end is its own: a sanitizer sees what is read beyond
-  const std::size_t front = std::min(checkpoint.bytes.size(), kSaid + kSum);
+  // a copy with its own end: a sanitizer sees reads beyond it
+  const std::size_t front = std::min(checkpoint.bytes.size(), kFront + kSum);
   const std::vector<std::byte> own(checkpoint.bytes.begin() + static_cast<std::ptrdiff_t>(front),
                                    checkpoint.bytes.end());
   coupling::OwnSample sample;
@@ -204,10 +204,10 @@ void try_physics(const Loaded& of, bool has_right_sums, fuzz::Choices& choices) 
   } else {
     require_refused(loaded);
   }
-  wire::SampleState said;
-  const Status of_node = node::load_node(checkpoint, *of.subsystem, said, sample);
+  wire::SampleState published;
+  const Status of_node = node::load_node(checkpoint, *of.subsystem, published, sample);
   if (!of_node.is_ok()) return require_refused(of_node);
-  fuzz::require(loaded.is_ok() && said.state_hash == checkpoint.state_hash);
+  fuzz::require(loaded.is_ok() && published.state_hash == checkpoint.state_hash);
 }
 
 // ---- io

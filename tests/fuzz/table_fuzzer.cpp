@@ -1,5 +1,5 @@
 // Tables in CSV files: any bytes are a script, an export, a force table or a table of named columns, or are refused
-// with where and why. What was read is in order and finite, and the scene's own text gives it again.
+// with place and reason. Accepted values are in order and finite, and the scene's own text gives them again.
 #include <cmath>
 #include <filesystem>
 #include <fstream>

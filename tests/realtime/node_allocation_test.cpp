@@ -64,7 +64,7 @@ class LockStep {
     }
     return calls;
   }
-  // Heap calls of io's polls since this was last asked.
+  // Heap calls of io's polls since the last call.
   std::uint64_t io_calls() { return std::exchange(io_calls_, 0); }
   [[nodiscard]] StepIndex step() const { return io_->next_step(); }
   // Why the session ended, by every node.
@@ -78,12 +78,12 @@ class LockStep {
   [[nodiscard]] std::size_t nodes() const { return physics_.size(); }
 
  private:
-  // a clock of its own: on a busy machine nodes would ask for samples that are on their way
+  // a clock of its own: on a busy machine nodes would request samples that are on their way
   static constexpr std::int64_t kBetweenPolls = 10'000;
 
-  // a controller with long names, that says a value in every step
+  // a controller with long names, that writes a value in every step
   void steer() {
-    for (transport::Received heard; controller_.take(heard);) {
+    for (transport::Received received; controller_.take(received);) {
     }
     if (io_->next_step() == steered_) return;
     steered_ = io_->next_step();
@@ -124,7 +124,7 @@ TEST(NodeLoop, DoesNotAllocateOnceItsCachesAreFull) {
 TEST(NodeLoop, DoesNotAllocateWithAFlexNode) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "a sanitizer is in front of malloc";
   for (const std::string exchange : {"once", "every_step"}) {
-    // stated once, samples of flexible bodies come every tenth step and fill their caches so much later
+    // samples of flexible bodies come every tenth step and fill their caches that much later
     const StepIndex warm_up = exchange == "once" ? 10 * kWarmUp : kWarmUp;
     LockStep session(
         scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane_flexible.yaml", {"session.flexible=" + exchange}),

@@ -1,4 +1,4 @@
-// Chains of n links with hinges about x and y in turn, for figures that show what a link more costs.
+// Chains of n links with hinges about x and y in turn, for the cost of an additional link.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What the gate (`launch_scripts/test`) runs in part and `--nightly`, which sets SLEWRING_NIGHTLY, in full: rounds,
+// The gate (`launch_scripts/test`) runs these tests in part, `--nightly`, which sets SLEWRING_NIGHTLY, in full: rounds,
 // simulated time and seeds. A test with Nightly in its name is run by `--nightly` alone (cmake/SlewringBuild.cmake).
 #pragma once
 

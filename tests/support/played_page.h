@@ -1,4 +1,4 @@
-// What a page of ours does when its script runs: with Node.js and a stand-in for the browser, page_stub.js.
+// Runs the script of a page with Node.js and a stand-in for the browser, page_stub.js.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ inline bool has_node() {
   return std::system("node --version > /dev/null 2>&1") == 0;
 }
 
-// What drive() of the driver gives; null when the script failed, with its words on standard error.
+// Result of the driver's drive(); null when the script failed, with its messages on standard error.
 inline nlohmann::json played_page(const std::string& page, const std::string& driver) {
   const TemporaryFolder folder("played_page");
   const std::string html = (folder.path() / "page.html").string(), script = (folder.path() / "driver.js").string();
@@ -30,8 +30,8 @@ inline nlohmann::json played_page(const std::string& page, const std::string& dr
   std::array<char, 4096> block{};
   for (std::size_t got = 0; (got = fread(block.data(), 1, block.size(), pipe)) > 0;) out.append(block.data(), got);
   const bool has_failed = pclose(pipe) != 0;
-  const nlohmann::json said = nlohmann::json::parse(out, nullptr, false);
-  return has_failed || said.is_discarded() ? nlohmann::json(nullptr) : said;
+  const nlohmann::json result = nlohmann::json::parse(out, nullptr, false);
+  return has_failed || result.is_discarded() ? nlohmann::json(nullptr) : result;
 }
 
 }  // namespace slew::testing

@@ -120,7 +120,7 @@ class PlayedSession {
   void say_status(wire::Role role, wire::NodeState state, StepIndex step = kJoinStep) {
     say(wire::Topic::node_status, status(role, state, step));
   }
-  // The role has heard the node under test on these topics.
+  // Publishes that the role has received from the node under test on these topics.
   void say_heard(wire::Role role, wire::NodeState state, const wire::Header& node,
                  std::initializer_list<wire::Topic> topics) {
     wire::NodeStatus message = status(role, state);
@@ -146,7 +146,7 @@ class PlayedSession {
     say(wire::Topic::actuators, message);
   }
 
-  // What the node under test has said on a topic since the last call.
+  // Messages that the node under test has published on a topic since the last call.
   template <typename Message>
   [[nodiscard]] std::vector<Message> said(wire::Topic topic) {
     listen();

@@ -83,7 +83,7 @@ extern template class Dense<long double>;
 [[nodiscard]] Dense<long double> inverse(const Dense<long double>& A);
 [[nodiscard]] Dense<double> inverse(const Dense<double>& A);
 
-// Orthonormal basis of what the columns of A span. Smaller than threshold times the largest pivot is zero.
+// Orthonormal basis of the columns of A. Smaller than threshold times the largest pivot is zero.
 [[nodiscard]] Dense<long double> column_basis(const Dense<long double>& A, long double threshold);
 [[nodiscard]] Index column_rank(const Dense<long double>& A, long double threshold);
 

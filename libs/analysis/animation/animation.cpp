@@ -18,7 +18,7 @@ namespace {
 
 using plotting::colour_of;
 
-constexpr double kMargin = 0.08;                   // of a view's width
+constexpr double kMargin = 0.08;                   // share of a view's width
 constexpr double kPictureWidth = 1000, kGap = 30;  // px
 constexpr double kHeading = 60, kFaintest = 0.15;  // px; opacity of the first instant
 
@@ -39,7 +39,7 @@ const turn=(q,p)=>{const[w,x,y,z]=q,n=w*w+x*x+y*y+z*z,u=[y*p[2]-z*p[1],z*p[0]-x*
  v=[y*u[2]-z*u[1],z*u[0]-x*u[2],x*u[1]-y*u[0]];return p.map((c,i)=>c+2*(w*u[i]+v[i])/n)};
 const place=(b,k,p)=>{const s=D.bodies[b].pose;if(!s)return p;const o=7*k;return add(s.slice(o,o+3),turn(s.slice(o+3,o+7),p))};
 const colour=b=>b==0?'#b5b5b5':D.colours[(b-1)%D.colours.length];
-// what moves, over all instants, in both views
+// extent of the motion over all instants, in both views
 let reach=0,middle=[0,0,0];{let lo=[1/0,1/0,1/0],hi=[-1/0,-1/0,-1/0];
  D.bodies.forEach((b,i)=>{if(!b.pose)return;const step=Math.max(1,Math.floor(D.time.length/60));
   for(let k=0;k<D.time.length;k+=step)for(const p of[[0,0,0],...b.lines.flat()]){const q=place(i,k,p);for(let a=0;a<3;a++){lo[a]=Math.min(lo[a],q[a]);hi[a]=Math.max(hi[a],q[a])}}});
@@ -116,7 +116,7 @@ math::Vec3 placed(const Motion& motion, std::size_t body, std::size_t instant, c
   return pose.position + math::rotation_of(pose.orientation) * to_vec(point);
 }
 
-// One of the views: a plane, and what of the motion it has to hold.
+// One of the views: a plane, and the part of the motion that it has to hold.
 class View {
  public:
   View(const Triple& right, const Triple& up) : right_(to_vec(right)), up_(to_vec(up)) {}
@@ -133,7 +133,7 @@ class View {
     top_ = top;
     return scale_ * (high_[1] - low_[1]);
   }
-  // what lies outside is not seen
+  // parts outside are not visible
   [[nodiscard]] std::string clip(std::string_view id) const {
     return fmt::format(
         "<clipPath id=\"{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/></clipPath>\n", id,

@@ -14,10 +14,10 @@ namespace slew::analysis {
 
 struct Pose {
   math::Vec3 position{};           // m, in Ground
-  math::Quaternion orientation{};  // of the body in Ground
+  math::Quaternion orientation{};  // orientation of the body in Ground
 };
 
-// Times between which nothing was recorded.
+// A time without recorded poses.
 struct Gap {
   double from = 0, to = 0;  // s
 };
@@ -29,14 +29,14 @@ struct Motion {
   std::vector<Gap> gaps{};               // ascending
 };
 
-// At most `instants` of them, evenly, the first and the last among them.
+// At most `instants` instants, evenly spaced, the first and the last among them.
 [[nodiscard]] Motion thinned(const Motion& motion, std::size_t instants);
 
 // The smallest n for which every n-th instant and the last one are at most so many. Pre-condition: at least 2.
 [[nodiscard]] std::size_t stride_for(const Motion& motion, std::size_t most);
 [[nodiscard]] Motion every_nth(const Motion& motion, std::size_t n);
 
-// One file that asks for nothing else: play, slider, speed, direction of the side view.
+// One file without external resources: play, slider, speed, direction of the side view.
 [[nodiscard]] std::string animation_html(const MachineDrawing& machine, const Motion& motion);
 
 // All instants of the motion over each other, the last one darkest. Pre-condition: at least one.

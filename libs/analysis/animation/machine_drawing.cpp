@@ -20,8 +20,8 @@ using multibody::ShapeDef;
 constexpr int kRim = 24;             // lines of a circle
 constexpr double kFlat = 0.97;       // cosine between faces whose common edge is not drawn
 constexpr double kSamePoint = 1e-9;  // m
-constexpr double kMark = 0.03;       // of the machine's size: half a cross in the place of a body that has no line
-constexpr double kLoneMark = 0.1;    // m, where nothing gives a size
+constexpr double kMark = 0.03;     // share of the machine's size: half a cross in the place of a body that has no line
+constexpr double kLoneMark = 0.1;  // m, where nothing gives a size
 
 Triple to_triple(const Vec3& v) {
   return {v[0], v[1], v[2]};
@@ -138,8 +138,8 @@ void add_star(const Triple& hub, const std::vector<Triple>& points, std::vector<
   }
 }
 
-// Largest distance of any point from the origin of its body, and of any body from the one that it is placed on; the
-// ground may reach much further than the machine.
+// Largest distance of any point from the origin of its body, and of any body from its parent; the ground may reach much
+// further than the machine.
 double size_of(const multibody::MechanicsDef& mechanics, const MachineDrawing& drawing) {
   double size = 0;
   for (const multibody::BodyDef& body : mechanics.bodies) size = std::max(size, math::norm(to_vec(body.position)));
@@ -151,7 +151,7 @@ double size_of(const multibody::MechanicsDef& mechanics, const MachineDrawing& d
   return size;
 }
 
-// A cross where a body is that would be seen by nothing else: no joint, force or shape away from its centre of mass.
+// Draws a cross for a body that has no joint, force or shape away from its centre of mass.
 void mark_bare_bodies(const multibody::MechanicsDef& mechanics, MachineDrawing& drawing) {
   const double size = size_of(mechanics, drawing);
   const double mark = size > 0 ? kMark * size : kLoneMark;

@@ -1,4 +1,4 @@
-// A machine as lines: what its bodies, joints, shapes and cylinders look like without a picture of them.
+// A machine as lines: an outline of its bodies, joints, shapes and cylinders.
 //
 // A body is a star from the joint that carries it to its centre of mass and to the points at which joints and forces
 // act, and its contact shapes: edges of boxes and of meshes, rims of round shapes, rims of height fields. A body

@@ -18,17 +18,17 @@ using wire::Role;
 // origins and centres of mass of all bodies: "Bag.position.y", not a joint's "Hinge.position"
 constexpr const char* kDefaultVariables[] = {"*.position.?", "*.center_of_mass.?"};
 constexpr std::int64_t kMostSamples = 20'000;
-// a reference that keeps its energy to this share is taken to have nothing that changes it
+// relative energy drift of a reference below which the scene counts as conservative
 constexpr double kEnergyIsKept = 1e-6;
-// the observed run, with its readings, in timed ones
+// cost of the observed run with its readings, in timed runs
 constexpr double kObservedRun = 2;
 
-// The whole of the work, in sub-steps, to tell how far it is.
+// The whole of the work in sub-steps, for the progress.
 class Work {
  public:
   explicit Work(const Progress& progress) : progress_(progress) {}
   void expect(double amount) { all_ += amount; }
-  // A part that asks whether to go on.
+  // The callback of a part, which returns whether to go on.
   [[nodiscard]] GoesOn part(std::string doing, double amount) {
     return [this, doing = std::move(doing), amount](double share) {
       return progress_(doing, std::min(1.0, (done_ + share * amount) / all_));
@@ -43,8 +43,8 @@ class Work {
 
 class Comparer {
  public:
-  Comparer(const ComparisonWish& wish, const Progress& progress)
-      : wish_(wish), work_(progress), base_(scene::load_scene(wish.scene)) {
+  Comparer(const ComparisonOptions& options, const Progress& progress)
+      : options_(options), work_(progress), base_(scene::load_scene(options.scene)) {
     if (!base_.has_mechanics()) {
       throw Failure(ExitCode::bad_input, "the scene has no bodies; there are no formulations to compare");
     }
@@ -54,7 +54,7 @@ class Comparer {
     }
     if (!(base_.session.duration > 0)) {
       throw Failure(ExitCode::bad_input,
-                    "the scene runs until it is stopped; nothing was run; say with --until how long to compare");
+                    "the scene runs until it is stopped; nothing was run; set --until to the time to compare");
     }
     until_ = duration_of_seconds(base_.session.duration);
     const SimDuration H = base_.session.step_duration();
@@ -68,7 +68,7 @@ class Comparer {
     result_.until = until_.seconds();
     result_.communication_step = base_.session.step;
     result_.has_hydraulics = base_.has_hydraulics();
-    result_.repeats = wish_.repeats;
+    result_.repeats = options_.repeats;
     result_.wanted_rows = planned_.size();
     expect_work();
     if (!run_reference()) return std::move(result_);
@@ -84,10 +84,10 @@ class Comparer {
     std::optional<scene::Scene> scene;
   };
 
-  // refused rows are told once when the step makes no difference
+  // a refusal that does not depend on the step is reported once
   void find_rows() {
-    for (const Configuration& configuration : configurations(wish_, base_)) {
-      Configured configured = load(wish_, base_, configuration);
+    for (const Configuration& configuration : configurations(options_, base_)) {
+      Configured configured = load(options_, base_, configuration);
       Planned planned{{.configuration = configuration, .refusal = configured.refusal}, std::move(configured.scene)};
       smallest_step_ = std::min(smallest_step_, configuration.step);
       if (!planned.row.refusal.empty() && !planned_.empty()) {
@@ -123,7 +123,7 @@ class Comparer {
       }
     }
     const std::vector<std::string> bodies(std::begin(kDefaultVariables), std::end(kDefaultVariables));
-    result_.variables = scene::choose(wish_.variables.empty() ? bodies : wish_.variables, names);
+    result_.variables = scene::choose(options_.variables.empty() ? bodies : options_.variables, names);
     for (std::size_t column = 0; column < result_.variables.size(); ++column) {
       const auto at = std::find(names.begin(), names.end(), result_.variables[column]) - names.begin();
       const std::string& unit = units[static_cast<std::size_t>(at)];
@@ -137,21 +137,21 @@ class Comparer {
   [[nodiscard]] double substeps(double step) const { return until_.seconds() / std::min(step, base_.session.step); }
 
   void expect_work() {
-    reference_step_ = reference_step(wish_, base_, smallest_step_);
+    reference_step_ = reference_step(options_, base_, smallest_step_);
     work_.expect(substeps(reference_step_) * 1.5);
     for (const Planned& planned : planned_) {
       if (planned.row.has_run()) {
-        work_.expect(substeps(planned.row.configuration.step) * (kObservedRun + wish_.repeats));
+        work_.expect(substeps(planned.row.configuration.step) * (kObservedRun + options_.repeats));
       }
     }
   }
 
   // ---- the reference ------------------------------------------------------------------------------------------
 
-  // the default formulation where the scene has it, else the first that runs
+  // the default formulation where the scene allows it, else the first that runs
   void choose_reference() {
     Configuration wanted = default_configuration(reference_step_);
-    if (!load(wish_, base_, wanted).scene) {
+    if (!load(options_, base_, wanted).scene) {
       const auto runs =
           std::find_if(planned_.begin(), planned_.end(), [](const Planned& p) { return p.row.has_run(); });
       wanted.formulation = runs->row.configuration.formulation;
@@ -163,7 +163,7 @@ class Comparer {
   [[nodiscard]] Observation observe_reference(double step, const char* doing, double work) {
     Configuration configuration = result_.reference;
     configuration.step = step;
-    const Configured configured = load(wish_, base_, configuration);
+    const Configured configured = load(options_, base_, configuration);
     if (!configured.scene) throw Failure(ExitCode::bad_input, "the reference cannot run: " + configured.refusal);
     Observation run = observe_run(*configured.scene, result_.variables, until_, sample_, work_.part(doing, work));
     work_.finish(work);
@@ -219,9 +219,9 @@ class Comparer {
       work_.finish(kObservedRun * work);
       if (run.is_interrupted) return false;
       judge(run, planned.scene->mechanics, row);
-      row.cost = time_runs(*planned.scene, run.steps, wish_.repeats, run.state_hashes,
-                           work_.part(doing + ", timed", work * wish_.repeats));
-      work_.finish(work * wish_.repeats);
+      row.cost = time_runs(*planned.scene, run.steps, options_.repeats, run.state_hashes,
+                           work_.part(doing + ", timed", work * options_.repeats));
+      work_.finish(work * options_.repeats);
       if (row.cost.is_interrupted) return false;
     }
     result_.rows.push_back(row);
@@ -259,7 +259,7 @@ class Comparer {
     return relative(largest);
   }
 
-  // a motion that is farther from the reference than the reference goes at all has nothing to do with it any more
+  // time from which the motion is farther from the reference than the reference's own range: the two are unrelated then
   [[nodiscard]] std::optional<double> parted_at(const Observation& run) const {
     for (std::size_t i = 0; i < run.samples(); ++i) {
       for (const VariableClass& one : result_.classes) {
@@ -273,7 +273,7 @@ class Comparer {
     return std::nullopt;
   }
 
-  const ComparisonWish& wish_;
+  const ComparisonOptions& options_;
   Work work_;
   scene::Scene base_;
   SimDuration until_, sample_;
@@ -303,8 +303,8 @@ Difference difference(const Observation& run, const Observation& reference, cons
   return result;
 }
 
-Comparison compare(const ComparisonWish& wish, const Progress& progress) {
-  return Comparer(wish, progress).compare();
+Comparison compare(const ComparisonOptions& options, const Progress& progress) {
+  return Comparer(options, progress).compare();
 }
 
 }  // namespace slew::analysis

@@ -25,7 +25,7 @@ std::string formulation_and_integrator(const Configuration& configuration) {
   return configuration.formulation + ", " + configuration.integrator;
 }
 
-// "yes", or why not
+// "yes", or the reason for no
 std::string verdict(const ComparedRow& row) {
   if (!row.has_run()) return "cannot run: " + row.refusal;
   if (!row.failure.empty()) return fmt::format("no: at {:.4g} s {}", row.failed_at, row.failure);
@@ -33,7 +33,7 @@ std::string verdict(const ComparedRow& row) {
   return "yes";
 }
 
-// what is within the reference's own error says only that
+// a difference within the reference's own error is only an upper bound
 std::string difference_text(double value, double reference_error) {
   return value < reference_error ? '<' + error_number(reference_error) : error_number(value);
 }
@@ -114,7 +114,7 @@ std::string fitting(const std::vector<std::string>& variables) {
   return fmt::format("{} variables, {} to {}", variables.size(), variables.front(), variables.back());
 }
 
-// steps near a singular position can be worse when they are shorter, which an estimate by two steps does not see
+// shorter steps near a singular position can be worse, which an estimate from two steps does not show
 bool is_reference_in_doubt(const Comparison& comparison) {
   constexpr double kClearlyBetter = 0.1;
   constexpr double kRounding = 1e-12;
@@ -173,7 +173,7 @@ Json json_of(const Comparison& comparison, const ComparedRow& row) {
   return json;
 }
 
-// what was run against what, and what the columns mean
+// the runs, the reference, and the meaning of the columns
 std::string preamble(const Comparison& comparison) {
   std::string text;
   const auto line = [&text](const char* name, const std::string& value) {

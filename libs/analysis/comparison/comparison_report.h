@@ -1,4 +1,4 @@
-// A comparison for people, programs and spreadsheets, and as a picture of error over cost.
+// Reports of a comparison as text, JSON, CSV and a picture of error over cost.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace slew::analysis {
 
-// What was run, against what, then the table; a line at the end for each thing that deserves one. width [characters]:
-// of the lines of a table; 0: no limit.
+// The runs and the reference, then the table; a line at the end for each remark. width [characters] of the lines of a
+// table; 0: no limit.
 [[nodiscard]] std::string report_text(const Comparison& comparison, std::size_t width = 0);
 
 [[nodiscard]] std::string report_json(const Comparison& comparison);
 
-// Comma-separated values (RFC 4180): one line for every row, SI units in the heading; what cannot be said is empty.
+// Comma-separated values (RFC 4180): one line for every row, SI units in the heading; a missing value is empty.
 [[nodiscard]] std::string report_csv(const Comparison& comparison);
 
 // Error of the first class of variables over the mechanics' cost, one mark for each row that ran and is stable, one

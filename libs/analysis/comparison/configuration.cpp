@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::string_view kFormulation = "formulation", kIntegrator = "integrator", kSubstep = "max_substep",
                            kOwnIntegrator = "own";
-constexpr double kSameRatio = 1e-9;    // of a whole number that decimals of a step miss by rounding
-constexpr double kReferenceRatio = 8;  // of the smallest step to the reference's: RK4 is then 4096 times better
-constexpr double kDefaultRatios[] = {1, 0.5, 0.25};  // of the scene's sub-step
+constexpr double kSameRatio = 1e-9;    // relative rounding error of a ratio of steps that counts as whole
+constexpr double kReferenceRatio = 8;  // ratio of the smallest step to the reference's: RK4 is then 4096 times better
+constexpr double kDefaultRatios[] = {1, 0.5, 0.25};  // shares of the scene's sub-step
 
 const Field* find_field(std::string_view key) {
   for (const Field& field : multibody::mechanics_fields()) {
@@ -30,7 +30,7 @@ const Field* find_field(std::string_view key) {
   throw Failure(ExitCode::bad_input, text + "; nothing was run");
 }
 
-// the wanted names, in their order, none twice
+// the selected names in their order, none twice
 std::vector<std::string> select(const char* option, const std::vector<std::string>& wanted,
                                 const std::vector<std::string>& available) {
   std::vector<std::string> chosen;
@@ -86,13 +86,13 @@ double read_step(const char* option, const std::string& text) {
   return *read.value;
 }
 
-std::vector<double> select_steps(const ComparisonWish& wish, const scene::Scene& scene) {
+std::vector<double> select_steps(const ComparisonOptions& options, const scene::Scene& scene) {
   const double H = scene.session.step;
   std::vector<double> steps;
   const auto add = [&steps](double step) {
     if (std::find(steps.begin(), steps.end(), step) == steps.end()) steps.push_back(step);
   };
-  for (const std::string& text : wish.steps) {
+  for (const std::string& text : options.steps) {
     const double step = read_step("--steps", text);
     if (!is_whole(H / step) && !is_whole(step / H)) {
       refuse(fmt::format("--steps: {} neither divides the communication step {} nor is a multiple of it",
@@ -101,7 +101,7 @@ std::vector<double> select_steps(const ComparisonWish& wish, const scene::Scene&
     add(step);
   }
   if (!steps.empty()) return steps;
-  // the sub-step that the scene really makes
+  // the actual sub-step of the scene
   const double whole = H / std::ceil(H / scene.mechanics.max_substep * (1 - kSameRatio));
   for (const double ratio : kDefaultRatios) {
     if (find_field(kSubstep)->range.contains(ratio * whole)) add(ratio * whole);
@@ -123,17 +123,17 @@ std::string choice_of(const scene::Scene& scene, std::string_view key) {
   return std::string(field->choices[static_cast<std::size_t>(field->get_choice(&scene.mechanics))]);
 }
 
-std::vector<Configuration> configurations(const ComparisonWish& wish, const scene::Scene& scene) {
+std::vector<Configuration> configurations(const ComparisonOptions& options, const scene::Scene& scene) {
   const std::vector<std::string> all = {"all"}, scenes_own = {choice_of(scene, kIntegrator)};
   const auto formulations =
-      select("--formulations", wish.formulations.empty() ? all : wish.formulations, choices_of(kFormulation));
-  const std::vector<std::string>& wanted = wish.integrators.empty() ? scenes_own : wish.integrators;
-  // names that are none are refused here
+      select("--formulations", options.formulations.empty() ? all : options.formulations, choices_of(kFormulation));
+  const std::vector<std::string>& wanted = options.integrators.empty() ? scenes_own : options.integrators;
+  // wrong names are refused here
   static_cast<void>(select("--integrators", wanted, choices_of(kIntegrator)));
   std::vector<Configuration> result;
   for (const std::string& formulation : formulations) {
     for (const std::string& integrator : integrators_for(formulation, wanted)) {
-      for (const double step : select_steps(wish, scene)) result.push_back({formulation, integrator, step});
+      for (const double step : select_steps(options, scene)) result.push_back({formulation, integrator, step});
     }
   }
   return result;
@@ -145,27 +145,27 @@ Configuration default_configuration(double step) {
   return {formulation, integrators_for(formulation, {choice_of(scene, kIntegrator)}).front(), step};
 }
 
-double reference_step(const ComparisonWish& wish, const scene::Scene& scene, double smallest_step) {
+double reference_step(const ComparisonOptions& options, const scene::Scene& scene, double smallest_step) {
   const double H = scene.session.step;
-  const double wanted =
-      wish.reference_step.empty() ? smallest_step / kReferenceRatio : read_step("--reference", wish.reference_step);
+  const double wanted = options.reference_step.empty() ? smallest_step / kReferenceRatio
+                                                       : read_step("--reference", options.reference_step);
   const double shortest = find_field(kSubstep)->range.min;
   const double parts = 2 * std::ceil(H / (2 * std::max(wanted, shortest)) * (1 - kSameRatio));
   // rounding must not make it shorter than a scene allows
   return H / parts < shortest ? H / (parts - 2) : H / parts;
 }
 
-Configured load(const ComparisonWish& wish, const scene::Scene& base, const Configuration& configuration) {
-  scene::SceneOptions options = wish.scene;
-  const auto set = [&options](std::string_view path, const std::string& value) {
-    options.overrides.push_back(fmt::format("{}={}", path, value));
+Configured load(const ComparisonOptions& options, const scene::Scene& base, const Configuration& configuration) {
+  scene::SceneOptions scene_options = options.scene;
+  const auto set = [&scene_options](std::string_view path, const std::string& value) {
+    scene_options.overrides.push_back(fmt::format("{}={}", path, value));
   };
   set("mechanics.formulation", configuration.formulation);
   set("mechanics.integrator", configuration.integrator);
   set("mechanics.max_substep", fmt::format("{:.17g}", configuration.step));
   if (configuration.step > base.session.step) set("session.step", fmt::format("{:.17g}", configuration.step));
   try {
-    return {scene::load_scene(options), ""};
+    return {scene::load_scene(scene_options), ""};
   } catch (const scene::LoadError& error) {
     return {std::nullopt, error.first_reason()};
   }

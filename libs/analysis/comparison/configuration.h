@@ -1,7 +1,7 @@
-// What a comparison runs: formulations, integrators and steps of one scene.
+// The runs of a comparison: formulations, integrators and steps of one scene.
 //
-// Names of formulations and integrators are those that the field tables of the section `mechanics` list; whether a
-// scene can run with them is what the scene's own rules say. So a comparison knows no formulation by name.
+// Names of formulations and integrators come from the field tables of the section `mechanics`; the scene's own rules
+// decide whether it can run with them. A comparison depends on no formulation's name.
 //
 // A step h is the sub-step of the mechanics (mechanics.max_substep). The communication step H stays as the scene has
 // it, so that input and coupling are the same in all runs; h must divide H. Only an h above H, a multiple of it,
@@ -24,10 +24,10 @@ struct Configuration {
   double step = 0;  // s
 };
 
-// What the user asks for; empty lists: all formulations, the scene's integrator, the whole, a half and a quarter of the
+// The user's options; empty lists: all formulations, the scene's integrator, the whole, a half and a quarter of the
 // scene's sub-step.
-struct ComparisonWish {
-  scene::SceneOptions scene;  // duration: how long; as the scene says when empty
+struct ComparisonOptions {
+  scene::SceneOptions scene;  // duration: run time; empty: the scene's
   std::vector<std::string> formulations;
   std::vector<std::string> integrators;
   std::vector<std::string> steps;      // quantities
@@ -36,27 +36,28 @@ struct ComparisonWish {
   int repeats = 5;                     // timed runs
 };
 
-// Names that mechanics.KEY may have; empty: there is no such key.
+// Valid names of mechanics.KEY; empty: there is no such key.
 [[nodiscard]] std::vector<std::string> choices_of(std::string_view key);
-// The one that the scene has chosen.
+// The scene's value of the key.
 [[nodiscard]] std::string choice_of(const scene::Scene& scene, std::string_view key);
 
-// Every combination, by formulation, integrator, step: `own` by the name of the rule that the formulation has, `all`
-// integrators those of the formulation. Throws Failure (bad_input) for names and steps that cannot be.
-[[nodiscard]] std::vector<Configuration> configurations(const ComparisonWish& wish, const scene::Scene& scene);
+// Every combination, by formulation, integrator, step: `own` by the name of the formulation's rule, `all` for all
+// integrators of the formulation. Throws Failure (bad_input) for invalid names and steps.
+[[nodiscard]] std::vector<Configuration> configurations(const ComparisonOptions& options, const scene::Scene& scene);
 
-// Formulation and integrator of a scene that does not choose.
+// Formulation and integrator of a scene without a choice.
 [[nodiscard]] Configuration default_configuration(double step);
 
 // Sub-step of the reference: it divides H evenly into an even number of parts.
-[[nodiscard]] double reference_step(const ComparisonWish& wish, const scene::Scene& scene, double smallest_step);
+[[nodiscard]] double reference_step(const ComparisonOptions& options, const scene::Scene& scene, double smallest_step);
 
-// The scene in this configuration, or why its rules refuse it.
+// The scene in this configuration, or the reason why its rules refuse it.
 struct Configured {
   std::optional<scene::Scene> scene;
   std::string refusal;
 };
-[[nodiscard]] Configured load(const ComparisonWish& wish, const scene::Scene& base, const Configuration& configuration);
+[[nodiscard]] Configured load(const ComparisonOptions& options, const scene::Scene& base,
+                              const Configuration& configuration);
 
 // "0.25 ms"
 [[nodiscard]] std::string step_text(double step);

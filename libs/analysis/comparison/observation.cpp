@@ -18,7 +18,7 @@ using wire::Role;
 constexpr StepIndex kStepsBetweenQuestions = 64;
 constexpr Role kPhysics[] = {Role::mechanics, Role::hydraulics};
 
-// Where the chosen variables stand among those of the two subsystems.
+// Places of the chosen variables among those of the two subsystems.
 class SampleReader {
  public:
   SampleReader(const session::DirectSession& session, std::span<const std::string> names)
@@ -64,7 +64,8 @@ class SampleReader {
   std::vector<double> buffer_;
 };
 
-// Energy and joints, from the poses that the formulation integrates; not of a mechanism that is another's.
+// Energy and joints, from the poses that the formulation integrates; not for a mechanism that another subsystem
+// integrates.
 class Mechanism {
  public:
   explicit Mechanism(const session::DirectSession& session)
@@ -184,7 +185,7 @@ Observation observe_run(const scene::Scene& scene, std::span<const std::string> 
 Cost time_runs(const scene::Scene& scene, StepIndex steps, int repeats, const StateHashes& state_hashes,
                const GoesOn& goes_on) {
   Cost cost;
-  const double milliseconds = scene.session.step_duration().seconds() * 1e3;  // of a step
+  const double milliseconds = scene.session.step_duration().seconds() * 1e3;  // duration of a step
   TimedSteps mechanics(steps, milliseconds), whole(steps, milliseconds);
   for (int repeat = 0; repeat < repeats; ++repeat) {
     PlayedScene played(scene);

@@ -1,4 +1,4 @@
-// One run of a scene: what it shows at the instants that all runs of a comparison share, and what it costs.
+// One run of a scene: its samples at the instants that all runs of a comparison share, and its cost.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace slew::analysis {
 
-// Asked with the share of the run that is done, 0 to 1; false ends it.
+// Called with the share of the run that is done, 0 to 1; false ends it.
 using GoesOn = std::function<bool(double share)>;
 
 struct Observation {
@@ -25,7 +25,7 @@ struct Observation {
   double largest_kinetic_energy = 0;  // J
   multibody::JointGap gap;            // largest of all samples
   StepIndex steps = 0;                // done
-  std::int64_t iterations = 0;        // of the mechanics' port problem, all steps
+  std::int64_t iterations = 0;        // iterations of the mechanics' port problem, all steps
   std::int64_t not_converged = 0;     // steps of either side
   std::string failure;                // how it ended early; empty: it did not
   double failed_at = 0;               // s
@@ -39,19 +39,19 @@ struct Observation {
 [[nodiscard]] Observation observe_run(const scene::Scene& scene, std::span<const std::string> variables,
                                       SimDuration until, SimDuration sample, const GoesOn& goes_on);
 
-// Microseconds per simulated millisecond. Every run does the same, so that of each step the fastest run is taken: what
-// else the machine did is then not in it.
+// Microseconds per simulated millisecond. All runs do the same work, so that of each step the fastest run is taken: it
+// excludes other load of the machine.
 struct Cost {
   double mechanics = 0;             // mean of all steps
   double mechanics_slowest = 0;     // the slowest step
   double whole = 0;                 // all physics, mean of all steps
-  double mechanics_run_median = 0;  // by the clock alone: the median of the runs, interruptions included
+  double mechanics_run_median = 0;  // median of the runs' wall times, interruptions included
   double whole_run_median = 0;
   bool is_repeatable = true;  // every run ended in the same state, bit for bit
   bool is_interrupted = false;
 };
 
-// Runs the same scene again, with nothing between the steps but the clock.
+// Repeats the same scene and reads only the clock between the steps.
 [[nodiscard]] Cost time_runs(const scene::Scene& scene, StepIndex steps, int repeats, const StateHashes& state_hashes,
                              const GoesOn& goes_on);
 

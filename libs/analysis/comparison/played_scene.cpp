@@ -25,7 +25,7 @@ void PlayedScene::advance() {
     config_.source->courses(t, t + H_, script_);
     config_.source->changes(t, t + H_, commands_);
   }
-  // nobody but the script moves a channel, so that the wall clock is never asked
+  // only the script moves a channel: the wall clock is never read
   gate_.advance(n_, script_, 0);
   for (std::size_t i = 0; i < controls_.size(); ++i) controls_[i] = gate_.control(i);
   session_.step(n_, commands_, controls_);

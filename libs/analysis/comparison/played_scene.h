@@ -1,5 +1,5 @@
-// A scene stepped in this process with the input that its script gives: what `slewring run --in-process` computes, bit
-// for bit, without messages and recording.
+// A scene stepped in this process with its script as input: the results of `slewring run --in-process`, bit for bit,
+// without messages and recording.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace slew::analysis {
 
-// Of what all the future follows from; 0 where the scene has nothing of the kind.
+// Hashes of the states that determine all later steps; 0 where the scene has no such state.
 struct StateHashes {
   std::uint64_t mechanics = 0, hydraulics = 0;
   bool operator==(const StateHashes&) const = default;
@@ -29,7 +29,7 @@ class PlayedScene {
   [[nodiscard]] StepIndex step() const noexcept { return n_; }
   [[nodiscard]] SimTime time() const noexcept { return start_of(n_, H_); }
   [[nodiscard]] const session::DirectSession& session() const noexcept { return session_; }
-  // Of the last advance(), by input channel.
+  // Controls of the last advance(), by input channel.
   [[nodiscard]] std::span<const double> controls() const noexcept { return controls_; }
   [[nodiscard]] StateHashes state_hashes() const noexcept;
 

@@ -185,7 +185,7 @@ class Measurement {
       return;
     }
     const double per_step = 1.0 / static_cast<double>(steps_);
-    // of math/rodas3.h: f and J at the start of what is accepted, two more f in every trial
+    // math/rodas3.h: f and J at the start of an accepted step, two more f in every trial
     const double rates = per_step * static_cast<double>(accepted_ + 2 * (accepted_ + rejected_));
     const double slopes = per_step * static_cast<double>(accepted_);
     const CircuitCalls calls = time_circuit(scene_, circuit_states_);
@@ -203,7 +203,7 @@ class Measurement {
         std::max(0.0, whole - std::max(equations, sum)), Measured::rest);
   }
 
-  // beside the physics: what nodes do for each other and for the recording
+  // beside the physics: the nodes' work for exchange and recording
   void add_exchange() {
     const double states = std::max(1, cost_.states);
     add(0, "hashes of the states", to_cost_ * hash_ns_ / states, Measured::calls);
@@ -214,7 +214,7 @@ class Measurement {
         to_cost_ * read_ns_ / states / static_cast<double>(scene_.recording.every), Measured::calls);
   }
 
-  // of a sample of each side, its length is all that matters
+  // a sample of each side, of which only the length matters
   [[nodiscard]] double encoding_ns() {
     double ns = 0;
     transport::ByteBuffer buffer;
@@ -241,7 +241,7 @@ class Measurement {
   std::vector<CircuitSample> circuit_states_;
   std::uint64_t accepted_ = 0, rejected_ = 0;
   double hash_ns_ = 0, read_ns_ = 0;
-  std::uint64_t sink_ = 0;  // keeps what is timed from being left out
+  std::uint64_t sink_ = 0;  // sink of the timed results, against their removal by the optimiser
   std::vector<double> values_;
   CostByPart cost_;
 };

@@ -1,7 +1,7 @@
 // `slewring describe SCENE --cost`: what each part of a scene costs, in microseconds of this machine per simulated
 // millisecond.
 //
-// Three ways of measuring, and every line says which one it is:
+// Three ways of measuring; every line names its own:
 //   steps    the scene's own run in this process, timed step by step; of each step the fastest of kRuns runs
 //   calls    a function called alone on states of that run, the fastest of kCalls calls, as often as a step calls it
 //   removal  the same calls for the mechanism without the part, on the same states; the difference is the part's
@@ -23,7 +23,7 @@ inline constexpr int kRuns = 3, kCalls = 5;
 enum class Measured { steps, calls, removal, rest };
 
 struct CostLine {
-  int level = 0;  // 0: a part of the whole; 1, 2: of the last line of the level above
+  int level = 0;  // 0: a part of the whole; 1, 2: a part of the last line of the level above
   std::string part;
   double cost = 0;  // us per ms
   Measured measured = Measured::steps;
@@ -33,7 +33,7 @@ struct CostByPart {
   double until = 0;  // s of the scene's run
   int runs = kRuns, states = 0;
   double step = 0;   // s
-  double whole = 0;  // us per ms: all physics and the passing on of samples
+  double whole = 0;  // us per ms: all physics and the exchange of samples
   std::vector<CostLine> lines;
   std::vector<std::string> notes;
 };
@@ -43,7 +43,8 @@ struct CostByPart {
 [[nodiscard]] CostByPart measure_cost(const scene::Scene& scene, const std::string& file,
                                       const scene::Overrides& overrides, double until);
 
-// not_paid: what the scene does without, for a line each. width [characters]: of the lines of a table; 0: no limit.
+// not_paid: features that the scene leaves out, for a line each. width [characters]: of the lines of a table; 0: no
+// limit.
 [[nodiscard]] std::string report_text(const CostByPart& cost, std::span<const std::string> not_paid,
                                       std::size_t width = 0);
 [[nodiscard]] Json report_json(const CostByPart& cost, std::span<const std::string> not_paid);

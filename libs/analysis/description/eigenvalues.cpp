@@ -21,7 +21,7 @@ using monolith::StateOwner;
 // owners that are named: those with this part of the largest share
 constexpr double kNamedShare = 0.25;
 constexpr std::size_t kNamedOwners = 3;
-// points on a period, or on a time constant's 2 pi, that show its course
+// points on a period, or on a time constant's 2 pi, that resolve its course
 constexpr double kPointsOnPeriod = 20;
 
 double frequency(const SceneMode& mode) {
@@ -83,7 +83,7 @@ std::string table_text(std::span<const SceneMode> modes, std::size_t width) {
   return table.text("  ", width);
 }
 
-// what of it each solver of the scene has to mind
+// the eigenvalues that limit each solver of the scene
 std::string solvers_text(const Eigenvalues& found) {
   std::string text;
   if (found.substep > 0) {

@@ -1,5 +1,5 @@
 // `slewring describe SCENE --eigenvalues`: the fastest and the slowest motions of the whole machine about an instant,
-// whose they are, and with which steps they can be followed.
+// their owners, and the steps that resolve them.
 #pragma once
 
 #include <string>
@@ -16,13 +16,13 @@ struct Eigenvalues {
   double at = 0;  // s
   DryFriction friction = DryFriction::kept;
   monolith::SceneModes machine;        // everything
-  monolith::SceneModes explicit_part;  // left to the mechanics' integrator
+  monolith::SceneModes explicit_part;  // part for the mechanics' integrator
   std::string formulation, integrator, hydraulics_solver;
   double step = 0, substep = 0;  // s; substep 0: no mechanics
   std::string touching;          // pair of shapes that touch; empty: none
 };
 
-// Of the scene's run at a time [s]. Throws Failure.
+// Eigenvalues of the scene's run at a time [s]. Throws Failure.
 [[nodiscard]] Eigenvalues find_eigenvalues(const scene::Scene& scene, double at, DryFriction friction);
 
 // count: rows of the fastest, and of the slowest. width [characters]: of the lines of a table; 0: no limit.

@@ -21,7 +21,7 @@ struct CircuitCalls {
     double rates = 0, slopes = 0;
   };
   std::vector<Component> components;  // in the scene's order
-  double rates = 0, slopes = 0;       // of the whole circuit
+  double rates = 0, slopes = 0;       // the whole circuit
 };
 [[nodiscard]] CircuitCalls time_circuit(const scene::Scene& scene, std::span<const CircuitSample> samples);
 

@@ -1,4 +1,4 @@
-// A scene at an instant of its own manoeuvre, for what `slewring describe` says about one.
+// A scene at an instant of its own manoeuvre, for `slewring describe`.
 #pragma once
 
 #include <string>

@@ -18,7 +18,7 @@
 namespace slew::analysis {
 namespace {
 
-// a cylinder whose force changes by less with 1 kg carries nothing of it: a hundred thousandth of its weight
+// a cylinder whose force changes by less with 1 kg does not carry the load: a hundred thousandth of its weight
 constexpr double kNoShare = 1e-4;  // m/s2
 constexpr double kCreep = 0.05;    // m/s, up to which the largest friction counts: the load has to begin to move
 constexpr int kCreepPoints = 50;
@@ -31,7 +31,7 @@ struct Command {
   hydraulics::HeldControl held;
 };
 
-// every input at full stick, to both sides; the neutral circuit where there is none
+// every input at full stick in both directions; the neutral circuit without inputs
 std::vector<Command> commands_of(const scene::Scene& scene, const hydraulics::Circuit& circuit) {
   std::vector<Command> commands;
   for (const scene::InputDef& input : scene.inputs) {
@@ -49,7 +49,7 @@ std::vector<Command> commands_of(const scene::Scene& scene, const hydraulics::Ci
 // largest friction on the way to kCreep [N]
 double friction(const coupling::LineForceLaw& law, double F, double direction) {
   double largest = 0;
-  // in equal ratios, since breaking away takes a tenth of a millimetre a second
+  // in equal ratios, since breaking away takes place at a tenth of a millimetre a second
   for (int k = 0; k <= kCreepPoints; ++k) {
     const double v = kCreep * std::exp2(-0.25 * k);
     largest = std::max(largest, std::fabs(law.friction(F, direction * v)));
@@ -163,7 +163,7 @@ class Finder {
       port.is_steady = best.is_steady;
       const coupling::LineForceLaw law(scene_.ports[i].line_force);
       const double F = best.forces[i];
-      // friction takes from it, and does not push the other way
+      // friction reduces the force and does not reverse it
       port.largest_force = F - direction * std::min(std::fabs(F), friction(law, F, direction));
       const coupling::LineForceDef& ends = law.def();
       port.is_at_end = direction > 0 ? port.stroke >= ends.stroke_max : port.stroke <= ends.stroke_min;

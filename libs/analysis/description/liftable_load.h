@@ -1,4 +1,4 @@
-// `slewring describe SCENE --liftable`: the largest payload that the machine can lift at a pose, and what limits it.
+// `slewring describe SCENE --liftable`: the largest payload that the machine can lift at a pose, and its limiting part.
 //
 //   F_i(m) = F_i(m_0) + s_i (m - m_0)                line force that holds port i with the payload m             (1)
 //   F_i,max = F_stall - F_mu(F_stall)                line force when the valves press with all they have         (2)
@@ -28,19 +28,19 @@ struct LimitingSetting {
 };
 
 struct LiftingPort {
-  std::string name{};                       // of the cylinder
+  std::string name{};                       // name of the cylinder
   double stroke = 0;                        // m
   double static_force = 0;                  // N, with the scene's payload
-  double force_per_kg = 0;                  // m/s2; 0: it carries nothing of the payload
+  double force_per_kg = 0;                  // m/s2; 0: it does not carry the payload
   double largest_force = 0;                 // N, (2), in the direction in which it carries
   double pressure = 0;                      // Pa absolute, in the loaded chamber at (2)
   std::string chamber{};                    // volume
-  std::string input{};                      // that loads it; empty: none has to
+  std::string input{};                      // input that loads it; empty: none needed
   double stick = 0;                         // +1 or -1: its direction, at full stick
   double load = 0;                          // kg, (3); below 0: it does not hold the machine alone
   bool is_at_end = false;                   // the piston stands in the end stop that it would have to leave
   bool is_steady = true;                    // false: the pressure still rose after 30 s
-  std::vector<LimitingSetting> settings{};  // largest effect first; only of the port that limits
+  std::vector<LimitingSetting> settings{};  // largest effect first; only for the limiting port
 
   [[nodiscard]] bool carries() const noexcept { return force_per_kg != 0; }
 };
@@ -60,7 +60,7 @@ struct LiftableLoad {
 
 struct LiftingPose {
   double at = 0;                    // s of the scene's run
-  std::vector<std::string> joints;  // "Joint=20 deg": put there afterwards; revolute and prismatic joints of the tree
+  std::vector<std::string> joints;  // "Joint=20 deg": set afterwards; revolute and prismatic joints of the tree
 };
 
 enum class ListedSettings { named, left_out };

@@ -65,7 +65,7 @@ MechanicsCalls time_mechanics(const MechanicsVariant& variant, std::span<const M
     multibody::Dynamics dynamics(def.formulation, model, start, rule);
     calls.evaluate += substeps * fastest_of([&] { dynamics.evaluate(model, start, ws); });
     calls.observe += fastest_of([&] { multibody::observe(model, start, ws); });
-    // each sub-step begins anew: what it integrates beside the state must not go on
+    // each sub-step restarts: states integrated beside the mechanism's must not carry over
     std::int64_t fastest = std::numeric_limits<std::int64_t>::max();
     for (int i = 0; i < kCalls; ++i) {
       multibody::State state = start;

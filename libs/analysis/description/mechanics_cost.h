@@ -17,10 +17,10 @@ struct MechanicsSample {
 };
 [[nodiscard]] MechanicsSample sample(const mechanics::MechanicsSubsystem& mechanics, const scene::Scene& scene);
 
-// The mechanism without a part of it. scene: of the same bodies and joints; modes that it does not have are left out.
+// The mechanism without a part of it. scene: one with the same bodies and joints; modes that it lacks are left out.
 struct MechanicsVariant {
   const scene::Scene* scene = nullptr;
-  const multibody::Model* sampled = nullptr;  // of the scene as it is, to which the samples belong
+  const multibody::Model* sampled = nullptr;  // the unchanged scene, to which the samples belong
   std::string left_out;                       // contact pair
 };
 

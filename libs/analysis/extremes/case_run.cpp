@@ -25,18 +25,18 @@ namespace {
 
 using wire::Role;
 
-constexpr double kRunLimit = 60;  // s of processor time: a busy machine is no verdict
+constexpr double kRunLimit = 60;  // s of processor time: wall time would count other load
 constexpr double kCeilingMargin = 1.1;
-constexpr double kSwing = 2;                                    // of a load that is put on at once, about its rest
-constexpr double kStiffnessRun = 0.5;                           // s, to measure K H^2 W
-constexpr double kStepGrain = 1e-5;                             // s, of a step that was computed
-constexpr double kPenetration = 0.02;                           // m
+constexpr double kSwing = 2;           // overshoot of a load that is put on at once, relative to its rest
+constexpr double kStiffnessRun = 0.5;  // s, to measure K H^2 W
+constexpr double kStepGrain = 1e-5;    // s, of a step that was computed
+constexpr double kPenetration = 0.02;  // m
 constexpr double kLift = 0.1, kMostLift = 5, kFineLift = 5e-3;  // m, of the ground's shape
 constexpr int kFineLifts = 40;
 constexpr double kSmallHose = 1e-6;  // m3
 constexpr StepIndex kStepsBetweenLooks = 64;
 
-// What the pressures of a scene can come to by its valves and sources, and by what its actuators stop.
+// Upper bound of a scene's pressures from its valves and sources, and from the columns that its actuators stop.
 class Ceiling {
  public:
   explicit Ceiling(const scene::Scene& scene) {
@@ -57,7 +57,7 @@ class Ceiling {
     }
   }
 
-  // What turns pressure into force at the ports, in their order.
+  // Areas of the actuators at the ports, in their order.
   void set_actuators(std::span<const hydraulics::Actuator> actuators) {
     for (const hydraulics::Actuator& actuator : actuators) {
       const auto [smaller, larger] = std::minmax(actuator.area_a, actuator.area_b);
@@ -68,14 +68,14 @@ class Ceiling {
     stopping_.assign(area_.size(), 0);
   }
 
-  // Force of a column that stops what moves now.
+  // Force of a column that stops the present motion.
   void follow(const coupling::MechanismSample& mechanism, const coupling::ActuatorSample& actuators) {
     for_each_port(mechanism, [&](std::size_t i, double W) {
       stopping_[i] = std::max(stopping_[i], std::fabs(mechanism.v[i]) * std::sqrt(actuators.K[i] / W));
     });
   }
 
-  // A load that is there, or is put on, at once: it swings to twice what holds it.
+  // A load that is put on at once: it swings to twice the holding force.
   void put_on(const coupling::MechanismSample& mechanism) {
     for_each_port(mechanism, [&](std::size_t i, double W) {
       holding_[i] = std::max(holding_[i], kSwing * std::fabs(mechanism.a_free[i]) / W);
@@ -113,7 +113,7 @@ struct Run {
   Trace trace;
 };
 
-// What of a case is left out, for the run that it is compared with.
+// Parts of a case that are left out for the comparison run.
 enum class Strictness : std::uint8_t { whole, compared };
 
 session::SampleAges ages_of(const ExtremeCase& one) {
@@ -125,7 +125,7 @@ session::SampleAges ages_of(const ExtremeCase& one) {
   return {};
 }
 
-// What the coupling made of a port's energy since the start.
+// Energy of a port that the coupling made since the start.
 struct PortEnergy {
   double gained = 0, made = 0;  // J: sum of dE*, the least it was
   double work = 0, stored = 0;  // J: done by the mechanics' side; in the oil at its largest force
@@ -208,7 +208,7 @@ class Stepper {
 
   [[nodiscard]] bool has_ports() const { return hydraulics_ != nullptr && !scene_.ports.empty(); }
 
-  // as whoever changes a parameter of a session is refused
+  // the same refusal as for a parameter change of a session
   [[nodiscard]] std::string refusal_of_changes() const {
     if (case_.changes.empty()) return {};
     const scene::ParameterDirectory directory(scene_);
@@ -247,7 +247,7 @@ class Stepper {
     m.at_limit += count(StepFlag::limit_hit);
     m.too_late += count(StepFlag::late_input);
     m.creates_energy += count(StepFlag::coupling_creates_energy);
-    // the mechanics ends what has diverged, the hydraulics what its coupling's alarm ends
+    // the mechanics ends a diverged run, the hydraulics one that its coupling's alarm ends
     const bool has_diverged =
         session_.subsystem(Role::mechanics) != nullptr && session_.report(Role::mechanics).has(StepFlag::ended);
     if (count(StepFlag::non_finite) != 0 || has_diverged) {
@@ -295,7 +295,7 @@ class Stepper {
     mechanics_->mechanism().observe(mechanics_->model(), mechanics_->state(), *ws_);
     const double gap = gauge_->measure(*ws_).position;
     std::optional<double>& largest = run_.measures.gap;
-    // what is not a number stays
+    // a value that is not a number stays
     if (!largest || !(gap <= *largest)) largest = std::isnan(largest.value_or(0)) ? largest : gap;
   }
 
@@ -380,7 +380,7 @@ class Case {
     outcome.measures.notes.insert(outcome.measures.notes.begin(), notes_.begin(), notes_.end());
     note_aim(outcome.measures);
     outcome.judgement = judge(outcome.measures, case_.bounds);
-    // without a step there was nothing to run: the scene itself was refused
+    // without a step there was no run: the scene itself was refused
     if (case_.seeks_edge && outcome.measures.H > 0) seek_edge(outcome);
     return outcome;
   }
@@ -417,7 +417,7 @@ class Case {
     const double reached = now * wanted * wanted / (H * H);
     double factor = 1;
     if (reached < 0.9 * case_.stiffness) {
-      // the oil and the walls as stiff as needed; what stays short is made up for once more
+      // the oil and the walls as stiff as needed; a second factor makes up for the rest
       factor = case_.stiffness / reached;
       for (int i = 0; i < 3; ++i) {
         case_.overrides = step;
@@ -432,7 +432,7 @@ class Case {
     notes_.push_back(fmt::format("step {:.4g} ms, oil and walls {:.3g} times stiffer", wanted * 1e3, factor));
   }
 
-  // Ground's shape is moved against gravity until something starts inside it.
+  // Moves Ground's shape against gravity until a body starts inside it.
   void push_inside() {
     const Triple& g = base_.mechanics.gravity;
     const double size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
@@ -444,7 +444,7 @@ class Case {
         const auto at = [&](std::size_t axis) { return ground->position[axis] - up * g[axis] / size; };
         return {fmt::format("{}.position=[{:.17g}, {:.17g}, {:.17g}]", ground->name, at(0), at(1), at(2))};
       };
-      // whatever a circuit at rest would say to it
+      // independent of refusals by a circuit at rest
       const auto depth = [&](double up) {
         scene::Overrides at = moved(up);
         if (base_.has_hydraulics()) at.emplace_back("hydraulics.start=table13");
@@ -501,11 +501,11 @@ class Case {
     notes_.push_back(fmt::format("omega_H k of {:.2g}", w));
   }
 
-  // The bounds without those of comparisons: an error grows with the step long before anything is unstable.
+  // The bounds without those of comparisons: an error grows with the step long before the run is unstable.
   [[nodiscard]] bool is_stable(double H) const {
     ExtremeCase alone = case_;
     alone.bounds.difference = 0;
-    alone.bounds.asks_same = false;
+    alone.bounds.requires_same = false;
     try {
       const scene::Scene scene = load({fmt::format("session.step={:.17g}", H)});
       return judge(Stepper(alone, scene, Strictness::whole).run().measures, alone.bounds).verdict == Verdict::within;

@@ -14,7 +14,7 @@
 namespace slew::analysis {
 namespace {
 
-constexpr const char* kOilWithModulus = "hydraulics.oil_law=oil_and_air";  // the law that has the numbers of a case
+constexpr const char* kOilWithModulus = "hydraulics.oil_law=oil_and_air";  // the law that uses a case's numbers
 constexpr double kHeavyLoad = 1500;                                        // kg
 constexpr double kLeastLoad = 1e-3;                        // kg, in the place of a mass that must be more than 0
 constexpr double kSmallVolume = 1e-6;                      // m3
@@ -27,7 +27,7 @@ std::string set(const std::string& path, double value) {
   return fmt::format("{}={:.17g}", path, value);
 }
 
-// What a scene has that cases can be made of.
+// Parts of a scene that cases can be made of.
 class Parts {
  public:
   explicit Parts(const scene::Scene& scene) : scene_(scene), directory_(scene) {
@@ -58,7 +58,7 @@ class Parts {
     return overrides;
   }
   [[nodiscard]] bool has(std::string_view field) const { return !all(field, 0).empty(); }
-  // of elements that take an input
+  // parameters of elements that take an input
   [[nodiscard]] scene::Overrides of_driven(std::string_view field, double value) const {
     scene::Overrides overrides;
     for (const scene::InputDef& input : scene_.inputs) {
@@ -232,7 +232,7 @@ void add_coupling(const Parts& parts, Cases& cases) {
                    .hold_at = 0.7,
                    .compared_with = ComparedWith::same,
                    .seeks_edge = false};
-  hold.bounds.asks_same = true;
+  hold.bounds.requires_same = true;
   add(std::move(hold));
   add({.name = "full_range_every_step",
        .what = "all inputs from one end to the other at every step",
@@ -254,7 +254,7 @@ void add_numbers(const scene::Scene& scene, const Parts& parts, Cases& cases) {
                     .begin_ns = begin_ns / unit * unit,
                     .compared_with = ComparedWith::same,
                     .seeks_edge = false};
-    one.bounds.asks_same = true;
+    one.bounds.requires_same = true;
     cases.push_back(std::move(one));
   };
   late("step_2^32", "the steps around number 2^32; all values as from step 0", kLateStep * H - 1'000'000'000);

@@ -1,5 +1,5 @@
-// The hard cases of a scene: what is done to it, and the bounds of what may come of it. Built from what the scene
-// contains, never from its name.
+// The hard cases of a scene: the changes made to it, and the bounds of its results. Built from the scene's contents,
+// never from its name.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct SuddenChange {
   double value = 0;  // SI
 };
 
-// What the case is about; when it did not come about, the table says so.
+// Subject of the case; the table reports when it did not occur.
 enum class Aim : std::uint8_t { none, limit, cavitation, relief };
 
 struct ExtremeCase {
@@ -39,12 +39,12 @@ struct ExtremeCase {
   std::string what{};                // for people
   std::string obstacle{};            // why it does not apply to this scene; empty: it does
   double duration = 3;               // s
-  scene::Overrides overrides{};      // of the scene
+  scene::Overrides overrides{};      // changes of the scene
   std::vector<InputPoint> inputs{};  // none: neutral
   bool alternates = false;           // inputs go from one end to the other at every step
   std::vector<SuddenChange> changes{};
   StepIndex delay = 0;        // steps that every sample comes late
-  StepIndex lost = 0;         // of every kLossPeriod samples, in a row
+  StepIndex lost = 0;         // samples lost in a row, of every kLossPeriod
   double hold_at = -1;        // s; from there no step is done for kHold of wall time; < 0: none
   std::int64_t begin_ns = 0;  // time of the first step
   double stiffness = 0;       // K H^2 W to be reached by the step, then by stiffer oil and hoses; 0: as it is
@@ -56,7 +56,7 @@ struct ExtremeCase {
 };
 
 inline constexpr StepIndex kLossPeriod = 100;           // steps
-inline constexpr SimDuration kHold = {10'000'000'000};  // of wall time
+inline constexpr SimDuration kHold = {10'000'000'000};  // wall time
 
 // All cases in the order of the table, those that do not apply with their obstacle.
 [[nodiscard]] std::vector<ExtremeCase> extreme_cases(const scene::Scene& scene);

@@ -28,21 +28,21 @@ std::string scene_text(const scene::Scene& scene) {
 
 class Examiner {
  public:
-  explicit Examiner(const ExtremesWish& wish) : wish_(wish) {
-    result_.folder = wish.folder;
-    for (const std::string& file : wish.files) plan(file);
+  explicit Examiner(const ExtremesOptions& options) : options_(options) {
+    result_.folder = options.folder;
+    for (const std::string& file : options.files) plan(file);
     choose();
   }
 
   Extremes run(const ExtremesProgress& progress) {
-    SweepOptions options;
-    options.folder = wish_.folder;
-    options.workers = wish_.workers;
-    options.is_anew = wish_.is_anew;
-    const auto told = [&progress](const SweepState& state) {
+    SweepOptions sweep;
+    sweep.folder = options_.folder;
+    sweep.workers = options_.workers;
+    sweep.is_fresh = options_.is_fresh;
+    const auto report = [&progress](const SweepState& state) {
       return progress(fmt::format("{}/{}  {}", state.done, state.all, state.doing), state.share);
     };
-    const std::vector<SweepResult> results = run_sweep(tasks_, options, told);
+    const std::vector<SweepResult> results = run_sweep(tasks_, sweep, report);
     for (std::size_t i = 0; i < results.size(); ++i) {
       ExtremesRow& row = result_.rows[row_of_task_[i]];
       row.is_done = results[i].is_done;
@@ -55,11 +55,11 @@ class Examiner {
 
  private:
   void plan(const std::string& file) {
-    scene::SceneOptions options;
-    options.file = file;
-    options.overrides = wish_.overrides;
-    options.overrides.emplace_back("session.solution=split");
-    const scene::Scene scene = scene::load_scene(options);
+    scene::SceneOptions scene_options;
+    scene_options.file = file;
+    scene_options.overrides = options_.overrides;
+    scene_options.overrides.emplace_back("session.solution=split");
+    const scene::Scene scene = scene::load_scene(scene_options);
     const std::string text = scene_text(scene);
     for (const ExtremeCase& one : extreme_cases(scene)) {
       result_.rows.push_back({.scene = scene.name,
@@ -74,14 +74,14 @@ class Examiner {
     }
   }
 
-  // the wanted rows, and tasks of those that apply
+  // the selected rows, and tasks for those that apply
   void choose() {
     std::vector<std::string> names;
     for (const ExtremesRow& row : result_.rows) names.push_back(row.name);
     std::set<std::string> wanted(names.begin(), names.end());
-    if (!wish_.only.empty()) {
+    if (!options_.only.empty()) {
       const std::vector<std::string> known(wanted.begin(), wanted.end());
-      const std::vector<std::string> chosen = scene::choose(wish_.only, known);
+      const std::vector<std::string> chosen = scene::choose(options_.only, known);
       wanted = {chosen.begin(), chosen.end()};
     }
     std::vector<ExtremesRow> rows;
@@ -92,7 +92,7 @@ class Examiner {
         const std::vector<std::string> key = {texts_[i], row.name, node::build_id()};
         SweepTask task{.key = key_of(key), .label = row.scene + " " + row.name, .arguments = {}};
         task.arguments = {"extremes-case", files_[i], row.name};
-        for (const std::string& one : wish_.overrides) task.arguments.insert(task.arguments.end(), {"--set", one});
+        for (const std::string& one : options_.overrides) task.arguments.insert(task.arguments.end(), {"--set", one});
         tasks_.push_back(std::move(task));
         row_of_task_.push_back(rows.size());
       } else {
@@ -103,7 +103,7 @@ class Examiner {
     result_.rows = std::move(rows);
   }
 
-  const ExtremesWish& wish_;
+  const ExtremesOptions& options_;
   Extremes result_;
   std::vector<std::string> files_, texts_;  // by planned row
   std::vector<SweepTask> tasks_;
@@ -134,13 +134,13 @@ std::vector<std::string> suite_files(const std::string& folder) {
     if (std::filesystem::exists(files.back())) continue;
     throw Failure(
         ExitCode::bad_input,
-        files.back() + " is not there; nothing was run; say with --scenes where the scenes of the repository are");
+        files.back() + " is not there; nothing was run; set --scenes to the folder of the repository's scenes");
   }
   return files;
 }
 
-Extremes run_extremes(const ExtremesWish& wish, const ExtremesProgress& progress) {
-  return Examiner(wish).run(progress);
+Extremes run_extremes(const ExtremesOptions& options, const ExtremesProgress& progress) {
+  return Examiner(options).run(progress);
 }
 
 }  // namespace slew::analysis

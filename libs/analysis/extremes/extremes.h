@@ -12,13 +12,13 @@
 
 namespace slew::analysis {
 
-struct ExtremesWish {
+struct ExtremesOptions {
   std::vector<std::string> files;  // scenes
-  scene::Overrides overrides;      // of all of them
+  scene::Overrides overrides;      // for all of them
   std::vector<std::string> only;   // patterns of names; empty: all cases
   std::string folder = "runs/extremes";
   int workers = 2;
-  bool is_anew = false;
+  bool is_fresh = false;
 };
 
 struct ExtremesRow {
@@ -26,8 +26,8 @@ struct ExtremesRow {
   CaseGroup group = CaseGroup::machine;
   std::string obstacle;  // why it does not apply
   bool is_done = false;
-  std::string failure;  // of its process
-  Json result;          // of case_run.h; null: none
+  std::string failure;  // failure of its process
+  Json result;          // result of case_run.h; null: none
 
   // within its bounds, refused by name, or not for this scene
   [[nodiscard]] bool is_good() const;
@@ -35,7 +35,7 @@ struct ExtremesRow {
 
 struct Extremes {
   std::vector<ExtremesRow> rows;
-  std::size_t kept = 0;  // of an earlier run
+  std::size_t kept = 0;  // cases of an earlier run
   std::string folder;
 
   [[nodiscard]] bool is_complete() const;
@@ -44,12 +44,12 @@ struct Extremes {
 
 using ExtremesProgress = std::function<bool(std::string_view doing, double share)>;
 
-// Scenes of this repository that stand for its machines: a boom on one cylinder, the crane, with a jib that bends, and
-// setting its load down. folder: that of the scenes. Throws Failure when one is not there.
+// Scenes of this repository that represent its machines: a boom on one cylinder, the crane, the crane with a jib that
+// bends, and the crane setting its load down. folder: that of the scenes. Throws Failure when one is missing.
 [[nodiscard]] std::vector<std::string> suite_files(const std::string& folder);
 
-// Throws LoadError for a scene that is wrong, Failure for a pattern that nothing fits.
-[[nodiscard]] Extremes run_extremes(const ExtremesWish& wish, const ExtremesProgress& progress);
+// Throws LoadError for a wrong scene, Failure for a pattern without a match.
+[[nodiscard]] Extremes run_extremes(const ExtremesOptions& options, const ExtremesProgress& progress);
 
 // width [characters]: of the lines of a table; 0: no limit.
 [[nodiscard]] std::string report_text(const Extremes& extremes, std::size_t width = 0);

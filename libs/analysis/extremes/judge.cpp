@@ -11,8 +11,8 @@ namespace slew::analysis {
 namespace {
 
 constexpr double kBeyond = 1e9;       // share of a bound of 0 that is not kept
-constexpr double kLeastError = 0.02;  // of the force range, that is promised for late samples
-constexpr double kNear = 0.5;         // share of a bound from which on it is worth a word
+constexpr double kLeastError = 0.02;  // share of the force range that is allowed for late samples
+constexpr double kNear = 0.5;         // share of a bound from which it is reported
 
 Json number(const std::optional<double>& value) {
   return value ? Json(*value) : Json();
@@ -62,7 +62,7 @@ Judgement judge(const Measures& measures, const Bounds& bounds) {
   add("energy made", "", measures.made, bounds.made);
   add("joints open", "m", measures.gap, bounds.gap);
   if (bounds.difference > 0) add("force error", "", measures.difference, bounds.difference);
-  if (bounds.asks_same) add("bits that differ", "", measures.is_same ? 0.0 : 1.0, 0);
+  if (bounds.requires_same) add("bits that differ", "", measures.is_same ? 0.0 : 1.0, 0);
   std::stable_sort(result.checks.begin(), result.checks.end(),
                    [](const Check& a, const Check& b) { return a.share() > b.share(); });
   const bool is_beyond = !result.checks.empty() && result.checks.front().share() > 1;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kCoarser[] = {10, 100};      // tolerances
 constexpr int kLonger[] = {2, 5, 10};         // communication steps; each divides kStepsPerSample
-constexpr double kLongerSubsteps[] = {2, 4};  // of the mechanics
+constexpr double kLongerSubsteps[] = {2, 4};  // factors of the mechanics' sub-step
 constexpr std::string_view kQuasiStatic = "quasi_static";
 
 class Collector {
@@ -41,7 +41,7 @@ class Collector {
     list_.push_back({std::move(title), std::move(group), std::move(settings)});
   }
 
-  // the lowest modes that are kept: all but one, half of them, none
+  // numbers of lowest modes that are kept: all but one, half of them, none
   void add_modes(const multibody::FlexibleBodyDef& body) {
     const std::size_t count = body.modes == nullptr ? 0 : body.modes->modes();
     if (count == 0) return;
@@ -94,7 +94,7 @@ class Collector {
     }
   }
 
-  // the sub-step that the scene really makes, and longer ones up to the communication step
+  // the actual sub-step of the scene, and longer ones up to the communication step
   void add_substeps() {
     const double H = scene_.session.step;
     const double substep = H / std::ceil(H / scene_.mechanics.max_substep - 1e-9);

@@ -1,7 +1,7 @@
-// What of a scene may be left out or taken more coarsely: settings to try, from what the scene contains.
+// Candidates for a simpler scene: settings that leave out parts of it or coarsen them, from the scene's contents.
 //
-// Every candidate is a list of `--set` settings. Which keys a part has is asked of the field tables: what this version
-// does not know is not proposed. Whether a scene can run with a setting is what its own rules say.
+// Every candidate is a list of `--set` settings. The field tables have the keys of a part: a key that this version
+// lacks is not proposed. The scene's own rules decide whether it can run with a setting.
 #pragma once
 
 #include <string>
@@ -13,14 +13,14 @@ namespace slew::analysis {
 
 struct Candidate {
   std::string title;  // "contact pair Bag_Truck, which never touched"
-  std::string group;  // of those with the same group one at most is taken
+  std::string group;  // at most one candidate of a group is taken
   scene::Overrides settings;
 };
 
-// What the run of the scene as it is has shown.
+// Findings of the run of the unchanged scene.
 struct RunFindings {
   std::vector<std::string> untouched_pairs;  // no contact at any step
-  std::vector<std::string> still_joints;     // whose coordinate never changed by more than kStill
+  std::vector<std::string> still_joints;     // joints whose coordinate never changed by more than kStill
 };
 
 inline constexpr double kStill = 1e-6;  // rad or m

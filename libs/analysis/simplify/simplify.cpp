@@ -22,11 +22,11 @@ using wire::Role;
 constexpr std::size_t kUsualWorks = 20;
 
 // "Bag.position 1mm"
-struct ErrorWish {
-  std::string name, limit;
+struct ErrorLimit {
+  std::string name, tolerance;
 };
 
-ErrorWish parse(const std::string& text) {
+ErrorLimit parse(const std::string& text) {
   const std::size_t space = text.find(' ');
   if (space == std::string::npos || text.find_first_not_of(' ', space) == std::string::npos) {
     throw Failure(ExitCode::bad_input,
@@ -39,18 +39,19 @@ ErrorWish parse(const std::string& text) {
 
 class Simplifier {
  public:
-  Simplifier(const SimplifyWish& wish, const SimplifyProgress& progress, const SimplifyCost& cost)
-      : wish_(wish), progress_(progress), cost_(cost), base_(load({})) {
+  Simplifier(const SimplifyOptions& options, const SimplifyProgress& progress, const SimplifyCost& cost)
+      : options_(options), progress_(progress), cost_(cost), base_(load({})) {
     if (!base_->has_mechanics()) {
       throw Failure(ExitCode::bad_input, "the scene has no bodies; there is nothing here to simplify");
     }
     if (!(base_->session.duration > 0)) {
       throw Failure(ExitCode::bad_input,
-                    "the scene runs until it is stopped; nothing was run; say with --until how long to try");
+                    "the scene runs until it is stopped; nothing was run; set --until to the time to try");
     }
-    if (wish.errors.empty()) {
+    if (options.errors.empty()) {
       throw Failure(ExitCode::bad_input,
-                    "what may change by how much? Say it with --error, such as 'Bag.position 1mm'");
+                    "no tolerance is given; nothing was run; name a variable and its tolerance with --error, such as "
+                    "'Bag.position 1mm'");
     }
     sample_ = {kStepsPerSample * base_->session.step_duration().ns};
     until_ = {base_->session.steps() * base_->session.step_duration().ns / sample_.ns * sample_.ns};
@@ -63,7 +64,7 @@ class Simplifier {
   Simplification run() {
     result_.scene = base_->name;
     result_.until = until_.seconds();
-    result_.repeats = wish_.repeats;
+    result_.repeats = options_.repeats;
     watch();
     run_base();
     if (!is_stopped_) try_alone();
@@ -74,13 +75,13 @@ class Simplifier {
   }
 
  private:
-  // nothing: the scene's rules refuse it, and say why
+  // nothing: the scene's rules refuse it; refusal gets the reason
   std::optional<scene::Scene> load(const scene::Overrides& settings, std::string* refusal = nullptr) {
-    scene::SceneOptions options = wish_.scene;
-    options.overrides.insert(options.overrides.end(), settings.begin(), settings.end());
-    options.overrides.emplace_back("session.solution=split");
+    scene::SceneOptions scene_options = options_.scene;
+    scene_options.overrides.insert(scene_options.overrides.end(), settings.begin(), settings.end());
+    scene_options.overrides.emplace_back("session.solution=split");
     try {
-      return scene::load_scene(options);
+      return scene::load_scene(scene_options);
     } catch (const scene::LoadError& error) {
       if (refusal == nullptr) throw;
       const scene::Diagnostic& first = error.diagnostics().front();
@@ -97,33 +98,33 @@ class Simplifier {
     };
   }
 
-  // names, dimensions and limits of what must not change
+  // names, dimensions and limits of the watched variables
   void watch() {
     const std::vector<ElementVariable> variables = session::DirectSession(*base_).variables();
     std::vector<std::string> names;
     for (const ElementVariable& variable : variables) names.push_back(variable.name);
-    for (const std::string& text : wish_.errors) {
-      const ErrorWish wish = parse(text);
-      // a vector by its name: all of its parts
-      std::vector<std::string> patterns = {wish.name};
-      const bool is_whole = std::find(names.begin(), names.end(), wish.name) != names.end();
-      if (!is_whole && wish.name.find('*') == std::string::npos) patterns = {wish.name + ".?"};
+    for (const std::string& text : options_.errors) {
+      const ErrorLimit limit = parse(text);
+      // the name of a vector stands for all of its parts
+      std::vector<std::string> patterns = {limit.name};
+      const bool is_whole = std::find(names.begin(), names.end(), limit.name) != names.end();
+      if (!is_whole && limit.name.find('*') == std::string::npos) patterns = {limit.name + ".?"};
       std::vector<std::string> chosen;
       try {
         chosen = scene::choose(patterns, names);
       } catch (const Failure&) {
-        // what was meant is told of the name as it was written
-        patterns = {wish.name};
+        // the error message suggests names for the name as it was written
+        patterns = {limit.name};
         chosen = scene::choose(patterns, names);
       }
       for (const std::string& name : chosen) {
         const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
         Watched watched{
             .name = name, .unit = std::string(info(variables[at].dimension).si_unit), .tolerance = 0, .range = 0};
-        if (wish.limit.ends_with('%')) {
-          fraction_.push_back(read_option("--error", wish.limit, Dimension::none));
+        if (limit.tolerance.ends_with('%')) {
+          fraction_.push_back(read_option("--error", limit.tolerance, Dimension::none));
         } else {
-          watched.tolerance = read_option("--error", wish.limit, variables[at].dimension);
+          watched.tolerance = read_option("--error", limit.tolerance, variables[at].dimension);
           fraction_.push_back(0);
         }
         if (!(watched.tolerance > 0 || fraction_.back() > 0)) {
@@ -159,10 +160,10 @@ class Simplifier {
 
   double cost_of(const scene::Scene& scene, const Observation& run, const std::string& doing) {
     if (cost_) return cost_(scene, run.steps);
-    return time_runs(scene, run.steps, wish_.repeats, run.state_hashes, part(doing)).whole;
+    return time_runs(scene, run.steps, options_.repeats, run.state_hashes, part(doing)).whole;
   }
 
-  // every step of the scene as it is: what never touches, what never moves
+  // every step of the unchanged scene: pairs that never touch, joints that never move
   void find_unused() {
     PlayedScene played(*base_);
     const coupling::Subsystem& mechanics = *played.session().subsystem(Role::mechanics);
@@ -196,7 +197,7 @@ class Simplifier {
     }
   }
 
-  // settings beside the user's own
+  // settings in addition to the user's own
   Trial attempt(Candidate candidate) {
     Trial trial{.candidate = std::move(candidate)};
     std::optional<scene::Scene> scene = load(trial.candidate.settings, &trial.refusal);
@@ -222,7 +223,7 @@ class Simplifier {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       trial.changes.push_back(difference(run, base_run_, {.unit = "", .columns = {i}}).largest);
     }
-    // what does not hold is not worth its timing
+    // a candidate that does not hold is not timed
     if (holds(result_.watched, trial)) trial.cost = cost_of(scene, run, trial.candidate.title);
   }
 
@@ -266,7 +267,7 @@ class Simplifier {
     }
     if (result_.settings.empty()) return;
     result_.combined = attempt({.title = "all that are taken", .group = "", .settings = result_.settings});
-    // measured once more: what does not repeat is not handed out
+    // measured once more: a saving that does not repeat is rejected
     if (pays(result_.combined, result_.base_cost)) return;
     take_nothing();
   }
@@ -276,13 +277,13 @@ class Simplifier {
     for (Trial& trial : result_.trials) trial.is_taken = false;
   }
 
-  const SimplifyWish& wish_;
+  const SimplifyOptions& options_;
   const SimplifyProgress& progress_;
   const SimplifyCost& cost_;
   std::optional<scene::Scene> base_;
   SimDuration sample_, until_;
   std::vector<std::string> names_;
-  std::vector<double> fraction_;  // of the range, by name; 0: the tolerance is given
+  std::vector<double> fraction_;  // share of the range, by name; 0: the tolerance is given
   Observation base_run_;
   RunFindings found_;
   std::size_t done_ = 0, works_ = kUsualWorks;
@@ -309,8 +310,8 @@ bool holds(const std::vector<Watched>& watched, const Trial& trial) {
   return true;
 }
 
-Simplification simplify(const SimplifyWish& wish, const SimplifyProgress& progress, const SimplifyCost& cost) {
-  return Simplifier(wish, progress, cost).run();
+Simplification simplify(const SimplifyOptions& options, const SimplifyProgress& progress, const SimplifyCost& cost) {
+  return Simplifier(options, progress, cost).run();
 }
 
 }  // namespace slew::analysis

@@ -1,10 +1,10 @@
-// `slewring simplify SCENE --error "Bag.position 1mm"`: what of a scene can be left out while chosen variables change
-// by less than a tolerance, and what that saves.
+// `slewring simplify SCENE --error "Bag.position 1mm"`: the parts of a scene that can be left out while chosen
+// variables change by less than a tolerance, and the saving.
 //
-// Base is the scene as it is. Every candidate (candidates.h) is tried alone on the scene's own run in this process;
-// those that hold and pay are then taken together, the largest saving first, each tried with those taken before. The
-// set that is left is run once more. A change is the largest difference from the base over all samples; the base itself
-// is not judged: `slewring tradeoff` and `slewring compare` do that.
+// The base is the unchanged scene. Every candidate (candidates.h) is tried alone on the scene's own run in this
+// process; candidates that hold and pay are then combined, the largest saving first, each tried with those taken
+// before. The final set is run once more. A change is the largest difference from the base over all samples; the base
+// itself is not judged: `slewring tradeoff` and `slewring compare` do that.
 #pragma once
 
 #include <functional>
@@ -18,11 +18,11 @@
 
 namespace slew::analysis {
 
-// A saving below this part of the cost is not told from how much a machine's time varies.
+// Smallest saving, as a part of the cost, that exceeds the scatter of a machine's timing.
 inline constexpr double kLeastSaving = 0.01;
 
-struct SimplifyWish {
-  scene::SceneOptions scene;        // duration: how long; as the scene says when empty
+struct SimplifyOptions {
+  scene::SceneOptions scene;        // duration: run time; empty: the scene's
   std::vector<std::string> errors;  // "Bag.position 1mm", "Cyl_Lift.force 1%": of its range in the base
   int repeats = 3;                  // timed runs
 };
@@ -30,7 +30,7 @@ struct SimplifyWish {
 struct Watched {
   std::string name, unit;  // SI unit
   double tolerance = 0;    // SI
-  double range = 0;        // of the base run
+  double range = 0;        // range in the base run
 };
 
 struct Trial {
@@ -39,7 +39,7 @@ struct Trial {
   std::vector<double> changes{};  // largest, SI, by watched variable
   double cost = 0;                // us per ms
   bool is_taken = false;
-  bool was_interrupted = false;  // before it could be judged
+  bool was_interrupted = false;  // interrupted before it could be judged
 
   [[nodiscard]] bool has_run() const noexcept { return refusal.empty() && !was_interrupted; }
 };
@@ -52,7 +52,7 @@ struct Simplification {
   std::vector<Watched> watched;
   std::vector<Trial> trials;  // each candidate alone
   Trial combined;             // all that are taken; its settings are the user's own and theirs
-  scene::Overrides settings;  // that are taken, without the user's own
+  scene::Overrides settings;  // settings that are taken, without the user's own
   bool is_interrupted = false;
 
   [[nodiscard]] bool helps() const noexcept { return !settings.empty() && !is_interrupted; }
@@ -62,15 +62,15 @@ struct Simplification {
 [[nodiscard]] std::size_t worst_of(const std::vector<Watched>& watched, const Trial& trial);
 [[nodiscard]] bool holds(const std::vector<Watched>& watched, const Trial& trial);
 
-// Told what is under way and which share of all is done; false ends it.
+// Receives the present activity and the share of all work that is done; false ends it.
 using SimplifyProgress = std::function<bool(std::string_view doing, double share)>;
 
-// What so many steps of a scene cost, us per simulated ms.
+// Cost of a number of steps of a scene, us per simulated ms.
 using SimplifyCost = std::function<double(const scene::Scene& scene, StepIndex steps)>;
 
-// cost: where it is not to be measured. Throws LoadError for a scene that is wrong, Failure for a wish that cannot be
-// met or a base that fails.
-[[nodiscard]] Simplification simplify(const SimplifyWish& wish, const SimplifyProgress& progress,
+// cost: replaces the measurement. Throws LoadError for a wrong scene, Failure for options that cannot be met or a base
+// that fails.
+[[nodiscard]] Simplification simplify(const SimplifyOptions& options, const SimplifyProgress& progress,
                                       const SimplifyCost& cost = {});
 
 // width [characters]: of the lines of a table; 0: no limit.

@@ -12,9 +12,8 @@ using wire::Role;
 
 constexpr double kLongestSlice = 20;  // s of a session between two slices of the yardstick
 constexpr double kYardstickShare = 0.25;
-constexpr std::int64_t kAskAgainNs = 1'000'000'000;
-// so much of the session is judged before the first slice, which burns what was measured in it, where the session has
-// it
+constexpr std::int64_t kRequestIntervalNs = 1'000'000'000;
+// time of the session that is judged before the first slice, which burns the CPU time measured in it
 constexpr SimDuration kJudgedFirst = milliseconds(1000);
 constexpr SimDuration kLeftAfterwards = milliseconds(500);
 
@@ -60,17 +59,17 @@ void CellWatch::look(session::Observer& observer, std::int64_t now_ns) {
   const session::SessionView& view = observer.view();
   if (!view.has_session() || view.step() <= 0) return;
   follow(view);
-  follow_surroundings(view, now_ns);
+  watch_activity(view, now_ns);
   switch (stage_) {
     case Stage::stepping:
       if (!is_slice_due(view)) return;
-      ask(observer, wire::ControlAction::pause, now_ns);
+      request(observer, wire::ControlAction::pause, now_ns);
       around_session_.end();
       stage_ = Stage::pausing;
       return;
     case Stage::pausing:
       if (view.is_over()) stage_ = Stage::stepping;
-      if (!view.is_paused()) return ask_again(observer, wire::ControlAction::pause, now_ns);
+      if (!view.is_paused()) return request_again(observer, wire::ControlAction::pause, now_ns);
       measure(view);
       stage_ = Stage::measuring;
       return;
@@ -78,11 +77,11 @@ void CellWatch::look(session::Observer& observer, std::int64_t now_ns) {
       if (yardstick_.is_running()) return;
       around_yardstick_.end();
       ++done_;
-      ask(observer, wire::ControlAction::resume, now_ns);
+      request(observer, wire::ControlAction::resume, now_ns);
       stage_ = Stage::resuming;
       return;
     case Stage::resuming:
-      if (view.is_paused()) return ask_again(observer, wire::ControlAction::resume, now_ns);
+      if (view.is_paused()) return request_again(observer, wire::ControlAction::resume, now_ns);
       stage_ = Stage::stepping;
       return;
   }
@@ -104,7 +103,7 @@ bool CellWatch::is_slice_due(const session::SessionView& view) const noexcept {
   if (done_ == slices_ || view.is_over()) return false;
   if (done_ > 0) return view.step() >= steps_ * (done_ + 1) / (slices_ + 1);
   if (view.step() < std::max(first_slice_, steps_ / (slices_ + 1))) return false;
-  // what the loops are to burn is known
+  // whether the work of the loops is known
   return std::ranges::all_of(rules_.loops, [&](const YardstickLoop& loop) {
     const bool computes = loop.role == Role::mechanics || loop.role == Role::hydraulics;
     return work_.of_step(loop.role).ns > 0 && (!computes || computing_of(view, loop.role).ns > 0);
@@ -137,8 +136,8 @@ void CellWatch::follow(const session::SessionView& view) {
   cell_.response.values.push_back(io.response_recent * 1e6);
 }
 
-// From the end of the grace on, pauses apart.
-void CellWatch::follow_surroundings(const session::SessionView& view, std::int64_t now_ns) {
+// Measures from the end of the grace on, pauses apart.
+void CellWatch::watch_activity(const session::SessionView& view, std::int64_t now_ns) {
   if (view.is_over()) around_session_.end();
   if (stage_ == Stage::stepping && !view.is_over() && view.node(Role::io).health.response.count > 0) {
     around_session_.look(now_ns);
@@ -146,15 +145,15 @@ void CellWatch::follow_surroundings(const session::SessionView& view, std::int64
   if (stage_ == Stage::measuring && yardstick_.is_running()) around_yardstick_.look(now_ns);
 }
 
-void CellWatch::ask(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
+void CellWatch::request(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
   wire::ControlRequest request;
   request.action = action;
   observer.send(request);
-  asked_ns_ = now_ns;
+  request_ns_ = now_ns;
 }
 
-void CellWatch::ask_again(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
-  if (now_ns - asked_ns_ > kAskAgainNs) ask(observer, action, now_ns);
+void CellWatch::request_again(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
+  if (now_ns - request_ns_ > kRequestIntervalNs) request(observer, action, now_ns);
 }
 
 }  // namespace slew::analysis

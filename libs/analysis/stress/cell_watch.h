@@ -1,4 +1,4 @@
-// Goes on beside the session of a stress test's cell: follows its response, and pauses it for slices of the yardstick.
+// Runs beside the session of a stress test's cell: records its response, and pauses it for slices of the yardstick.
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@ namespace slew::analysis {
 // CPU time that the session's processes take for a step.
 class SessionWork {
  public:
-  // io's health has just said that the session is at this step.
+  // Called when io's health has reported that the session is at this step.
   void look(const session::SessionView& view, StepIndex step) noexcept;
-  // Of a role's process, between the first look and the last one; 0: there was one alone.
+  // CPU time of a role's process, between the first look and the last one; 0: there was only one.
   [[nodiscard]] SimDuration of_step(wire::Role role) const noexcept;
 
  private:
@@ -26,7 +26,7 @@ class SessionWork {
 
 class CellWatch {
  public:
-  // grace: start of the session that is not judged. cell: gets what is measured, in finish().
+  // grace: start of the session that is not judged. cell: receives the measurements in finish().
   CellWatch(const YardstickRules& rules, StepIndex steps, SimDuration grace, StressCell& cell);
 
   // Called some 50 times a second.
@@ -40,20 +40,20 @@ class CellWatch {
   [[nodiscard]] SimDuration computing_of(const session::SessionView& view, wire::Role role) const noexcept;
   void measure(const session::SessionView& view);
   void follow(const session::SessionView& view);
-  void follow_surroundings(const session::SessionView& view, std::int64_t now_ns);
-  void ask(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns);
-  void ask_again(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns);
+  void watch_activity(const session::SessionView& view, std::int64_t now_ns);
+  void request(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns);
+  void request_again(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns);
 
   YardstickRules rules_;
   SessionWork work_;
   StressCell& cell_;
   Yardstick yardstick_;
-  SurroundingsWatch around_session_, around_yardstick_;
+  ActivityWatch around_session_, around_yardstick_;
   Stage stage_ = Stage::stepping;
   StepIndex slices_, done_ = 0;
   StepIndex steps_, first_slice_;
   StepIndex followed_ = 0;
-  std::int64_t asked_ns_ = 0;
+  std::int64_t request_ns_ = 0;
 };
 
 }  // namespace slew::analysis

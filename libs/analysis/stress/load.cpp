@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kCopied = 64u << 20;
 constexpr std::size_t kFile = 4u << 20;
 constexpr std::size_t kDatagram = 1400;
-constexpr time_t kPatience = 5;  // s, for a datagram that is on its way
+constexpr time_t kPatience = 5;  // s, for a datagram in transit
 
 [[noreturn]] void compute() {
   volatile double x = 0.5;
@@ -52,7 +52,7 @@ bool write_all(int file, const std::vector<char>& bytes) noexcept {
   const std::vector<char> bytes(kFile, 'x');
   while (true) {
     const int file = open(path.c_str(), O_CREAT | O_WRONLY | O_TRUNC | O_CLOEXEC, 0600);
-    // the name goes at once, so that nothing is left when this process is killed
+    // the name is removed at once, so that no file is left when this process is killed
     if (file >= 0) unlink(path.c_str());
     if (file < 0 || !write_all(file, bytes)) {
       throw Failure(ExitCode::storage, path + ": cannot be written (" + std::strerror(errno) +
@@ -116,10 +116,10 @@ Status LoadProcesses::check() {
     const std::optional<ProcessEnd>& end = process->poll_end();
     if (!end) continue;
     const std::vector<std::string> lines = process->take_lines();
-    std::string words = lines.empty() ? "find out who ended it (dmesg), and run it again" : lines.back();
+    std::string words = lines.empty() ? "find the cause of its end (dmesg), and run it again" : lines.back();
     if (words.starts_with(kProgram)) words.erase(0, kProgram.size());
     const ExitCode code = end->exit_code == 0 ? ExitCode::failed : static_cast<ExitCode>(end->exit_code);
-    return Status::error(code, fmt::format("load {}: its {} process ({}) {}, and what is measured without it is no "
+    return Status::error(code, fmt::format("load {}: its {} process ({}) {}, and a measurement without it is no "
                                            "result; {}",
                                            to_text(load_), process->name(), process->pid(), end->text(), words));
   }

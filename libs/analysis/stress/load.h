@@ -23,11 +23,11 @@ enum class Load : std::uint8_t { none, cpu, mixed };
 // The load lasts as long as the object.
 class LoadProcesses {
  public:
-  // folder: where the files of a mixed load come and go.
+  // folder: place of the temporary files of a mixed load.
   LoadProcesses(Load load, const std::string& folder);
 
-  // Error when one of them has ended: with its exit code and last words; what was measured then was measured without
-  // it. Does not block.
+  // Error when one of them has ended: with its exit code and last output; later measurements lack its load. Does not
+  // block.
   [[nodiscard]] Status check();
 
  private:
@@ -35,7 +35,8 @@ class LoadProcesses {
   std::vector<std::unique_ptr<ChildProcess>> processes_;
 };
 
-// For such a process: works until it is killed; throws Failure when it cannot. kind: cpu, memory, disk, network.
+// Main function of such a process: works until it is killed; throws Failure when it cannot. kind: cpu, memory, disk,
+// network.
 void work_as(const std::string& kind, const std::string& folder);
 
 }  // namespace slew::analysis

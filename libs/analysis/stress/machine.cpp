@@ -18,7 +18,7 @@ double share(std::uint64_t part, std::uint64_t all) noexcept {
 
 constexpr std::int64_t kLookNs = 100'000'000;
 
-// "0.42 0.31 0.30 3/210 5328": 3 of 210 threads run or are ready to, the one that reads this among them
+// "0.42 0.31 0.30 3/210 5328": 3 of 210 threads run or are ready to, including the reader of this
 std::int64_t runnable_threads() {
   std::ifstream file("/proc/loadavg");
   double of_1 = 0, of_5 = 0, of_15 = 0;
@@ -55,12 +55,12 @@ CpuTicks cpu_ticks() {
   return {user + nice + system + idle + waiting + irq + soft_irq + steal, idle + waiting, steal};
 }
 
-void SurroundingsWatch::begin() {
+void ActivityWatch::begin() {
   is_under_way_ = true;
   begin_ = cpu_ticks();
 }
 
-void SurroundingsWatch::look(std::int64_t now_ns) {
+void ActivityWatch::look(std::int64_t now_ns) {
   if (!is_under_way_) begin();
   if (now_ns - looked_ns_ < kLookNs) return;
   looked_ns_ = now_ns;
@@ -68,7 +68,7 @@ void SurroundingsWatch::look(std::int64_t now_ns) {
   ++looks_;
 }
 
-void SurroundingsWatch::end() {
+void ActivityWatch::end() {
   if (!is_under_way_) return;
   is_under_way_ = false;
   const CpuTicks end = cpu_ticks();
@@ -77,8 +77,8 @@ void SurroundingsWatch::end() {
   sum_.stolen += end.stolen - begin_.stolen;
 }
 
-Surroundings SurroundingsWatch::result() const noexcept {
-  Surroundings around;
+MachineActivity ActivityWatch::result() const noexcept {
+  MachineActivity around;
   if (looks_ > 0) around.runnable = static_cast<double>(runnable_) / static_cast<double>(looks_);
   around.steal = share(sum_.stolen, sum_.all);
   if (sum_.all > 0) around.busy = 1 - share(sum_.idle, sum_.all);

@@ -1,4 +1,4 @@
-// What the machine was doing while something was measured on it.
+// Activity of the machine during a measurement.
 #pragma once
 
 #include <cstdint>
@@ -22,21 +22,21 @@ struct CpuTicks {
 };
 [[nodiscard]] CpuTicks cpu_ticks();
 
-// What went on there while something was measured.
-struct Surroundings {
+// Load of the machine during a measurement.
+struct MachineActivity {
   double runnable = 0;  // threads of the machine that ran or were ready to, mean of 10 looks a second
   double steal = 0;     // share of the processors' time that the host took: 0 to 1
-  double busy = 0;      // share in which they were not idle: 0 to 1
+  double busy = 0;      // share of the time in which they were not idle: 0 to 1
 };
 
-// Follows it over as many spans of time as there are.
-class SurroundingsWatch {
+// Measures it over any number of spans of time.
+class ActivityWatch {
  public:
   void begin();
-  // Begins a span where none is under way. Called more often than 10 times a second. Who looks is not counted.
+  // Begins a span if none is under way. Called more often than 10 times a second. The calling thread is not counted.
   void look(std::int64_t now_ns);
   void end();
-  [[nodiscard]] Surroundings result() const noexcept;
+  [[nodiscard]] MachineActivity result() const noexcept;
 
  private:
   bool is_under_way_ = false;

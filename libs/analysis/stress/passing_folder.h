@@ -1,15 +1,15 @@
-// A folder of this process for what comes and goes while deadlines are measured: recordings, files of a load.
+// A folder of this process for temporary files during a measurement: recordings, files of a load.
 #pragma once
 
 #include <string>
 
 namespace slew::analysis {
 
-// There as long as the object, and gone with all that is in it.
+// Exists as long as the object and is removed with all its files.
 class PassingFolder {
  public:
-  // A folder in `parent`, which is made when it is not there, and goes again when nothing else is in it. Throws Failure
-  // (storage).
+  // Makes a folder in `parent`. The parent is made when it is missing, and then removed again when it is empty. Throws
+  // Failure (storage).
   explicit PassingFolder(const std::string& parent);
   ~PassingFolder();
   PassingFolder(const PassingFolder&) = delete;

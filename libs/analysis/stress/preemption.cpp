@@ -21,7 +21,7 @@ std::string chosen_in(const std::filesystem::path& file) {
 }
 
 // the last one counts, as for the kernel
-std::string asked_for_in(const std::filesystem::path& command_line) {
+std::string requested_in(const std::filesystem::path& command_line) {
   constexpr std::string_view kKey = "preempt=";
   std::string model;
   std::ifstream in(command_line);
@@ -59,7 +59,7 @@ std::string preemption_model(const std::string& release, const std::string& vers
                              const std::filesystem::path& root) {
   if (version.find("PREEMPT_RT") != std::string::npos) return "rt";
   for (const std::string& model :
-       {chosen_in(root / "sys/kernel/debug/sched/preempt"), asked_for_in(root / "proc/cmdline"),
+       {chosen_in(root / "sys/kernel/debug/sched/preempt"), requested_in(root / "proc/cmdline"),
         built_with(root / "proc/config.gz"), built_with(root / ("boot/config-" + release))}) {
     if (!model.empty()) return model;
   }

@@ -52,7 +52,7 @@ bool fifo_is_allowed() {
   return is_allowed;
 }
 
-// A loop for every node of the session, io's in front; what they burn is not known yet.
+// A loop for every node of the session, io's first; their work is not known yet.
 std::vector<YardstickLoop> loops_of(Scheduling scheduling, std::uint32_t roles, const std::string& places) {
   std::vector<scene::CpuPlace> all;
   require(scene::parse_cpu_places(places, all));
@@ -78,16 +78,16 @@ YardstickRules rules_of(const scene::Scene& scene, std::vector<YardstickLoop> lo
   return rules;
 }
 
-session::RunOptions options_of(const StressWish& wish, const StressCell& cell, const std::string& runs) {
-  session::RunOptions options;
-  options.scene = wish.scene;
-  options.session = wish.session;
-  options.runs = runs;
-  options.is_quiet = true;
-  options.is_real_time = cell.scheduling == Scheduling::fifo;
-  options.cpus = wish.cpus;
-  options.added_work_us = cell.work_us;
-  return options;
+session::RunOptions options_of(const StressOptions& options, const StressCell& cell, const std::string& runs) {
+  session::RunOptions run;
+  run.scene = options.scene;
+  run.session = options.session;
+  run.runs = runs;
+  run.is_quiet = true;
+  run.is_real_time = cell.scheduling == Scheduling::fifo;
+  run.cpus = options.cpus;
+  run.added_work_us = cell.work_us;
+  return run;
 }
 
 bool is_stated(const StressBounds& bounds) noexcept {
@@ -109,21 +109,21 @@ std::string in_words_of_stress(std::string message) {
   return message;
 }
 
-bool is_ended_early(const StressCell& cell, StepIndex asked) noexcept {
-  return (cell.code == ExitCode::ok || cell.code == ExitCode::losses) && cell.steps < asked;
+bool is_ended_early(const StressCell& cell, StepIndex wanted) noexcept {
+  return (cell.code == ExitCode::ok || cell.code == ExitCode::losses) && cell.steps < wanted;
 }
 
-// nothing went wrong, but what is asked of a cell is all its steps
-void fail_early(StepIndex asked, StressCell& cell) {
+// the session ended without an error, but a cell needs all its steps
+void fail_early(StepIndex wanted, StressCell& cell) {
   cell.code = ExitCode::failed;
   cell.messages.insert(cell.messages.begin(),
                        fmt::format("{}: the session ended at step {} of {}, and a part of a cell is no result; "
-                                   "somebody ended it ('slewring control stop'), run it again",
-                                   name_of(cell), cell.steps, asked));
+                                   "it was ended from outside ('slewring control stop'), run it again",
+                                   name_of(cell), cell.steps, wanted));
 }
 
-// What came of the session of so many steps, and of the load beside it.
-void conclude(const session::RunOutcome& outcome, StepIndex asked, const Status& load, StressCell& cell) {
+// Evaluates the session after its steps, and the load beside it.
+void conclude(const session::RunOutcome& outcome, StepIndex wanted, const Status& load, StressCell& cell) {
   cell.code = outcome.code;
   for (const std::string& message : session::without_echoes(outcome.messages)) {
     cell.messages.push_back(in_words_of_stress(message));
@@ -131,28 +131,28 @@ void conclude(const session::RunOutcome& outcome, StepIndex asked, const Status&
   cell.steps = outcome.steps;
   if (session::interrupts() > 0) return;
   if (load.is_ok()) {
-    if (is_ended_early(cell, asked)) fail_early(asked, cell);
+    if (is_ended_early(cell, wanted)) fail_early(wanted, cell);
     return;
   }
-  // the session was asked to end: that it did is no message
+  // the session received a request to end: its end is no message
   if (outcome.code == ExitCode::ok || outcome.code == ExitCode::terminated) cell.messages.clear();
   cell.messages.insert(cell.messages.begin(), load.text);
   cell.code = load.code;
 }
 
-void run_cell(const StressWish& wish, const io::SessionScene& session, const std::string& folder, StressCell& cell,
-              bool& is_refusal_told, const std::function<bool(double)>& progress) {
+void run_cell(const StressOptions& options, const io::SessionScene& session, const std::string& folder,
+              StressCell& cell, bool& is_refusal_reported, const std::function<bool(double)>& progress) {
   const scene::Scene& scene = session.scene;
   const std::string runs = folder + "/recordings";
-  session::RunOptions options = options_of(wish, cell, runs);
-  options.is_refusal_told = is_refusal_told;
-  const std::string places = wish.cpus.empty() ? scene.session.cpus : wish.cpus;
-  const auto recording = wish.scene.is_recording ? io::Recording::required : io::Recording::none;
+  session::RunOptions run = options_of(options, cell, runs);
+  run.is_refusal_reported = is_refusal_reported;
+  const std::string places = options.cpus.empty() ? scene.session.cpus : options.cpus;
+  const auto recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
   const YardstickRules rules = rules_of(scene, loops_of(cell.scheduling, io::required_roles(scene, recording), places));
   CellWatch watch(rules, scene.session.steps(), duration_of_seconds(scene.session.start_grace), cell);
   Status of_load;
   std::optional<LoadProcesses> load;
-  options.watcher = std::make_shared<CellWatcher>([&](session::Observer& observer, std::int64_t now_ns) {
+  run.watcher = std::make_shared<CellWatcher>([&](session::Observer& observer, std::int64_t now_ns) {
     watch.look(observer, now_ns);
     if (of_load.is_ok()) of_load = load->check();
     if (!of_load.is_ok()) return false;
@@ -160,10 +160,10 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, const std
     return progress(step / static_cast<double>(scene.session.steps()));
   });
   load.emplace(cell.load, folder);
-  const session::RunOutcome outcome = session::run_distributed(options, session);
+  const session::RunOutcome outcome = session::run_distributed(run, session);
   if (of_load.is_ok()) of_load = load->check();
   load.reset();
-  is_refusal_told = outcome.is_refusal_told;
+  is_refusal_reported = outcome.is_refusal_reported;
   watch.finish();
   conclude(outcome, scene.session.steps(), of_load, cell);
   cell.step = scene.session.step;
@@ -175,13 +175,14 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, const std
   std::filesystem::remove_all(runs, ignored);
 }
 
-// the session's p99 is the yardstick's when it is no larger than this times that
+// largest ratio of the session's p99 to the yardstick's that counts as equal
 constexpr double kSameP99 = 1.1;
-// standard errors within which two shares are the same, and the largest part of the yardstick's share that these may be
+// standard errors within which two shares count as equal, and the largest margin as a part of the yardstick's share
 constexpr double kErrors = 2, kLargestMargin = 0.5;
 
-// No more than the yardstick, within what the two counts scatter if both come from the yardstick's misses. These come
-// in rows: the variance of a count is at most the count times the longest row, as if all rows were as long.
+// True when the session misses no more than the yardstick, within the scatter of the two counts if both come from the
+// yardstick's misses. Misses come in rows: the variance of a count is at most the count times the longest row, as if
+// all rows were as long.
 bool misses_as_much(const wire::Health& session, const wire::Health& yardstick) noexcept {
   const double share = missed(yardstick);
   const double each =
@@ -223,7 +224,7 @@ BrokenBounds shared_bounds(const wire::Health& session, const wire::Health& yard
 }
 
 BoundsVerdict judge(const StressCell& cell, const StressBounds& bounds) noexcept {
-  // what the recorder lost is no deadline
+  // losses of the recorder are no missed deadlines
   const bool has_run = cell.code == ExitCode::ok || cell.code == ExitCode::losses;
   const wire::Health& session = cell.nodes[static_cast<std::size_t>(Role::io)];
   if (!is_stated(bounds) || !cell.skipped.empty()) return BoundsVerdict::none;
@@ -232,21 +233,22 @@ BoundsVerdict judge(const StressCell& cell, const StressBounds& bounds) noexcept
   return broken.max_miss || broken.p99 ? BoundsVerdict::over : BoundsVerdict::within;
 }
 
-Stress run_stress(const StressWish& wish, const StressBounds& bounds, const StressProgress& progress) {
+Stress run_stress(const StressOptions& options, const StressBounds& bounds, const StressProgress& progress) {
   Stress stress;
-  stress.wish = wish;
+  stress.options = options;
   stress.bounds = bounds;
   stress.machine = this_machine();
-  const io::SessionScene session = io::load_session_scene(wish.scene);
+  const io::SessionScene session = io::load_session_scene(options.scene);
   const scene::Scene& scene = session.scene;
   stress.scene = scene.name;
-  if (stress.wish.session.session.empty()) {
-    stress.wish.session.session = node::session_name_of("stress_" + scene.name + "_" + std::to_string(getpid()));
+  if (stress.options.session.session.empty()) {
+    stress.options.session.session = node::session_name_of("stress_" + scene.name + "_" + std::to_string(getpid()));
   }
   if (scene.session.solution == scene::Solution::monolithic) {
-    throw Failure(ExitCode::bad_input,
-                  "a monolithic solution has no deadline: its steps take as long as they take; nothing was run; choose "
-                  "session.solution: split");
+    throw Failure(
+        ExitCode::bad_input,
+        "a monolithic solution has no deadline: the duration of its steps has no bound; nothing was run; choose "
+        "session.solution: split");
   }
   if (scene.session.duration <= 2 * scene.session.start_grace) {
     throw Failure(ExitCode::bad_input,
@@ -255,9 +257,9 @@ Stress run_stress(const StressWish& wish, const StressBounds& bounds, const Stre
                               scene.session.start_grace, scene.session.duration, 2 * scene.session.start_grace));
   }
   const bool has_fifo = fifo_is_allowed();
-  for (const Scheduling scheduling : wish.schedulings) {
-    for (const Load load : wish.loads) {
-      for (const double work_us : wish.works_us) {
+  for (const Scheduling scheduling : options.schedulings) {
+    for (const Load load : options.loads) {
+      for (const double work_us : options.works_us) {
         StressCell& cell = stress.cells.emplace_back();
         cell.scheduling = scheduling;
         cell.load = load;
@@ -266,14 +268,14 @@ Stress run_stress(const StressWish& wish, const StressBounds& bounds, const Stre
       }
     }
   }
-  const PassingFolder folder(wish.folder);
-  bool is_refusal_told = false;
+  const PassingFolder folder(options.folder);
+  bool is_refusal_reported = false;
   const double all = static_cast<double>(stress.cells.size());
   for (std::size_t i = 0; i < stress.cells.size(); ++i) {
     StressCell& cell = stress.cells[i];
     if (!cell.skipped.empty()) continue;
     bool goes_on = true;
-    run_cell(stress.wish, session, folder.path(), cell, is_refusal_told, [&](double share) {
+    run_cell(stress.options, session, folder.path(), cell, is_refusal_reported, [&](double share) {
       goes_on = goes_on && progress(name_of(cell), (static_cast<double>(i) + std::min(1.0, share)) / all);
       return goes_on;
     });

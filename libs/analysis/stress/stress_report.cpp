@@ -23,14 +23,14 @@ std::string microseconds_text(double seconds) {
   return fmt::format("{:.0f}", seconds * 1e6);
 }
 
-// of all loops together in a step, s
+// work of all loops together in a step, s
 double work_of(const StressCell& cell) {
   double work = 0;
   for (const YardstickLoop& loop : cell.yardstick_loops) work += loop.work.seconds();
   return work;
 }
 
-// what the bare loops say of the bounds that the session broke
+// results of the bare loops for the bounds that the session broke
 std::string beside_yardstick(const StressCell& cell, const StressBounds& bounds) {
   const wire::Health& session = session_of(cell);
   if (cell.yardstick.response.count == 0) return "";
@@ -60,9 +60,9 @@ std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
   return "";
 }
 
-std::vector<ReportCell> row_of(const std::string& what, const wire::Health& health, const Surroundings& around) {
+std::vector<ReportCell> row_of(const std::string& what, const wire::Health& health, const MachineActivity& around) {
   const wire::Quantiles& response = health.response;
-  // zeros would read as if they had been measured
+  // zeros would look like measurements
   if (response.count == 0) return {what, "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-"};
   return {what,
           std::to_string(response.count),
@@ -135,8 +135,8 @@ Json node_of(const wire::Health& health) {
   return node;
 }
 
-// of a loop that keeps books
-Json paced_of(const wire::Health& health, const Surroundings& around) {
+// for a loop that keeps books
+Json paced_of(const wire::Health& health, const MachineActivity& around) {
   Json paced = timing_of(health);
   paced["skipped"] = given_up(health);
   paced["runnable"] = around.runnable;
@@ -187,7 +187,7 @@ Json json_of(const StressCell& cell, const StressBounds& bounds) {
 }
 
 std::string heading(const Stress& stress) {
-  return fmt::format("{}, {} s a cell, {} processors {}, {}, preemption {}", stress.scene, stress.wish.seconds,
+  return fmt::format("{}, {} s a cell, {} processors {}, {}, preemption {}", stress.scene, stress.options.seconds,
                      stress.machine.cpus, stress.machine.processor, stress.machine.kernel, stress.machine.preemption);
 }
 
@@ -206,7 +206,7 @@ std::string report_text(const Stress& stress, std::size_t width) {
 
 std::string report_json(const Stress& stress) {
   Json json = {{"scene", stress.scene},
-               {"seconds", stress.wish.seconds},
+               {"seconds", stress.options.seconds},
                {"kernel", stress.machine.kernel},
                {"preemption", stress.machine.preemption},
                {"processor", stress.machine.processor},

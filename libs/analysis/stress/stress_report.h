@@ -1,4 +1,4 @@
-// What came of a stress test: for people, for programs, and as a page.
+// Reports of a stress test as text, JSON and a page.
 #pragma once
 
 #include <string>

@@ -1,9 +1,9 @@
-// What the machine itself can do: bare loops that sleep with clock_nanosleep until the time of a step and burn as much
+// The limit of the machine itself: bare loops that sleep with clock_nanosleep until the time of a step and burn as much
 // CPU time as the processes of the session do in it, one loop for each, all released at once. A step has ended when the
-// loops have computed what the nodes compute in it; what the session's processes need beside that (the middleware, io,
-// the recorder) is burned behind its end, though some of it is in front of the session's. Nothing is sent. Lag,
-// catching up and missing follow io_node's rules (io_node/session_clock.h). The first steps of a slice, in which
-// threads and caches are cold, are its grace, as the session has one.
+// loops have done the nodes' computing. The other work of the session's processes (the middleware, io, the recorder) is
+// burned after its end, though in the session some of it comes before. Nothing is sent. Lag, catching up and missing
+// follow io_node's rules (io_node/session_clock.h). The first steps of a slice, in which threads and caches are cold,
+// are its grace, as in the session.
 #pragma once
 
 #include <atomic>
@@ -20,15 +20,15 @@
 namespace slew::analysis {
 
 struct YardstickLoop {
-  wire::Role role = wire::Role::io;  // whose process it stands for
+  wire::Role role = wire::Role::io;  // role of the process that it stands for
   SimDuration work;                  // CPU time of a step
-  SimDuration computing;             // of it in front of the step's end
+  SimDuration computing;             // the part of it before the step's end
   int priority = 0;                  // SCHED_FIFO; 0: normal scheduling
   int cpu = -1;                      // processor; -1: any
-  bool ends_step = true;             // else a load: the step does not wait for it
+  bool ends_step = true;             // false: a load, for which the step does not wait
 };
 
-inline constexpr SimDuration kYardstickGrace = milliseconds(100);  // of a slice
+inline constexpr SimDuration kYardstickGrace = milliseconds(100);  // at the start of a slice
 
 struct YardstickRules {
   SimDuration step;
@@ -51,9 +51,9 @@ class Yardstick {
   // Ends the present slice.
   void stop() noexcept { is_stopped_ = true; }
 
-  // As io_node's health would tell them. Only while no slice runs.
+  // The results in the form of io_node's health. Only while no slice runs.
   [[nodiscard]] wire::Health result() const;
-  // Of the first slice whose books do not balance; empty: all do.
+  // Problem of the first slice whose books do not balance; empty: all do.
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
  private:
@@ -64,7 +64,7 @@ class Yardstick {
   std::unique_ptr<node::NodeTiming> timing_ = std::make_unique<node::NodeTiming>();
   std::thread thread_;
   std::atomic<bool> is_running_{false}, is_stopped_{false};
-  // followers in their places; the step that the leader has released, and how many loops have done it
+  // followers in their places; the step that the leader has released; number of loops that have done it
   std::atomic<std::int32_t> placed_{0}, round_{0}, done_{0};
   std::atomic<std::int64_t> due_ns_{0};
   std::uint64_t steps_ = 0, skipped_ = 0;
@@ -72,7 +72,7 @@ class Yardstick {
   std::string problem_;
 };
 
-// Asks for the CPU time of this thread until so much of it has gone.
+// Polls the CPU time of this thread until it has grown by this much.
 void burn(SimDuration cpu_time) noexcept;
 
 }  // namespace slew::analysis

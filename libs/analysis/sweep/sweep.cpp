@@ -46,7 +46,7 @@ class Sweep {
       if (!running_.empty()) wait();
       collect();
     }
-    running_.clear();  // kills what runs
+    running_.clear();  // kills the running processes
     static_cast<void>(progress_(state()));
     return std::move(results_);
   }
@@ -61,7 +61,7 @@ class Sweep {
   [[nodiscard]] std::string file_of(std::size_t task) const { return result_file(options_.folder, tasks_[task].key); }
 
   void take_kept(std::size_t task) {
-    if (options_.is_anew) return;
+    if (options_.is_fresh) return;
     std::optional<Json> value = read_result(file_of(task));
     if (!value) return;
     results_[task] = {.is_done = true, .was_kept = true, .value = std::move(*value), .failure = {}};
@@ -111,7 +111,7 @@ class Sweep {
     double all = 0, done = 0;
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
       if (results_[i].is_done) ++state.done;
-      // what was there before took no time
+      // kept results took no time
       if (results_[i].was_kept) continue;
       all += tasks_[i].weight;
       if (results_[i].is_done) done += tasks_[i].weight;

@@ -1,10 +1,10 @@
-// Many independent computations, each in a process of this program, several at once; what is done stays in a folder and
-// is not done again.
+// Many independent computations, each in a process of this program, several at once; results stay in a folder and are
+// not computed again.
 //
 // A task is a command line of this program. Its process writes one JSON value with write_result() to the file that
-// `--result` names; the file is there as a whole or not at all, so that a sweep may be ended at any moment and goes on
-// where it was. The key of a task stands for all that its result follows from. A process that ends without a result
-// leaves none: it is told, and tried again next time.
+// `--result` names; the file is complete or missing, so that a sweep may be ended at any moment and continues later.
+// The key of a task stands for all that its result depends on. A process that ends without a result is reported, and
+// its task is tried again next time.
 #pragma once
 
 #include <cstddef>
@@ -19,16 +19,16 @@ namespace slew::analysis {
 
 struct SweepTask {
   std::string key;                     // letters, digits, '-', '_': name of its result's file
-  std::string label;                   // told while it runs
-  std::vector<std::string> arguments;  // of this program; `--result FILE` is added
-  double weight = 1;                   // expected work beside the others'
+  std::string label;                   // shown while it runs
+  std::vector<std::string> arguments;  // arguments of this program; `--result FILE` is added
+  double weight = 1;                   // expected work relative to the others'
 };
 
 struct SweepOptions {
-  std::string folder;    // made when it is not there
-  int workers = 2;       // processes at once
-  bool is_anew = false;  // results that are there already are not taken
-  std::string program;   // empty: this one
+  std::string folder;     // made when it is missing
+  int workers = 2;        // processes at once
+  bool is_fresh = false;  // ignores the results of earlier sweeps
+  std::string program;    // empty: this one
 };
 
 struct SweepResult {
@@ -38,7 +38,7 @@ struct SweepResult {
   std::string failure;    // why there is no value; empty: there is one
 };
 
-// How far it is: what runs now, and the share of the weights that is done. False ends the sweep; what runs is given up.
+// Progress: the running tasks, and the share of the weights that is done. False ends the sweep and the running tasks.
 struct SweepState {
   std::string doing;
   double share = 0;
@@ -50,13 +50,13 @@ using SweepProgress = std::function<bool(const SweepState&)>;
 [[nodiscard]] std::vector<SweepResult> run_sweep(std::span<const SweepTask> tasks, const SweepOptions& options,
                                                  const SweepProgress& progress);
 
-// Where a task's result lies.
+// File of a task's result.
 [[nodiscard]] std::string result_file(const std::string& folder, const std::string& key);
 
-// For the process of a task. Throws Failure (storage).
+// Called by the process of a task. Throws Failure (storage).
 void write_result(const std::string& file, const Json& value);
 
-// A key from all texts that a result follows from: 16 hexadecimal digits.
+// A key from all texts that a result depends on: 16 hexadecimal digits.
 [[nodiscard]] std::string key_of(std::span<const std::string> texts);
 
 }  // namespace slew::analysis

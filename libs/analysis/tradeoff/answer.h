@@ -1,4 +1,4 @@
-// Which row to take: the Pareto front of cost and error, and the best row within a budget or an error.
+// The choice of a row: the Pareto front of cost and error, and the best row within a budget or an error.
 #pragma once
 
 #include <optional>
@@ -19,17 +19,17 @@ void mark_pareto(Tradeoff& tradeoff);
 
 // Error that a variable may have: absolute in SI, or a share of its range.
 struct ErrorBound {
-  std::string text;                    // as it was asked for
-  std::vector<std::size_t> variables;  // of the tradeoff
+  std::string text;                    // the user's text
+  std::vector<std::size_t> variables;  // indices in the tradeoff
   double bound = 0;
   bool is_relative = false;
 };
 
-// What the user asks: at most so much cost, so much error, or both.
+// The user's limits: a largest cost, largest errors, or both.
 struct Question {
   std::optional<double> budget;  // us per simulated ms
   std::vector<ErrorBound> errors;
-  [[nodiscard]] bool is_asked() const noexcept { return budget || !errors.empty(); }
+  [[nodiscard]] bool has_limits() const noexcept { return budget || !errors.empty(); }
 };
 
 // "20 us/ms", or a bare number of them. Throws Failure (bad_input).
@@ -37,8 +37,8 @@ struct Question {
 // "Cyl_Lift.force 1%", "Bag.position 1 mm". Throws Failure (bad_input), also where the tradeoff has no such variable.
 [[nodiscard]] ErrorBound parse_error(const std::string& text, const Tradeoff& tradeoff);
 
-// The row that meets the question: without errors the one with the least worst error within the budget, else the
-// cheapest one. None: no stable row does.
+// The row that meets the limits: without errors the one with the least worst error within the budget, else the cheapest
+// one. None: no stable row does.
 [[nodiscard]] std::optional<std::size_t> best_row(const Tradeoff& tradeoff, const Question& question);
 
 }  // namespace slew::analysis

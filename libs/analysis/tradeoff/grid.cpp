@@ -17,7 +17,7 @@ constexpr std::string_view kStep = "session.step", kCoupling = "session.coupling
 constexpr const char* kSteps[] = {"0.25ms", "0.5ms", "1ms", "2ms", "5ms", "10ms", "20ms"};
 constexpr const char* kSubsteps[] = {"0.1ms", "0.25ms", "0.5ms", "1ms", "2ms", "5ms"};
 constexpr const char* kTolerances[] = {"1e-2", "1e-3", "1e-4", "1e-5", "1e-6"};
-// of the product of a modest grid
+// steps in the product of a modest grid
 constexpr std::string_view kProductSteps[] = {"0.5ms", "1ms", "2ms", "5ms", "10ms"};
 constexpr std::string_view kProductTolerances[] = {"1e-3", "1e-4"};
 
@@ -153,7 +153,7 @@ std::string text_of(const Settings& settings) {
   if (settings.empty()) return "as it is";
   std::string text;
   for (const auto& [path, value] : settings) {
-    // sections are known by their keys, elements by their names
+    // sections are identified by their keys, elements by their names
     const bool is_section =
         std::any_of(scene::single_tables().begin(), scene::single_tables().end(),
                     [&, &p = path](const auto& table) { return p.starts_with(std::string(table.section) + '.'); });

@@ -1,9 +1,9 @@
-// Which settings of a scene are tried: axes of restart parameters, and rows that choose a value on some of them.
+// The settings of a scene that are tried: axes of restart parameters, and rows that choose a value on some of them.
 //
-// An axis is a path as `--set` takes it ("session.step") with its values as texts. Nothing here knows what a setting
-// means: whether a scene can run with a value is what its own rules say, and a row that they refuse stays in the table
-// with the reason. Only the list of axes that are tried without being asked for is fixed; each is there when the scene
-// contains what it is about, with the choices that the field tables list.
+// An axis is a path as `--set` takes it ("session.step") with its values as texts. This code does not depend on the
+// meaning of a setting: the scene's own rules decide whether it can run with a value, and a refused row stays in the
+// table with the reason. Only the list of default axes is fixed; each is present when the scene contains its subject,
+// with the choices that the field tables list.
 #pragma once
 
 #include <span>
@@ -22,7 +22,7 @@ struct Axis {
   std::vector<std::string> values;
 };
 
-// Path and value: what a row changes of the scene, in the order of the axes.
+// Path and value: the changes of a row, in the order of the axes.
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
 enum class GridSize { modest, full };
@@ -30,10 +30,10 @@ enum class GridSize { modest, full };
 // "session.step=0.5ms,1ms,2ms"; values with commas of their own in brackets or quotes. Throws Failure (bad_input).
 [[nodiscard]] Axis parse_axis(const std::string& text);
 
-// Those of the scene: communication step, coupling, formulation, integrators, tolerances, modes, contact.
+// Default axes of the scene: communication step, coupling, formulation, integrators, tolerances, modes, contact.
 [[nodiscard]] std::vector<Axis> default_axes(const scene::Scene& scene);
 
-// Of the scene's own axes: nothing changed, then every value alone, then the product: of the steps, couplings and
+// Grid of the scene's own axes: nothing changed, then every value alone, then the product: of the steps, couplings and
 // tolerances that matter most together (modest), or of all (full). Without repetitions.
 [[nodiscard]] std::vector<Settings> default_grid(std::span<const Axis> axes, GridSize size);
 // Nothing changed, then the product.
@@ -41,7 +41,7 @@ enum class GridSize { modest, full };
 
 // "session.step=2ms"
 [[nodiscard]] scene::Overrides overrides_of(const Settings& settings);
-// "step 2ms, coupling hold"; "as it is" of none
+// "step 2ms, coupling hold"; "as it is" without settings
 [[nodiscard]] std::string text_of(const Settings& settings);
 
 }  // namespace slew::analysis

@@ -62,7 +62,7 @@ Node& map_at(Node& parent, const std::string& key) {
   return parent.find(key)->value;
 }
 
-// the section that an element stands in; empty: its name is a section's
+// name of the section that has an element; empty: its name is a section's
 std::string section_of(scene::Scene& scene, const std::string& owner) {
   for (const scene::ElementRef& element : scene::elements(scene)) {
     if (element.name == owner) return std::string(element.section);

@@ -9,18 +9,18 @@
 
 namespace slew::analysis {
 
-// remark: the verb that writes it and why, for the first line.
+// remark: verb and reason, for the first line.
 //
 // Text of the overlay, to lie in the folder of the scene. A scene that includes others cannot be included itself: then
 // the overlay holds the scene's own keys too. scene: the loaded file. Throws LoadError for a file that cannot be read.
 [[nodiscard]] std::string overlay_text(const std::string& file, scene::Scene& scene, const scene::Overrides& settings,
                                        const std::string& remark);
 
-// Where an overlay of the scene goes: to path, or without one beside the scene as SCENE_suffix.yaml. Throws Failure
-// when that is not the scene's folder or holds a file that is no such overlay, which is never replaced.
+// Path of an overlay of the scene: `path`, or without one SCENE_suffix.yaml beside the scene. Throws Failure when that
+// is not the scene's folder or holds another kind of file, which is never replaced.
 [[nodiscard]] std::string overlay_target(const std::string& file, const std::string& path, std::string_view suffix);
 
-// Writes the text to target and reads it back: what was written loads. Throws Failure.
+// Writes the text to target and loads it as a check. Throws Failure.
 void write_overlay(const std::string& file, const scene::Overrides& settings, const std::string& remark,
                    const std::string& target);
 

@@ -55,7 +55,7 @@ std::vector<std::string> names_in(const session::DirectSession& session) {
   return names;
 }
 
-// Wall time that one run may take.
+// Wall time limit of one run.
 class Limit {
  public:
   explicit Limit(double seconds) : end_ns_(monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9)) {}

@@ -1,10 +1,9 @@
-// One run of a tradeoff, as a process of its own computes it: what a setting costs, and how far it is from the
-// reference.
+// One run of a tradeoff in a process of its own: the cost of a setting, and its distance from the reference.
 //
-// The reference of a row is the whole scene as one system (libs/monolith) in the same communication step: input is held
-// alike in both, so that the difference is what coupling, integrators and left-out parts do. Where the monolith cannot
-// go (shapes that touch) it is the split scene in a sixteenth of the step with tight tolerances. Both show the same
-// variables at the same instants.
+// The reference of a row is the whole scene as one system (libs/monolith) in the same communication step: the input is
+// held alike in both, so that the difference comes from coupling, integrators and left-out parts. Where the monolith
+// cannot run (shapes that touch) it is the split scene in a sixteenth of the step with tight tolerances. Both have the
+// same variables at the same instants.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +23,13 @@ struct RowJob {
   scene::SceneOptions scene;           // with the row's settings
   std::vector<std::string> variables;  // names
   RunKind kind = RunKind::row;
-  double row_step = 0;     // s, communication step of the row, also of the row that a reference is for
+  double row_step = 0;     // s, communication step of the row; a reference has that of its row
   std::string samples;     // file of the reference's samples: written by a reference, read by a row
   int repeats = 3;         // timed runs
   double time_limit = 60;  // s of wall time for one run
 };
 
-// Over the samples that both have.
+// Error over the samples that both have.
 struct VariableError {
   double largest = 0, rms = 0;
   bool operator==(const VariableError&) const = default;
@@ -49,11 +48,11 @@ struct RowResult {
   std::vector<std::optional<VariableError>> errors{};  // by variable; none: the row has no such variable
   std::optional<double> eta{}, net{};                  // worst of all ports; none: no ports
   double gap = 0;                                      // joints, m or rad
-  std::string open_joint{};                            // the most open one
+  std::string open_joint{};                            // name of the most open joint
   std::int64_t not_converged = 0;                      // steps
   StepCost cost{};
-  // of a reference
-  std::vector<double> low{}, high{};  // of each variable
+  // of a reference only
+  std::vector<double> low{}, high{};  // range of each variable
   bool operator==(const RowResult&) const = default;
 };
 

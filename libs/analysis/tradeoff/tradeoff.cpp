@@ -25,8 +25,8 @@ namespace {
 constexpr double kReferenceTolerance = 1e-9, kLooserTolerance = 1e-8;
 constexpr double kReferenceLimit = 600;       // s of wall time
 constexpr double kRowLimit = 60;              // s
-constexpr std::int64_t kReferenceParts = 16;  // of a communication step, where the monolith cannot go
-constexpr double kReferenceWeight = 2;        // of rows
+constexpr std::int64_t kReferenceParts = 16;  // parts of a communication step, where the monolith cannot run
+constexpr double kReferenceWeight = 2;        // in rows
 
 std::string exact(double value) {
   return fmt::format("{:.17g}", value);
@@ -42,21 +42,21 @@ std::string_view stem_of(std::string_view name) {
 
 class Trader {
  public:
-  Trader(const TradeoffWish& wish, const TradeoffProgress& progress) : wish_(wish), progress_(progress) {
-    options_ = wish.scene;
-    options_.overrides.emplace_back("session.solution=split");
-    // how wrong a setting is beyond its limit is what is measured
-    options_.overrides.emplace_back("session.coupling_alarm=warn");
-    options_.is_recording = false;
-    base_ = scene::load_scene(options_);
+  Trader(const TradeoffOptions& options, const TradeoffProgress& progress) : options_(options), progress_(progress) {
+    scene_options_ = options.scene;
+    scene_options_.overrides.emplace_back("session.solution=split");
+    // the error of a setting beyond its limit is to be measured
+    scene_options_.overrides.emplace_back("session.coupling_alarm=warn");
+    scene_options_.is_recording = false;
+    base_ = scene::load_scene(scene_options_);
     if (!(base_.session.duration > 0)) {
       throw Failure(ExitCode::bad_input,
-                    "the scene runs until it is stopped; nothing was run; say with --until how long to run it");
+                    "the scene runs until it is stopped; nothing was run; set --until to the time to run");
     }
     result_.scene = base_.name;
-    result_.file = wish.scene.file;
+    result_.file = options.scene.file;
     result_.until = base_.session.duration;
-    result_.folder = wish.folder.empty() ? "runs/tradeoff-" + base_.name : wish.folder;
+    result_.folder = options.folder.empty() ? "runs/tradeoff-" + base_.name : options.folder;
     choose_axes();
     choose_variables();
     plan_rows();
@@ -71,22 +71,22 @@ class Trader {
  private:
   struct Planned {
     double H = 0;
-    std::string text;     // canonical, of the row's scene
+    std::string text;     // canonical text of the row's scene
     bool is_run = false;  // it was not refused
   };
   struct Reference {
-    scene::Overrides overrides;  // in the place of the row's
+    scene::Overrides overrides;  // replace the row's
     std::string samples;         // file
     RowResult result;
     bool is_done = false;
   };
 
   void choose_axes() {
-    for (const std::string& text : wish_.axes) result_.axes.push_back(parse_axis(text));
+    for (const std::string& text : options_.axes) result_.axes.push_back(parse_axis(text));
     if (result_.axes.empty()) result_.axes = default_axes(base_);
   }
 
-  // of a machine without a rigid body that moves its last one
+  // name of the last rigid body that moves; empty: there is none
   [[nodiscard]] std::string payload_name() const {
     if (!base_.has_mechanics()) return "";
     const multibody::Model model = multibody::build_model(base_.mechanics);
@@ -98,14 +98,14 @@ class Trader {
     const std::vector<ElementVariable> variables = session::DirectSession(base_).variables();
     std::vector<std::string> names;
     for (const ElementVariable& variable : variables) names.push_back(variable.name);
-    std::vector<std::string> patterns = wish_.variables;
+    std::vector<std::string> patterns = options_.variables;
     if (patterns.empty()) {
       for (const scene::PortDef& port : base_.ports) patterns.push_back(port.name + ".force");
       const std::string lifted = payload_name();
       if (!lifted.empty()) patterns.push_back(lifted + ".position.?");
       if (patterns.empty()) patterns.emplace_back("*.pressure");
     }
-    // a vector is meant by its name
+    // the name of a vector stands for its parts
     for (std::string& pattern : patterns) {
       const bool is_vector = std::find(names.begin(), names.end(), pattern + ".x") != names.end();
       if (is_vector) pattern += ".?";
@@ -121,12 +121,12 @@ class Trader {
   }
 
   [[nodiscard]] scene::SceneOptions options_with(const scene::Overrides& overrides) const {
-    scene::SceneOptions options = options_;
-    options.overrides.insert(options.overrides.end(), overrides.begin(), overrides.end());
-    return options;
+    scene::SceneOptions row_options = scene_options_;
+    row_options.overrides.insert(row_options.overrides.end(), overrides.begin(), overrides.end());
+    return row_options;
   }
 
-  // what a result follows from: the scene, its files, and the program
+  // text that a result depends on: the scene, its files, and the program
   [[nodiscard]] static std::string text_of_scene(const scene::Scene& scene) {
     std::string text = scene.expanded_text;
     for (const scene::Asset& asset : scene.assets) {
@@ -135,10 +135,10 @@ class Trader {
     return text;
   }
 
-  // Rows that are the same scene are one; a value that is refused alone is not tried with others.
+  // Rows with the same scene are one; a value that is refused alone is not tried with others.
   void plan_rows() {
     const std::vector<Settings> grid =
-        wish_.axes.empty() ? default_grid(result_.axes, wish_.size) : product_grid(result_.axes);
+        options_.axes.empty() ? default_grid(result_.axes, options_.size) : product_grid(result_.axes);
     std::set<std::string> seen;
     std::set<std::pair<std::string, std::string>> refused;
     for (const Settings& settings : grid) {
@@ -169,7 +169,7 @@ class Trader {
     job.scene = options_with(overrides);
     job.variables = names_;
     job.row_step = H;
-    job.repeats = wish_.repeats;
+    job.repeats = options_.repeats;
     job.time_limit = kRowLimit;
     return job;
   }
@@ -178,10 +178,10 @@ class Trader {
   [[nodiscard]] SweepTask task_of(RowJob& job, const std::string& label, double weight, const std::string& scene_text) {
     std::string names;
     for (const std::string& name : names_) names += name + ' ';
-    const std::vector<std::string> texts = {scene_text,          names,
-                                            exact(job.row_step), std::to_string(job.repeats),
-                                            options_.input,      node::build_id(),
-                                            job.samples,         job.kind == RunKind::reference ? "reference" : "row"};
+    const std::vector<std::string> texts = {scene_text,           names,
+                                            exact(job.row_step),  std::to_string(job.repeats),
+                                            scene_options_.input, node::build_id(),
+                                            job.samples,          job.kind == RunKind::reference ? "reference" : "row"};
     SweepTask task{.key = key_of(texts), .label = label, .arguments = {}, .weight = weight};
     const std::string base = (std::filesystem::path(result_.folder) / task.key).string();
     if (job.kind == RunKind::reference) job.samples = base + ".samples";
@@ -198,11 +198,11 @@ class Trader {
   }
 
   [[nodiscard]] SweepOptions sweep_options() const {
-    SweepOptions options;
-    options.folder = result_.folder;
-    options.workers = wish_.workers;
-    options.is_anew = wish_.is_anew;
-    return options;
+    SweepOptions sweep;
+    sweep.folder = result_.folder;
+    sweep.workers = options_.workers;
+    sweep.is_fresh = options_.is_fresh;
+    return sweep;
   }
 
   // share of the whole: references and rows by their weights
@@ -220,7 +220,7 @@ class Trader {
             "session.flexible=once"};
   }
 
-  // the split scene in short steps; whole nanoseconds, not below what a scene may have
+  // the split scene in short steps; whole nanoseconds, not below the smallest step of a scene
   [[nodiscard]] static scene::Overrides finely_split(const scene::Scene& scene, double H) {
     const std::int64_t ns = duration_of_seconds(H).ns;
     std::int64_t parts = kReferenceParts;
@@ -264,7 +264,7 @@ class Trader {
     return true;
   }
 
-  // Communication steps of the rows, as far as the scene itself may have them; rows in another one cannot be compared.
+  // Communication steps of the rows, as far as the scene allows them; rows with another one cannot be compared.
   [[nodiscard]] std::vector<double> steps_with_reference() {
     std::map<double, std::string> refusals;  // empty: none
     std::vector<double> steps;
@@ -348,7 +348,7 @@ class Trader {
       row_of.push_back(i);
     }
     if (!is_split_reference_ && planned_.front().is_run) {
-      // how far the reference is from itself
+      // own error of the reference
       const double H = planned_.front().H;
       RowJob job = job_for(monolithic(H, kLooserTolerance), H);
       job.samples = references_.at(H).samples;
@@ -383,9 +383,9 @@ class Trader {
     }
   }
 
-  const TradeoffWish& wish_;
+  const TradeoffOptions& options_;
   const TradeoffProgress& progress_;
-  scene::SceneOptions options_;
+  scene::SceneOptions scene_options_;
   scene::Scene base_;
   std::vector<std::string> names_;
   std::vector<Planned> planned_;            // beside result_.rows
@@ -402,8 +402,8 @@ std::size_t Tradeoff::done() const noexcept {
       std::count_if(rows.begin(), rows.end(), [](const TradeoffRow& row) { return row.is_done; }));
 }
 
-Tradeoff trade_off(const TradeoffWish& wish, const TradeoffProgress& progress) {
-  return Trader(wish, progress).run();
+Tradeoff trade_off(const TradeoffOptions& options, const TradeoffProgress& progress) {
+  return Trader(options, progress).run();
 }
 
 std::optional<double> relative_error(const Tradeoff& tradeoff, const TradeoffRow& row, std::size_t variable,
@@ -427,7 +427,7 @@ std::string verdict(const TradeoffRow& row) {
   if (!row.is_done) return "not run";
   if (!row.result.refusal.empty()) return "refused: " + row.result.refusal;
   if (!row.result.failure.empty()) return fmt::format("no: {} at {:.4g} s", row.result.failure, row.result.failed_at);
-  if (row.parts_from_reference) return "no: farther from the reference than that moves";
+  if (row.parts_from_reference) return "no: error exceeds the reference's own range";
   if (row.result.eta && lamp_of(*row.result.eta) == coupling::Lamp::red) return "yes, but the coupling's lamp is red";
   return "yes";
 }

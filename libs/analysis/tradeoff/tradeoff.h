@@ -1,9 +1,9 @@
 // Error against cost of one scene's manoeuvre over many settings, each in a process of its own, against the monolithic
 // solution of the whole scene.
 //
-// Errors are shown relative to the range of the variable in the reference; the components x, y, z of a vector share the
-// largest of their three ranges. A row is stable when it ends, stays finite and never is farther from the reference
-// than that range.
+// Errors are relative to the range of the variable in the reference; the components x, y, z of a vector share the
+// largest of their three ranges. A row is stable when it ends, stays finite and its distance from the reference never
+// exceeds that range.
 #pragma once
 
 #include <optional>
@@ -18,21 +18,21 @@
 
 namespace slew::analysis {
 
-struct TradeoffWish {
-  scene::SceneOptions scene;           // duration: how long; as the scene says when empty
+struct TradeoffOptions {
+  scene::SceneOptions scene;           // duration: run time; empty: the scene's
   std::vector<std::string> axes;       // texts; empty: those of the scene
-  std::vector<std::string> variables;  // patterns; empty: forces of the actuators and the place of the payload
+  std::vector<std::string> variables;  // patterns; empty: forces of the actuators and the position of the payload
   GridSize size = GridSize::modest;
-  std::string folder;  // of the results; empty: runs/tradeoff-SCENE
+  std::string folder;  // folder of the results; empty: runs/tradeoff-SCENE
   int workers = 2;
   int repeats = 3;
-  bool is_anew = false;
+  bool is_fresh = false;
 };
 
 struct TradeoffVariable {
   std::string name, unit;  // SI
   Dimension dimension = Dimension::none;
-  double range = 0;              // that errors are relative to
+  double range = 0;              // the errors are relative to it
   std::optional<double> spread;  // largest difference of the reference to itself at ten times its tolerance
 };
 
@@ -50,32 +50,31 @@ struct TradeoffRow {
 struct Tradeoff {
   std::string scene, file;
   double until = 0;       // s
-  std::string reference;  // what the rows are compared with, for people
+  std::string reference;  // description of the reference for the user
   std::string folder;
   std::vector<Axis> axes;
   std::vector<TradeoffVariable> variables;
-  std::vector<TradeoffRow> rows;  // the first: the scene as it is
+  std::vector<TradeoffRow> rows;  // the first: the unchanged scene
   std::size_t kept = 0;           // rows of an earlier sweep
 
   [[nodiscard]] std::size_t done() const noexcept;
   [[nodiscard]] bool is_complete() const noexcept { return done() == rows.size(); }
 };
 
-// Told what runs and the share of all that is done; false ends the sweep with the rows that there are.
+// Receives the running tasks and the share of all work that is done; false ends the sweep with the finished rows.
 using TradeoffProgress = std::function<bool(std::string_view doing, double share)>;
 
-// Throws LoadError for a scene that is wrong, Failure for a wish that cannot be met.
-[[nodiscard]] Tradeoff trade_off(const TradeoffWish& wish, const TradeoffProgress& progress);
+// Throws LoadError for a wrong scene, Failure for options that cannot be met.
+[[nodiscard]] Tradeoff trade_off(const TradeoffOptions& options, const TradeoffProgress& progress);
 
-// Largest or root-mean-square error of a variable relative to its range; none: it has no range, or the row not this
-// variable.
+// Largest or root-mean-square error of a variable relative to its range; none: it has no range, or the row lacks it.
 enum class ErrorKind { largest, rms };
 [[nodiscard]] std::optional<double> relative_error(const Tradeoff& tradeoff, const TradeoffRow& row,
                                                    std::size_t variable, ErrorKind kind = ErrorKind::largest);
 // The worst of all variables; infinite when the row has none of them.
 [[nodiscard]] double worst_error(const Tradeoff& tradeoff, const TradeoffRow& row, ErrorKind kind = ErrorKind::largest);
 
-// "yes", or why not.
+// "yes", or the reason for no.
 [[nodiscard]] std::string verdict(const TradeoffRow& row);
 
 }  // namespace slew::analysis

@@ -65,8 +65,7 @@ std::vector<ReportCell> cells_of(const Tradeoff& tradeoff, std::size_t index) {
   return cells;
 }
 
-// the text has the settings in one column, and only the variables with a range: of the others there is nothing to be
-// relative to
+// the text has the settings in one column, and only variables with a range: for the others no relative error exists
 ReportTable table_of(const Tradeoff& tradeoff) {
   constexpr std::size_t kNaming = 2;  // mark, settings
   std::vector<ReportColumn> columns = {{.text = ""}, {.text = "settings"}};
@@ -233,13 +232,13 @@ pick.onchange=draw;kind.onchange=()=>{draw();table()};draw();table();
 }  // namespace
 
 std::string answer_text(const Tradeoff& tradeoff, const Answer& answer) {
-  std::string asked;
-  const auto add = [&asked](const std::string& part) { asked += (asked.empty() ? "" : ", ") + part; };
+  std::string limits;
+  const auto add = [&limits](const std::string& part) { limits += (limits.empty() ? "" : ", ") + part; };
   if (answer.question.budget) add(fmt::format("at most {:g} us/ms", *answer.question.budget));
   for (const ErrorBound& bound : answer.question.errors) add(bound.text);
-  if (!answer.row) return asked + ": no stable row meets this";
+  if (!answer.row) return limits + ": no stable row meets this";
   const TradeoffRow& row = tradeoff.rows[*answer.row];
-  return fmt::format("{}: {} ({:.3g} us/ms, worst error {})", asked,
+  return fmt::format("{}: {} ({:.3g} us/ms, worst error {})", limits,
                      *answer.row == 0 ? "the scene as it is" : text_of(row.settings), row.result.cost.median,
                      share(worst_error(tradeoff, row)));
 }

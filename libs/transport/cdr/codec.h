@@ -1,7 +1,7 @@
 // Bytes of the messages: the one encoder and the one decoder, whatever carries them.
 //
-// The bytes are plain XCDR1, little endian, as idl/slewring.idl says: 4 bytes of encapsulation header (00 01 00 n), the
-// fields, n zero bytes up to a multiple of four. They are the bytes that Cyclone DDS makes of the generated types.
+// The bytes are plain XCDR1, little endian, as idl/slewring.idl defines: 4 bytes of encapsulation header (00 01 00 n),
+// the fields, n zero bytes up to a multiple of four. They are the bytes that Cyclone DDS makes of the generated types.
 //
 // encode() replaces the contents of `buffer`; it allocates only while the buffer grows. False: a text or a list is
 // longer than its cap, a text holds a NUL, a step or a number of variables is out of range; nothing may be sent then.
@@ -60,8 +60,8 @@ using ByteBuffer = std::vector<std::byte>;
 [[nodiscard]] bool decode(Bytes bytes, wire::ResendRequest& message);
 [[nodiscard]] bool decode(Bytes bytes, wire::StatePart& message);
 
-// The Header alone of a message that starts with one: who speaks and of which step, before the rest is worth reading.
-// All messages but ControllerInput and ControlRequest start with one.
+// Decodes the Header of a message that starts with one: the writer's role and the step. All messages but
+// ControllerInput and ControlRequest start with one.
 [[nodiscard]] bool decode_header(Bytes bytes, wire::Header& header);
 
 }  // namespace slew::transport

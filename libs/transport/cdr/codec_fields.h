@@ -44,7 +44,7 @@ Appended(N&) -> Appended<N&>;
 template <typename S>
 Appended(Text<S>) -> Appended<Text<S>>;
 
-// A number that indexes or counts something: outside [least, most] it is a fault of its writer.
+// A number that indexes or counts something: a value outside [least, most] is a fault of its writer.
 template <typename N>
 struct Bounded {
   N& value;
@@ -185,7 +185,7 @@ void fields(A& a, typename A::template Of<wire::SessionDescription>& m) {
   a(m.header, m.protocol, name(m.name), name(m.scene_name), Text{m.scene_text, wire::kMaxSceneBytes});
   a(List{m.assets, wire::kMaxAssets}, sentence(m.build), m.self_test, m.step_ns, m.pace, m.window, m.required_roles);
   a(sentence(m.host), m.pid, m.started_ns);
-  // recordings of earlier versions are read for ever
+  // recordings of earlier versions stay readable
   if (m.protocol >= 4) a(m.rejoin_ns, List{m.given_up, wire::kMaxGivenUp});
   if (m.protocol >= 5) a(Bounded{m.give_up_ns, wire::kLeastGiveUpNs, wire::kMostGiveUpNs});
 }

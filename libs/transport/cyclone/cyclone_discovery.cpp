@@ -1,4 +1,4 @@
-// Who writes and reads topics, from Cyclone's builtin topics.
+// Writers and readers of topics, from Cyclone's builtin topics.
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_sertype.h>
 #include <dds/ddsi/ddsi_typelib.h>
@@ -21,16 +21,16 @@
 namespace slew::transport {
 namespace {
 
-constexpr std::uint32_t kMaxEndpoints = 2048;  // of all topics in the domain, written or read
+constexpr std::uint32_t kMaxEndpoints = 2048;  // written or read in the domain, all topics
 constexpr std::size_t kMaxMatched = 256;       // writers of one topic
 constexpr const char* kOtherLayout = " of another layout (built from another idl/slewring.idl)";
 
-constexpr std::string_view kSessions = "slewring/";  // the partitions' names begin so
+constexpr std::string_view kSessions = "slewring/";  // prefix of the partitions' names
 
 struct Partitions {
-  std::vector<std::string> names;  // of who says nothing the one without a name
+  std::vector<std::string> names;  // one empty name for an endpoint without a partition
 
-  // the session's, by name or by a pattern
+  // whether the session's partition is among them, by name or by a pattern
   [[nodiscard]] bool has(const std::string& session) const {
     return std::ranges::any_of(names, [own = std::string(kSessions) + session](const std::string& name) {
       return fnmatch(name.c_str(), own.c_str(), 0) == 0 || fnmatch(own.c_str(), name.c_str(), 0) == 0;
@@ -58,12 +58,12 @@ Partitions partitions_of(const dds_qos_t* qos) {
   return found;
 }
 
-// of the user data role:host:pid of our writers
-struct ToldProcess {
+// user data role:host:pid of our writers
+struct WriterProcess {
   std::string role, host, pid;
 };
 
-std::optional<ToldProcess> told_process(const dds_qos_t* qos) {
+std::optional<WriterProcess> parse_user_data(const dds_qos_t* qos) {
   void* data = nullptr;
   std::size_t size = 0;
   std::string text;
@@ -72,16 +72,16 @@ std::optional<ToldProcess> told_process(const dds_qos_t* qos) {
   const std::size_t first = text.find(':');
   const std::size_t last = text.rfind(':');
   if (first == std::string::npos || first == last) return std::nullopt;
-  return ToldProcess{text.substr(0, first), text.substr(first + 1, last - first - 1), text.substr(last + 1)};
+  return WriterProcess{text.substr(0, first), text.substr(first + 1, last - first - 1), text.substr(last + 1)};
 }
 
 std::string description(const dds_qos_t* qos) {
-  const std::optional<ToldProcess> told = told_process(qos);
-  if (!told) return "a program that is not of Slewring";
-  return fmt::format("{} on host {}, pid {}", told->role, told->host, told->pid);
+  const std::optional<WriterProcess> process = parse_user_data(qos);
+  if (!process) return "a program that is not of Slewring";
+  return fmt::format("{} on host {}, pid {}", process->role, process->host, process->pid);
 }
 
-// of both halves: entities of one participant differ in the second alone
+// hash of both halves: entities of one participant differ in the second alone
 std::uint64_t number_of(const dds_guid_t& guid) {
   std::uint64_t halves[2];
   static_assert(sizeof halves == sizeof guid.v);
@@ -99,7 +99,7 @@ MatchedWriter matched(dds_entity_t reader, dds_instance_handle_t handle) {
   return MatchedWriter(dds_get_matched_publication_data(reader, handle));
 }
 
-// whether the layouts are known and differ; other vendors tell nothing
+// whether the layouts are known and differ; other vendors publish none
 bool has_other_layout(const dds_builtintopic_endpoint_t& endpoint, const ddsi_sertype& own_type) {
   const dds_typeinfo_t* theirs = nullptr;
   if (dds_builtintopic_get_endpoint_type_info(const_cast<dds_builtintopic_endpoint_t*>(&endpoint), &theirs) != 0) {
@@ -115,7 +115,7 @@ bool has_other_layout(const dds_builtintopic_endpoint_t& endpoint, const ddsi_se
   return differs;
 }
 
-// Visits what others in the domain write (or read), of this and other processes.
+// Visits the endpoints of other participants in the domain, of this and other processes.
 template <typename Visit>
 void for_each_endpoint(dds_entity_t participant, dds_entity_t builtin_topic, Visit&& visit) {
   dds_guid_t own{};
@@ -146,28 +146,29 @@ std::vector<dds_data_representation_id_t> representations(const dds_qos_t* qos) 
   std::vector<dds_data_representation_id_t> found;
   if (dds_qget_data_representation(qos, &count, &ids)) found.assign(ids, ids + count);
   dds_free(ids);
-  // who says nothing speaks XCDR1
+  // the default representation is XCDR1
   if (found.empty()) found.push_back(DDS_DATA_REPRESENTATION_XCDR1);
   return found;
 }
 
-// Of the policies about times and orders, which our own endpoints have at their defaults: a writer of others can only
-// have too large a latency budget, the rest is asked for by readers.
+// The policies about times and orders. Our own endpoints have the defaults: another program's writer can only have too
+// large a latency budget; the other problems come from its readers.
 std::string timing_problem(const dds_qos_t* offered, const dds_qos_t* requested) {
   dds_duration_t every = DDS_INFINITY, within = DDS_INFINITY;
   dds_qget_deadline(offered, &every);
   dds_qget_deadline(requested, &within);
-  if (every > within) return "a deadline shorter than the one that is offered (none is expected)";
+  if (every > within) return "a deadline shorter than the one that the writer offers (none is expected)";
   dds_duration_t takes = 0, bears = 0;
   dds_qget_latency_budget(offered, &takes);
   dds_qget_latency_budget(requested, &bears);
-  if (takes > bears) return "a latency budget above the one that is asked for (0 is expected)";
+  if (takes > bears) return "a latency budget above the one the reader requests (0 is expected)";
   dds_liveliness_kind_t shows{}, wants{};
   dds_duration_t lease = DDS_INFINITY, wanted_lease = DDS_INFINITY;
   dds_qget_liveliness(offered, &shows, &lease);
   dds_qget_liveliness(requested, &wants, &wanted_lease);
   if (shows < wants) return "another kind of liveliness (automatic is expected)";
-  if (lease > wanted_lease) return "a lease of its liveliness shorter than the one that is offered (none is expected)";
+  if (lease > wanted_lease)
+    return "a lease of its liveliness shorter than the one that the writer offers (none is expected)";
   dds_destination_order_kind_t orders{}, wants_order{};
   dds_qget_destination_order(offered, &orders);
   dds_qget_destination_order(requested, &wants_order);
@@ -182,20 +183,20 @@ std::string timing_problem(const dds_qos_t* offered, const dds_qos_t* requested)
   return "";
 }
 
-// Why a reader that asks for `requested` does not hear a writer that offers `offered`, of the other program's side;
-// empty: it does.
+// Why a reader that requests `requested` does not match a writer that offers `offered`, from the other program's side;
+// empty when it does.
 std::string qos_problem(const dds_qos_t* offered, const dds_qos_t* requested, bool is_of_writer) {
-  dds_reliability_kind_t offers{}, asks{};
+  dds_reliability_kind_t offers{}, requests{};
   dds_duration_t ignored = 0;
   dds_qget_reliability(offered, &offers, &ignored);
-  dds_qget_reliability(requested, &asks, &ignored);
-  if (offers < asks) return "reliability best effort, and reliable is asked for";
+  dds_qget_reliability(requested, &requests, &ignored);
+  if (offers < requests) return "reliability best effort, and the reader requests reliable";
   dds_durability_kind_t keeps{}, wants{};
   dds_qget_durability(offered, &keeps);
   dds_qget_durability(requested, &wants);
   if (keeps < wants) {
-    return is_of_writer ? "a durability below the one that is asked for (transient local)"
-                        : "a durability above the one that is offered (volatile)";
+    return is_of_writer ? "a durability below the one that the reader requests (transient local)"
+                        : "a durability above the one that the writer offers (volatile)";
   }
   const dds_data_representation_id_t written = representations(offered).front();
   const auto read = representations(requested);
@@ -224,7 +225,7 @@ std::vector<std::string> CycloneTransport::discovered_writers(wire::Topic topic)
   return writers;
 }
 
-// The middleware is asked once for each of its handles: no memory is taken in a step.
+// The middleware is queried once per handle: a step takes no memory.
 std::uint64_t CycloneTransport::writer_of(wire::Topic topic, std::uint64_t handle) {
   if (topic != wire::Topic::controller_input) return 0;
   for (const KnownWriter& known : known_writers_) {
@@ -244,8 +245,8 @@ WriterSight CycloneTransport::see_writer(wire::Topic topic, std::uint64_t writer
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     const MatchedWriter found = matched(reader, handles[i]);
     if (found == nullptr || number_of(found->key) != writer) continue;
-    const std::optional<ToldProcess> told = told_process(found->qos);
-    return {false, told ? fmt::format("process {} on {}", told->pid, told->host) : std::string()};
+    const std::optional<WriterProcess> process = parse_user_data(found->qos);
+    return {false, process ? fmt::format("process {} on {}", process->pid, process->host) : std::string()};
   }
   return {true, {}};
 }
@@ -274,7 +275,7 @@ std::vector<std::string> CycloneTransport::misfits() {
         if (problem.empty()) continue;
         found.push_back(fmt::format("{} {} topic '{}' with {}; it {}; see idl/README.md", description(endpoint.qos),
                                     is_writer ? "writes" : "reads", topic.name, problem,
-                                    is_writer ? "is not heard" : "hears nothing"));
+                                    is_writer ? "is ignored" : "receives nothing"));
       }
     };
     for_each_endpoint(participant_, builtin_topic, name);

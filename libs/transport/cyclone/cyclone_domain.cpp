@@ -112,10 +112,11 @@ std::string security_xml(const SecurityFiles& security) {
 }
 
 Status lacks(const std::string& what, int why, const char* remedy) {
-  return Status::error(ExitCode::resources,
-                       fmt::format("this process {} ({}), a session needs that; nothing was started; raise the limit "
-                                   "({}) or end other programs",
-                                   what, std::strerror(why), remedy));
+  return Status::error(
+      ExitCode::resources,
+      fmt::format("this process {} ({}), and a session needs that; nothing was started; raise the limit "
+                  "({}) or end other programs",
+                  what, std::strerror(why), remedy));
 }
 
 Status enough_files() {
@@ -140,8 +141,8 @@ Status enough_space() {
   return Status::ok();
 }
 
-// What can be written counts as data (RLIMIT_DATA). It is reckoned and not tried: where memory is locked, all of it
-// would be filled.
+// RLIMIT_DATA counts writable memory as data. The need is calculated, not tried: where memory is locked, a trial would
+// fill all of it.
 Status enough_data() {
   rlimit limit{};
   if (getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return Status::ok();
@@ -154,7 +155,7 @@ Status enough_data() {
   return lacks(fmt::format("cannot have {} MB more memory", kData >> 20), ENOMEM, "ulimit -d");
 }
 
-// As many at the same time as Cyclone starts.
+// Starts as many threads at the same time as Cyclone does.
 Status enough_threads() {
   std::promise<void> all_are_there;
   const std::shared_future<void> end = all_are_there.get_future().share();
@@ -173,7 +174,7 @@ Status enough_threads() {
   return lacks(fmt::format("can start {} more threads of {}", threads.size(), kThreads), why, "ulimit -u, -d, -v");
 }
 
-// What Cyclone does not survive to be without: files for its sockets, memory for its caches, threads.
+// Files for Cyclone's sockets, memory for its caches, and threads: Cyclone crashes without them.
 Status enough_resources() {
   if (Status status = enough_files(); !status.is_ok()) return status;
   if (Status status = enough_space(); !status.is_ok()) return status;
@@ -181,7 +182,7 @@ Status enough_resources() {
   return enough_threads();
 }
 
-// A UDP socket of this process that hears all addresses. A number of a file is used again, an inode is not.
+// A UDP socket of this process that is bound to all addresses. The number of a file is reused, an inode is not.
 struct OpenSocket {
   int fd;
   ino_t inode;
@@ -217,9 +218,9 @@ bool is_port_of(std::uint16_t port, std::uint32_t domain) {
   return port >= first && port < first + kPortsOfDomain;
 }
 
-// Cyclone binds what it receives with to all addresses. Those sockets hear loopback alone from now on: they are the
-// ones on ports of this domain that were not there before it. Sockets of the program itself are left alone. To bind one
-// a second time needs CAP_NET_RAW.
+// Cyclone binds its receiving sockets to all addresses. This binds them to loopback: they are the sockets on ports of
+// this domain that did not exist before. The program's own sockets are left alone. A second binding would need
+// CAP_NET_RAW.
 Status confine_to_loopback(const Network& network, const std::vector<OpenSocket>& before) {
   const std::string& interface = network.interface;
   for (const OpenSocket& socket : sockets_on_all_addresses()) {
@@ -251,15 +252,15 @@ std::string cyclone_xml(const Network& network, const std::string& own_address) 
   for (const std::string& peer : network.peers) {
     if (peer != own_address) peers += fmt::format(R"(<Peer Address="{}"/>)", peer);
   }
-  // heartbeat and nack timers: on a network a lost packet costs milliseconds; on loopback nothing is lost but what a
-  // reader has no room for, and each question and answer costs as much as a sample
+  // heartbeat and nack timers: on a network a lost packet costs milliseconds; on loopback only a reader without room
+  // loses samples, and each heartbeat and each acknowledgement costs as much as a sample
   const char* const timers = leaves_machine(network.interface)
                                  ? R"(<HeartbeatInterval min="2ms" minsched="2ms" max="20ms">5ms</HeartbeatInterval>
   <PreEmptiveAckDelay>1ms</PreEmptiveAckDelay>)"
                                  : R"(<HeartbeatInterval min="20ms" minsched="20ms" max="40ms">20ms</HeartbeatInterval>
   <PreEmptiveAckDelay>10ms</PreEmptiveAckDelay>)";
   // writer cache above depth x size of every topic and not adaptive: a slow reader never makes a writer wait; reorder:
-  // what arrives during a repair is not asked again
+  // messages that arrive during a repair are not requested again
   return fmt::format(
       R"(<CycloneDDS xmlns="https://cdds.io/config"><Domain Id="any">
  <General>
@@ -327,7 +328,7 @@ Status CycloneDomain::open(const Network& network, std::shared_ptr<CycloneDomain
 }
 
 void CycloneDomain::wake_timers() noexcept {
-  // neither deaf nor mute, as it is; what is scheduled in front of all that waits wakes the thread
+  // the receive and send settings stay as they are; an event that is scheduled before all waiting ones wakes the thread
   constexpr dds_duration_t kInFrontOfAll = DDS_SECS(-3600);
   static_cast<void>(dds_domain_set_deafmute(handle_, /*deaf=*/false, /*mute=*/false, kInFrontOfAll));
 }

@@ -1,10 +1,10 @@
 // A DDS domain of this process: the one place that configures Cyclone.
 //
 // Unicast only, on one interface; nothing is sent beyond loopback unless another interface is named. On loopback the
-// domain's sockets hear that interface alone, those of the program itself are left as they are; on another one they are
-// bound to all addresses (Cyclone's way, and processes of one host reach each other through loopback): that is no
-// firewall. Loss is repaired within 8 to 15 ms. UDP ports: 7400 + 250 domain + 10 .. 129, two per process.
-// CYCLONEDDS_URI is not consulted. One domain per number and process; several transports share it.
+// domain's sockets receive from that interface alone; the program's own sockets are left as they are. On another
+// interface they are bound to all addresses, as Cyclone does it and since processes of one host reach each other
+// through loopback: that is no firewall. Loss is repaired within 8 to 15 ms. UDP ports: 7400 + 250 domain + 10 .. 129,
+// two per process. CYCLONEDDS_URI is not consulted. One domain per number and process; several transports share it.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace slew::transport {
 
 class CycloneDomain {
  public:
-  // Fills `domain`, or says which interface, peer or number is wrong and what there is instead.
+  // Fills `domain`, or reports which interface, peer or number is wrong and which ones exist.
   [[nodiscard]] static Status open(const Network& network, std::shared_ptr<CycloneDomain>& domain);
 
   ~CycloneDomain();
@@ -30,8 +30,8 @@ class CycloneDomain {
   [[nodiscard]] bool is_secured() const noexcept { return is_secured_; }
   [[nodiscard]] CycloneLog& log() noexcept { return log_; }
 
-  // Lets Cyclone look at its timers now. They sleep until an instant of the wall clock: when that is set back, they
-  // would for as long, and with them discovery, heartbeats and requests for what was lost.
+  // Makes Cyclone check its timers now. They sleep until an instant of the wall clock: when that clock is set back,
+  // discovery, heartbeats and resend requests would stop for that time.
   void wake_timers() noexcept;
 
  private:

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::int64_t kInterval = 1'000'000'000;  // ns between two lines
 
-// Cyclone says so of everybody that it hears while this process has no participant yet, or none any more, and asks
-// again 0.5 s later. Of somebody who is really refused it has told before what does not fit.
+// Cyclone logs this for every participant that it discovers while this process has no participant yet, or none any
+// more, and tries again 0.5 s later. For a participant that is really refused it has logged the mismatch before.
 bool is_false_alarm(std::string_view line) {
   return line.starts_with("Remote secure participant ") && line.ends_with(" not allowed");
 }

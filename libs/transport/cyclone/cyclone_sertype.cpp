@@ -49,8 +49,8 @@ RawSample* new_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, std::siz
 }
 
 void sample_free(ddsi_serdata* sample) {
-  // Who gave up the sample before had read it. The count orders that, unseen by the thread sanitizer where libddsc does
-  // the last subtraction.
+  // The previous owner has read the sample before it released it. The reference count orders that; the thread sanitizer
+  // does not see it where libddsc does the last subtraction.
   static_cast<void>(__atomic_load_n(&sample->refc.v, __ATOMIC_ACQUIRE));
   SamplePool::give_back(sample);
 }
@@ -94,7 +94,7 @@ ddsi_serdata* sample_from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*)
   return &new_sample(type, SDK_KEY, 0)->common;
 }
 
-// nobody hands us C structs
+// unused: no writer passes C structs
 ddsi_serdata* sample_from_sample(const ddsi_sertype*, ddsi_serdata_kind, const void*) {
   return nullptr;
 }
@@ -171,7 +171,7 @@ bool type_equal(const ddsi_sertype* a, const ddsi_sertype* b) {
 }
 std::uint32_t type_hash(const ddsi_sertype*) {
   return 0;
-}  // the name, hashed by Cyclone, tells them apart
+}  // types are equal by their name, hashed by Cyclone
 
 ddsi_typeinfo_t* type_info(const ddsi_sertype* type) {
   const auto& serialised = raw(type).descriptor->type_information;

@@ -15,7 +15,7 @@
 namespace slew::transport {
 
 // Creates the topic with the type of `descriptor`; returns the topic or a negative error. `type` is then the type for
-// make_sample(), alive as long as the topic. room: samples that there is memory for from the first one on.
+// make_sample(), alive as long as the topic. room: samples for which memory is reserved from the first one on.
 [[nodiscard]] dds_entity_t create_raw_topic(dds_entity_t participant, const dds_topic_descriptor_t& descriptor,
                                             const char* name, std::size_t room, const ddsi_sertype*& type);
 

@@ -19,8 +19,8 @@ namespace {
 
 static_assert(wire::kTopics < 31);
 
-constexpr std::size_t kInFlight = 64;  // messages that have come and were not taken, or were written and go out
-constexpr std::int32_t kWriters = 4;   // of variables: io, mechanics, hydraulics, flex; of inputs: as many controllers
+constexpr std::size_t kInFlight = 64;  // messages received and not taken, or written and not sent
+constexpr std::int32_t kWriters = 4;   // variables: io, mechanics, hydraulics, flex; inputs: as many controllers
 
 // in the order of wire::Topic
 constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors = {
@@ -72,16 +72,17 @@ constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors 
   return qos;
 }
 
-constexpr std::int64_t kClockLook = 50'000'000;  // between two looks at the wall clock [ns]
-constexpr std::int64_t kClockStep = 20'000'000;  // it was set back when it is behind by more; slewing is far slower
+constexpr std::int64_t kClockLook = 50'000'000;  // between two checks of the wall clock [ns]
+constexpr std::int64_t kClockStep =
+    20'000'000;  // the clock was set back when it is behind by more; slewing is far slower
 
 // step by step, at full rate
 [[nodiscard]] bool has_several_writers(wire::Topic topic) {
   return topic == wire::Topic::variables || topic == wire::Topic::controller_input;
 }
 
-// Cyclone announces name and number of each process in the whole domain, before any key is agreed on. Properties that a
-// participant has of its own replace them, and empty ones are not sent.
+// Cyclone announces name and number of each process in the whole domain, before keys are agreed on. A participant's own
+// properties replace them, and empty ones are not sent.
 [[nodiscard]] Qos participant_qos(bool is_secured) {
   Qos qos(dds_create_qos());
   if (!is_secured) return qos;
@@ -89,29 +90,29 @@ constexpr std::int64_t kClockStep = 20'000'000;  // it was set back when it is b
   return qos;
 }
 
-// "role:host:pid", told to others with every writer
+// "role:host:pid", published with every writer
 [[nodiscard]] std::string own_user_data(const std::string& role) {
   char host[HOST_NAME_MAX + 1] = "";
   gethostname(host, sizeof host - 1);
   return fmt::format("{}:{}:{}", role, host, getpid());
 }
 
-// "; " and what Cyclone has said last, if anything
-[[nodiscard]] std::string last_words(CycloneDomain& domain) {
-  const std::string said = domain.log().last_line();
-  return said.empty() ? said : "; " + said;
+// "; " and Cyclone's last message, if there is one
+[[nodiscard]] std::string last_message(CycloneDomain& domain) {
+  const std::string line = domain.log().last_line();
+  return line.empty() ? line : "; " + line;
 }
 
 [[nodiscard]] Status creation_error(const char* what, dds_return_t code, CycloneDomain& domain) {
   if (code == DDS_RETCODE_NOT_ALLOWED_BY_SECURITY) {
     return Status::error(ExitCode::bad_input,
                          fmt::format("the keys of this process do not allow it the DDS {} of this session; nothing was "
-                                     "started; 'slewring keys check' tells whether they are good; keys for other "
+                                     "started; 'slewring keys check' checks them; keys for other "
                                      "sessions and roles are made with 'slewring keys add'{}",
-                                     what, last_words(domain)));
+                                     what, last_message(domain)));
   }
   return Status::error(ExitCode::resources,
-                       fmt::format("cannot create the DDS {}: {}{}", what, dds_strretcode(code), last_words(domain)));
+                       fmt::format("cannot create the DDS {}: {}{}", what, dds_strretcode(code), last_message(domain)));
 }
 
 // on Cyclone's receiving thread
@@ -158,9 +159,9 @@ Status CycloneTransport::create() {
   if (participant_ < 0 && domain_->is_secured()) {
     return Status::error(
         ExitCode::bad_input,
-        fmt::format("the keys of this process are not good; nothing was started; 'slewring keys check' "
-                    "tells what is wrong with them{}",
-                    last_words(*domain_)));
+        fmt::format("the keys of this process are not valid; nothing was started; 'slewring keys check' "
+                    "lists their problems{}",
+                    last_message(*domain_)));
   }
   if (participant_ < 0) return creation_error("participant", participant_, *domain_);
   const Qos partition = partition_qos(options_.session);
@@ -176,7 +177,7 @@ Status CycloneTransport::create() {
   return Status::ok();
 }
 
-bool CycloneTransport::hears_kept(wire::Topic topic) const noexcept {
+bool CycloneTransport::receives_kept(wire::Topic topic) const noexcept {
   return topic != (options_.is_controller ? wire::Topic::controller_lease : wire::Topic::variables);
 }
 
@@ -199,7 +200,7 @@ Status CycloneTransport::create_endpoints(wire::Topic topic, std::int32_t publis
     dds_lset_data_available_arg(listener, on_data_available, &bells_[i], /*reset_on_invoke=*/true);
     // without keys a reader's depth is that of all its writers together
     if (has_several_writers(topic)) dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kWriters * traits(topic).depth);
-    if (!hears_kept(topic)) dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
+    if (!receives_kept(topic)) dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
     readers_[i] = dds_create_reader(subscriber, handle, qos.get(), listener);
     dds_delete_listener(listener);
     if (readers_[i] < 0) return creation_error(traits(topic).name, readers_[i], *domain_);
@@ -210,7 +211,7 @@ Status CycloneTransport::create_endpoints(wire::Topic topic, std::int32_t publis
 CycloneTransport::~CycloneTransport() {
   if (taken_ != nullptr) ddsi_serdata_unref(taken_);
   for (; batch_next_ < batch_count_; ++batch_next_) ddsi_serdata_unref(batch_[batch_next_]);
-  // the last messages are to arrive, but a partner that has died must not hold us up
+  // the last messages should arrive, but a partner that has died must not delay the end
   const std::int64_t deadline = monotonic_ns() + kFarewell.ns;
   for (const dds_entity_t writer : writers_) {
     if (writer > 0) dds_wait_for_acks(writer, std::max<std::int64_t>(0, deadline - monotonic_ns()));
@@ -240,7 +241,7 @@ bool CycloneTransport::take(Received& message) {
   return true;
 }
 
-// the next messages of a topic that has rung, lowest topic first; false when none has any
+// takes the next messages of a topic that has rung, lowest topic first; false when there are none
 bool CycloneTransport::refill() {
   look_at_the_clock();
   pending_ |= doorbell_.collect();
@@ -255,7 +256,7 @@ bool CycloneTransport::refill() {
     batch_next_ = 0;
     batch_count_ = 0;
     for (std::size_t i = 0; n > 0 && i < static_cast<std::size_t>(n); ++i) {
-      // without data: a writer has left
+      // a sample without data: a writer has left
       if (!about[i].valid_data) {
         ddsi_serdata_unref(samples[i]);
         continue;

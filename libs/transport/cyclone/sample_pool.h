@@ -1,8 +1,8 @@
 // Memory of the samples of one topic, which several threads take and give back while the session runs.
 //
-// The first sample of a size brings room for as many as the topic keeps, in one piece; that is before the first step.
-// What was given back is taken again, so that a steady session asks the heap for nothing. Beyond that room a sample has
-// memory of its own, which stays in the pool too. Who holds the lock inherits the priority of who waits for it.
+// The first sample of a size reserves room for as many samples as the topic keeps, in one piece, before the first step.
+// Returned memory is reused, so that a steady session allocates nothing. Beyond that room a sample has memory of its
+// own, which stays in the pool too. The holder of the lock inherits the priority of a waiting thread.
 //
 // A sample may outlive its topic: the pool goes with the last one after close().
 #pragma once
@@ -18,12 +18,12 @@ namespace slew::transport {
 
 class SamplePool {
  public:
-  // room: samples of one size that are kept at hand, as far as kMostBytes goes
+  // room: number of samples of one size for which memory is reserved, up to kMostBytes
   [[nodiscard]] static SamplePool* create(std::size_t room) { return new SamplePool(room); }
   // At least `bytes` of memory, aligned to 16. Throws std::bad_alloc.
   [[nodiscard]] void* take(std::size_t bytes);
   static void give_back(void* memory) noexcept;
-  // Instead of delete: nothing is taken any more.
+  // Replaces delete: no sample is taken any more.
   void close() noexcept;
 
   SamplePool(const SamplePool&) = delete;
@@ -32,17 +32,17 @@ class SamplePool {
  private:
   static constexpr std::size_t kSizes = 8;              // 256 bytes, doubled up to 32 KiB
   static constexpr std::size_t kSmallest = 256;         // bytes of a block, its head included
-  static constexpr std::size_t kMostBytes = 2'097'152;  // of room for one size
+  static constexpr std::size_t kMostBytes = 2'097'152;  // bytes of room for one size
   enum class Origin : std::uint8_t { room, own, too_large };
   struct alignas(16) Block {
     SamplePool* pool;
-    Block* next;  // of those that were given back
+    Block* next;  // next returned block
     std::uint8_t size;
     Origin origin;
   };
   struct Size {
     Block* free = nullptr;
-    std::byte* unused = nullptr;  // of the room
+    std::byte* unused = nullptr;  // unused part of the room
     std::byte* end = nullptr;
     bool has_room = false;
   };

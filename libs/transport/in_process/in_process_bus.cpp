@@ -16,7 +16,7 @@ InProcessEndpoint::InProcessEndpoint(InProcessBus& bus, InProcessOptions options
     : bus_(bus), options_(std::move(options)) {
   taken_.bytes.reserve(InProcessBus::kSlotBytes);
   const std::lock_guard lock(bus_.mutex_);
-  // what earlier writers keep for late readers
+  // the messages that earlier writers keep for late readers
   for (const InProcessEndpoint* writer : bus_.endpoints_) {
     for (const Message& message : writer->kept_)
       receive(message.topic, message.bytes, message.source_ns, writer->number_);

@@ -1,8 +1,8 @@
 // The transport of one process: endpoints of one bus hand each other copies of the encoded bytes.
 //
-// Messages reach every endpoint in the order in which they were published, whoever published them; an endpoint does not
-// hear itself. A late endpoint first gets the kept messages of the transient-local topics, as with DDS. Endpoints may
-// be polled one after the other on one thread (take() until false, never wait_until) or run a thread each.
+// Messages of all writers reach every endpoint in the order in which they were published; an endpoint does not receive
+// its own. A late endpoint first gets the kept messages of the transient-local topics, as with DDS. Endpoints may be
+// polled one after the other on one thread (take() until false, never wait_until) or run a thread each.
 //
 // An inbox holds kInboxLimit messages; above it the oldest is dropped and counted. No allocation once the inboxes have
 // grown to what the session needs; a message above kSlotBytes may allocate.
@@ -64,7 +64,7 @@ class InProcessEndpoint final : public Transport {
 
   InProcessBus& bus_;
   const InProcessOptions options_;
-  std::uint64_t number_ = 0;    // of this endpoint at its bus, from 1 on
+  std::uint64_t number_ = 0;    // number of this endpoint at its bus, from 1 on
   std::vector<Message> inbox_;  // ring
   std::size_t first_ = 0;
   std::size_t count_ = 0;
@@ -84,7 +84,7 @@ class InProcessBus {
 
   mutable std::mutex mutex_;  // guards all endpoints' inboxes and kept messages
   std::vector<InProcessEndpoint*> endpoints_;
-  std::uint64_t last_number_ = 0;  // of all endpoints that there were
+  std::uint64_t last_number_ = 0;  // number of the last endpoint that was made
 };
 
 }  // namespace slew::transport

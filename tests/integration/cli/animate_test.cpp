@@ -1,4 +1,4 @@
-// `slewring animate`: the page beside what was recorded.
+// `slewring animate`: the page against the recording.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -90,7 +90,7 @@ TEST_F(Animated, AMotionHasThePosesThatWereRecorded) {
   }
 }
 
-TEST_F(Animated, APartIsShownAndInstantsThatAreLeftOutAreTold) {
+TEST_F(Animated, APartIsShownAndInstantsThatAreLeftOutAreReported) {
   const std::string recording = recorded("4.5");
   const CommandResult part = slewring({"animate", recording, "--from", "1s", "--to", "1.5", "-o", "part.html"});
   ASSERT_EQ(part.code, 0) << part.err;

@@ -48,8 +48,8 @@ Command::Command(const std::string& program, const std::vector<std::string>& arg
   pid_ = fork();
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    // a shell's background job ignores them, and so would what it starts
-    for (const int asked : {SIGINT, SIGHUP, SIGTERM}) signal(asked, SIG_DFL);
+    // a shell's background job ignores them, and so would its child processes
+    for (const int ignored : {SIGINT, SIGHUP, SIGTERM}) signal(ignored, SIG_DFL);
     const int nothing = open("/dev/null", O_RDONLY);
     dup2(nothing, STDIN_FILENO);
     dup2(out, STDOUT_FILENO);
@@ -82,7 +82,7 @@ bool Command::has_ended() {
 
 CommandResult Command::wait() {
   if (!wait_until([this] { return has_ended(); }, kLongestRun)) {
-    throw std::runtime_error("a program did not end within 120 s; so far it said:\n" + out() + err());
+    throw std::runtime_error("a program did not end within 120 s; its output so far:\n" + out() + err());
   }
   return {WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_), out(), err()};
 }

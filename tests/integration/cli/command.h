@@ -32,7 +32,7 @@ class Command {
   // Waits for the end, at most 120 s.
   [[nodiscard]] CommandResult wait();
   [[nodiscard]] bool has_ended();
-  // What it has written so far.
+  // Its output so far.
   [[nodiscard]] std::string out() const;
   [[nodiscard]] std::string err() const;
 
@@ -73,7 +73,7 @@ class WorkFolder {
 // The sanitizers of this build, as in -fsanitize=; empty for none.
 [[nodiscard]] std::string_view sanitizers();
 
-// False with the sanitizer of undefined behaviour: it checks the types of objects with a pipe, and says that they are
+// False with the sanitizer of undefined behaviour: it checks the types of objects with a pipe, and reports them as
 // wrong when it cannot open one.
 [[nodiscard]] bool can_run_without_files();
 

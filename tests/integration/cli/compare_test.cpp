@@ -41,7 +41,7 @@ TEST_F(CompareVerb, PrintsTheTableAndWritesPictureAndValues) {
   EXPECT_TRUE(contains(result.out, "formulation")) << result.out;
   EXPECT_TRUE(contains(result.out, "\nlagrange ")) << result.out;
   EXPECT_TRUE(result.out.ends_with("\ntable.csv\nfirst_steps_compare.svg\n")) << result.out;
-  EXPECT_TRUE(contains(result.err, "lagrange")) << "progress is told on standard error";
+  EXPECT_TRUE(contains(result.err, "lagrange")) << "progress goes to standard error";
   EXPECT_TRUE(contains(text_of("first_steps_compare.svg"), "<svg "));
   const std::string csv = text_of("table.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5) << csv;
@@ -82,7 +82,7 @@ TEST_F(CompareVerb, ALoopClosesInEveryFormulationThatRuns) {
   EXPECT_TRUE(contains(text_of("crank.html"), "<!DOCTYPE html>"));
 }
 
-// what is compared is what a session computes
+// the compared runs equal those of a session
 TEST_F(CompareVerb, ARowEndsInTheStateOfARunBitForBit) {
   const CommandResult compared = compare(
       "tipper.yaml", {"--until", "2s", "--steps", "1ms", "--repeats", "1", "--formulations", "recursive", "--json"});
@@ -115,10 +115,10 @@ TEST_F(CompareVerb, CtrlCPrintsTheRowsThatAreDone) {
 }
 
 TEST_F(CompareVerb, WhatCannotBeIsRefusedWithCode2) {
-  const auto refused = [this](const std::vector<std::string>& more, const char* says) {
+  const auto refused = [this](const std::vector<std::string>& more, const char* sentence) {
     const CommandResult result = compare("first_steps.yaml", more);
     EXPECT_EQ(result.code, 2) << result.err;
-    EXPECT_TRUE(contains(result.err, says)) << result.err << "\nexpected: " << says;
+    EXPECT_TRUE(contains(result.err, sentence)) << result.err << "\nexpected: " << sentence;
     EXPECT_TRUE(result.out.empty()) << result.out;
   };
   refused({"--formulations", "newton"}, "--formulations: there is no 'newton' in this version; expected all, or some");
@@ -127,7 +127,7 @@ TEST_F(CompareVerb, WhatCannotBeIsRefusedWithCode2) {
   refused({"--input", "keyboard"}, "--input keyboard: every run needs the same input; nothing was run");
   refused({"--variables", "Rodd.position.x"}, "Rodd.position.x");
   refused({"--set", "Rod.mass=-1kg"}, "Rod.mass");
-  refused({"--set", "session.duration=0"}, "say with --until how long to compare");
+  refused({"--set", "session.duration=0"}, "set --until to the time to compare");
   refused({"--repeats", "0"}, "--repeats");
 }
 

@@ -1,5 +1,5 @@
-// A bit of the attached scene or of the list of its files that has flipped: the same is in the recorded description of
-// the session, and every verb says so and goes on with that one.
+// A flipped bit in the attached scene or in the list of its files: the recorded description of the session has the same
+// text, and every verb warns and uses that one.
 #include <gtest/gtest.h>
 
 #include <fstream>

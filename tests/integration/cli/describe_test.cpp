@@ -20,7 +20,7 @@ class DescribeVerb : public ::testing::Test {
   WorkFolder work_;
 };
 
-TEST_F(DescribeVerb, ShowsOnlyThePartsThatWereAskedFor) {
+TEST_F(DescribeVerb, ShowsOnlyTheRequestedParts) {
   const CommandResult eigenvalues =
       slewring({"describe", scene_file("truck_crane.yaml"), "--eigenvalues", "--at", "2s"});
   ASSERT_EQ(eigenvalues.code, 0) << eigenvalues.err;
@@ -46,12 +46,12 @@ TEST_F(DescribeVerb, RefusesWhatItDoesNotUnderstand) {
   EXPECT_EQ(unit.code, 2);
   EXPECT_TRUE(contains(unit.err, "--at")) << unit.err;
   const CommandResult joint =
-      slewring({"describe", scene_file("truck_crane.yaml"), "--liftable", "--pose", "Nobody=20deg"});
+      slewring({"describe", scene_file("truck_crane.yaml"), "--liftable", "--pose", "Absent=20deg"});
   EXPECT_EQ(joint.code, 2);
-  EXPECT_TRUE(contains(joint.err, "Nobody")) << joint.err;
+  EXPECT_TRUE(contains(joint.err, "Absent")) << joint.err;
 }
 
-// 1.7 t at 180 bar of load sensing is not lifted: a physical result, of which the user is told before the run
+// 1.7 t at 180 bar of load sensing is not lifted: a physical result; the user is warned before the run
 TEST_F(DescribeVerb, CheckWarnsOfAPayloadThatCannotBeLifted) {
   const CommandResult light = slewring({"check", scene_file("truck_crane.yaml")});
   ASSERT_EQ(light.code, 0) << light.err;

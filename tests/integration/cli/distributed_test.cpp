@@ -98,7 +98,7 @@ TEST_F(Distributed, OfTwoRunsOfOneNameStartedTogetherOneStays) {
   EXPECT_NE(refused.find("session 'twin' is held by process"), std::string::npos) << refused;
 }
 
-TEST_F(Distributed, ARunWithoutTheNodesProgramsSaysSoWithCode7) {
+TEST_F(Distributed, ARunWithoutTheNodesProgramsFailsWithCode7) {
   const std::filesystem::path alone = work_.path() / "slewring";
   std::filesystem::copy_file(program_file("slewring"), alone);
   const CommandResult result = run(alone.string(), with_domain({"run", scene_file("first_steps.yaml")}), work_.path());
@@ -174,12 +174,12 @@ TEST_F(Distributed, VerbsLookAtAndChangeARunningSession) {
 
 TEST_F(Distributed, APauseIsNeitherRunningTimeNorSlip) {
   const auto session = start("truck_crane.yaml", {"--duration", "0", "--json"});
-  const auto says = [this](std::vector<std::string> arguments) { return slewring(arguments).code; };
-  ASSERT_TRUE(wait_until([&] { return says({"control", "pause"}) == 0; })) << session->err();
-  EXPECT_EQ(says({"sessions", "--time", "4"}), 0);  // four seconds of pause, at least
-  EXPECT_EQ(says({"control", "resume"}), 0);
-  EXPECT_EQ(says({"watch", "Bag.position.y", "--count", "2"}), 0);
-  EXPECT_EQ(says({"control", "stop"}), 0);
+  const auto code_of = [this](std::vector<std::string> arguments) { return slewring(arguments).code; };
+  ASSERT_TRUE(wait_until([&] { return code_of({"control", "pause"}) == 0; })) << session->err();
+  EXPECT_EQ(code_of({"sessions", "--time", "4"}), 0);  // four seconds of pause, at least
+  EXPECT_EQ(code_of({"control", "resume"}), 0);
+  EXPECT_EQ(code_of({"watch", "Bag.position.y", "--count", "2"}), 0);
+  EXPECT_EQ(code_of({"control", "stop"}), 0);
   const CommandResult result = session->wait();
   ASSERT_EQ(result.code, 0) << result.err;
   const nlohmann::json report = nlohmann::json::parse(result.out);
@@ -331,7 +331,7 @@ TEST_F(Distributed, SignalsThatComeTwiceEndInOrderToo) {
   }
 }
 
-// of a disk that confirms the recording only after so many seconds
+// a disk that confirms the recording only after this number of seconds
 class SlowDisk : public Distributed {
  protected:
   void SetUp() override {
@@ -349,8 +349,8 @@ class SlowDisk : public Distributed {
     return wait_until([&] { return session.err().find(words) != std::string::npos; });
   }
   void expect_whole_recording(const std::string& name) const {
-    const CommandResult told = offline({"info", only_recording_below(work_.path() / name).string()});
-    EXPECT_NE(told.out.find("closed in order"), std::string::npos) << told.out;
+    const CommandResult info = offline({"info", only_recording_below(work_.path() / name).string()});
+    EXPECT_NE(info.out.find("closed in order"), std::string::npos) << info.out;
   }
 };
 
@@ -385,7 +385,7 @@ TEST_F(SlowDisk, IsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
             std::string::npos)
       << result.err;
 
-  // of two Ctrl-C the first one ends the session
+  // the first of two Ctrl-C ends the session
   ASSERT_TRUE(comes_to_say(*interrupted_twice, "still writes")) << interrupted_twice->err();
   EXPECT_EQ(interrupted_twice->err().find("killed"), std::string::npos) << interrupted_twice->err();
   interrupted_twice->send(SIGINT);
@@ -395,7 +395,7 @@ TEST_F(SlowDisk, IsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
 }
 
 // The loop of a recorder that closes its file stands still, and others would give it up after 3 s. The disk has to fail
-// long before the session ends: what is behind its end is told otherwise.
+// long before the session ends: the message after the session's end is another one.
 TEST_F(SlowDisk, ThatTakesLongToCloseAFileInMidSessionEndsNothing) {
   const CommandResult result =
       run("/bin/bash",
@@ -446,7 +446,7 @@ TEST_F(Distributed, AKilledNodeIsNamedAndTheRecordingStaysValid) {
   }
 }
 
-TEST_F(Distributed, ANodeThatDiesForTheFourthTimeEndsTheSessionWithCode4AsTheRecordingTells) {
+TEST_F(Distributed, ANodeThatDiesForTheFourthTimeEndsTheSessionAndItsRecordingWithCode4) {
   const auto session = start("truck_crane.yaml", {"--duration", "0", "--set", "session.rejoin=2s", "--session", "r"});
   ASSERT_TRUE(wait_until_running(*session)) << session->err();
   ASSERT_EQ(slewring({"watch", "Bag.position.y", "--count", "5"}).code, 0);  // a checkpoint has come
@@ -454,8 +454,8 @@ TEST_F(Distributed, ANodeThatDiesForTheFourthTimeEndsTheSessionWithCode4AsTheRec
   for (int death = 0; death < 4; ++death) {
     const auto comebacks = [&] {
       int count = 0;
-      const std::string said = session->err(), sign = " goes on in the place of ";
-      for (std::size_t at = said.find(sign); at != std::string::npos; at = said.find(sign, at + 1)) ++count;
+      const std::string sentence = session->err(), sign = " goes on in the place of ";
+      for (std::size_t at = sentence.find(sign); at != std::string::npos; at = sentence.find(sign, at + 1)) ++count;
       return count;
     };
     ASSERT_TRUE(wait_until([&] { return comebacks() == death || session->has_ended(); })) << session->err();
@@ -468,17 +468,19 @@ TEST_F(Distributed, ANodeThatDiesForTheFourthTimeEndsTheSessionWithCode4AsTheRec
   const CommandResult result = session->wait();
   EXPECT_EQ(result.code, 4) << result.err;
   EXPECT_NE(result.err.find("checkpoint (3 of 3)"), std::string::npos) << result.err;
-  const std::string who = "the mechanics node (process " + std::to_string(last) + ") was killed by signal 9 (Killed); ";
-  EXPECT_NE(result.err.find(who + "it was started again 3 times and is not any more; the others hold for 2 s in case "
-                                  "that somebody else starts one ('slewring node mechanics --session r'), and then "
-                                  "end with code 4 and close the recording"),
+  const std::string killed =
+      "the mechanics node (process " + std::to_string(last) + ") was killed by signal 9 (Killed); ";
+  EXPECT_NE(result.err.find(killed +
+                            "it was started again 3 times and will not be started any more; the others hold "
+                            "for 2 s for another process, started with 'slewring node mechanics --session r', and then "
+                            "end with code 4 and close the recording"),
             std::string::npos)
       << result.err;
   EXPECT_NE(result.err.find("is gone, and no other process took its place within 2 s"), std::string::npos)
       << result.err;
   EXPECT_EQ(result.err.find("does not end"), std::string::npos) << result.err;
-  const std::string told = offline({"info", work_.recording().string()}).out;
-  EXPECT_NE(told.find("closed in order; the session ended with code 4: mechanics"), std::string::npos) << told;
+  const std::string info = offline({"info", work_.recording().string()}).out;
+  EXPECT_NE(info.find("closed in order; the session ended with code 4: mechanics"), std::string::npos) << info;
 }
 
 TEST_F(Distributed, ANodeThatCannotBeStartedAgainLeavesItsPlaceHeld) {
@@ -492,13 +494,15 @@ TEST_F(Distributed, ANodeThatCannotBeStartedAgainLeavesItsPlaceHeld) {
   none = {STDERR_FILENO + 1, before.rlim_max};
   ASSERT_EQ(prlimit(session->pid(), RLIMIT_NOFILE, &none, nullptr), 0);
   kill(child_of(session->pid(), "mechanics_node"), SIGKILL);
-  const auto says = [&](const char* text) { return session->err().find(text) != std::string::npos; };
-  EXPECT_TRUE(wait_until([&] { return says("slewring: no pipe for mechanics (") || session->has_ended(); }));
-  EXPECT_TRUE(says("; it is not started; close other programs; the others hold, and it is tried again until one comes"))
+  const auto has_printed = [&](const char* text) { return session->err().find(text) != std::string::npos; };
+  EXPECT_TRUE(wait_until([&] { return has_printed("slewring: no pipe for mechanics (") || session->has_ended(); }));
+  EXPECT_TRUE(
+      has_printed("; it is not started; close other programs; the others hold, and it is tried again until one comes"))
       << session->err();
   ASSERT_FALSE(session->has_ended()) << session->err();
   ASSERT_EQ(prlimit(session->pid(), RLIMIT_NOFILE, &before, nullptr), 0);
-  EXPECT_TRUE(wait_until([&] { return says(" goes on in the place of ") || session->has_ended(); })) << session->err();
+  EXPECT_TRUE(wait_until([&] { return has_printed(" goes on in the place of ") || session->has_ended(); }))
+      << session->err();
   EXPECT_EQ(slewring({"control", "stop"}).code, 0);
   EXPECT_EQ(session->wait().code, 0) << session->err();
   EXPECT_EQ(offline({"replay", work_.recording().string(), "--verify"}).code, 0);
@@ -521,16 +525,17 @@ TEST_F(Distributed, ANodeWhoseProgramIsGoneEndsTheSessionAtTheEndOfTheHold) {
   kill(pid, SIGKILL);
   const CommandResult result = session.wait();
   EXPECT_EQ(result.code, 4) << result.err;
-  for (const char* said :
+  for (const char* sentence :
        {") exited with code 7; the others hold, and it is started again with the state of its last checkpoint (3 of 3)",
-        ") exited with code 7; it was started again 3 times and is not any more; the others hold for 4 s in case that "
-        "somebody else starts one ('slewring node mechanics --session r')",
+        ") exited with code 7; it was started again 3 times and will not be started any more; the others hold for 4 s "
+        "for "
+        "another process, started with 'slewring node mechanics --session r'",
         "is gone, and no other process took its place within 4 s",
         "/mechanics_node: No such file or directory; build"}) {
-    EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;
+    EXPECT_NE(result.err.find(sentence), std::string::npos) << sentence << "\n" << result.err;
   }
-  const std::string told = offline({"info", work_.recording().string()}).out;
-  EXPECT_NE(told.find("closed in order; the session ended with code 4: mechanics"), std::string::npos) << told;
+  const std::string info = offline({"info", work_.recording().string()}).out;
+  EXPECT_NE(info.find("closed in order; the session ended with code 4: mechanics"), std::string::npos) << info;
 }
 
 TEST_F(Distributed, NodesDieWithTheirSupervisor) {
@@ -557,7 +562,7 @@ TEST_F(Distributed, ARemoteRoleIsLeftToOthers) {
   EXPECT_EQ(result.code, 0) << result.err;
 }
 
-TEST_F(Distributed, NodesAndControllersAreWaitedForAsLongAsIsAsked) {
+TEST_F(Distributed, NodesAndControllersAreWaitedForUntilTheJoinTimeout) {
   const auto with = [&](std::vector<std::string> arguments, const char* seconds, const std::vector<std::string>& more) {
     arguments.insert(arguments.end(), {"--pace", "free", "--quiet", "--join-timeout", seconds});
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -592,13 +597,13 @@ TEST_F(Distributed, ASessionThatIsNotThereIsNamed) {
   const auto begin = [&](const std::vector<std::string>& arguments) {
     return std::make_unique<Command>("slewring", with_domain(arguments), work_.path());
   };
-  const std::unique_ptr<Command> of_nobody[] = {begin({"watch", "x", "--session", "nobody"}),
-                                                begin({"control", "pause", "--session", "nobody"})};
+  const std::unique_ptr<Command> of_absent[] = {begin({"watch", "x", "--session", "absent"}),
+                                                begin({"control", "pause", "--session", "absent"})};
   const auto of_any = begin({"control", "pause"}), list = begin({"sessions"});
-  for (const auto& command : of_nobody) {
+  for (const auto& command : of_absent) {
     const CommandResult result = command->wait();
     EXPECT_EQ(result.code, 1);
-    EXPECT_NE(result.err.find("no session 'nobody' was found on domain"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("no session 'absent' was found on domain"), std::string::npos) << result.err;
   }
   EXPECT_EQ(of_any->wait().code, 1);
   EXPECT_EQ(list->wait().code, 0);

@@ -1,4 +1,4 @@
-// Hard cases of a small scene: processes, verdicts, what is kept, exit codes.
+// Hard cases of a small scene: processes, verdicts, kept results, exit codes.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -91,7 +91,7 @@ TEST_F(Extremes, RunsNothingOfASceneThatIsWrong) {
   EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
 }
 
-TEST_F(Extremes, WrongWishesAreRefused) {
+TEST_F(Extremes, WrongOptionsAreRefused) {
   EXPECT_EQ(extremes({"--only", "no_such_case"}).code, 2);
   EXPECT_EQ(extremes({"--suite"}).code, 2);
   const CommandResult nowhere = run("slewring", {"extremes", "--suite", "--scenes", "nowhere"}, work_.path());

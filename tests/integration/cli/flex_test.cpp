@@ -25,7 +25,7 @@ class Flex : public ::testing::Test {
     std::ofstream(work_.path() / name, std::ios::binary) << text;
     return work_.path() / name;
   }
-  // includes lie beside what includes them
+  // includes lie beside the including file
   std::string include_boom() {
     fs::copy_file(scene_file("beams/jib_boom.yaml"), work_.path() / "jib_boom.yaml",
                   fs::copy_options::overwrite_existing);
@@ -79,7 +79,7 @@ TEST_F(Flex, BuildWritesTheFilesOfTheLibrary) {
   }
 }
 
-TEST_F(Flex, BuildGoesBesideTheDescriptionAndSaysWhatItReplaces) {
+TEST_F(Flex, BuildGoesBesideTheDescriptionAndReportsReplacedFiles) {
   const fs::path file = write("boom.yaml", include_boom() + "\n");
   fs::create_directory(work_.path() / "elsewhere");
   const CommandResult first = flex({"build", file.string(), "--model", "m", "--prefix", "p_1"});
@@ -167,7 +167,7 @@ TEST_F(Flex, ReportGivesTheFiguresOfBothBodyFrames) {
     EXPECT_NEAR(freed.at(frame).at(1).get<double>(), rows.at(0).at(frame).at(1).get<double>(), 1e-9) << frame;
 }
 
-TEST_F(Flex, ReportOfFilesSaysWhatItCannotKnow) {
+TEST_F(Flex, ReportOfFilesNamesItsMissingValues) {
   ASSERT_EQ(flex({"build", kBoom, "--output", "."}).code, 0);
   const CommandResult result = flex({"report", "truck_crane_beam_hard", "--frequency-up-to", "60 Hz"});
   ASSERT_EQ(result.code, 0) << result.err;
@@ -201,7 +201,7 @@ TEST_F(Flex, ErrorsNameTheirPlaceAndHaveTheirCodes) {
   struct Case {
     std::vector<std::string> arguments;
     int code;
-    const char* says;
+    const char* sentence;
   };
   const std::vector<Case> cases = {
       {{}, 2, "A subcommand is required"},
@@ -224,7 +224,7 @@ TEST_F(Flex, ErrorsNameTheirPlaceAndHaveTheirCodes) {
   for (const Case& c : cases) {
     const CommandResult result = flex(c.arguments);
     EXPECT_EQ(result.code, c.code) << result.err;
-    expect_part(result.err, c.says);
+    expect_part(result.err, c.sentence);
     EXPECT_TRUE(result.out.empty()) << result.out;
   }
 }

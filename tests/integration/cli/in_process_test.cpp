@@ -41,7 +41,7 @@ TEST_F(InProcess, FirstStepsAreRunRecordedDrawnAndReplayed) {
   EXPECT_EQ(replay.at("unrecorded"), 0);
 }
 
-TEST_F(InProcess, HasNoPlaceForALockstepControllerAndSaysSo) {
+TEST_F(InProcess, RefusesALockstepController) {
   const CommandResult result = run_scene("truck_crane.yaml", {"--set", "Input_Lift.controller=lockstep"});
   EXPECT_EQ(result.code, 2);
   EXPECT_NE(result.err.find("slewring: a run in one process has no place for a controller, and input Input_Lift waits "
@@ -94,7 +94,7 @@ TEST_F(InProcess, APlotOfAVariableThatIsNotThereIsNamedAndTheRunIsGoodAllTheSame
 }
 
 // a pump against a closed line: its pressure leaves the range of the oil's law
-TEST_F(InProcess, WhatStepsReportIsToldAlikeWithAndWithoutARecordingInOneProcessAndInMany) {
+TEST_F(InProcess, FlagsAreReportedAlikeWithAndWithoutARecordingInOneProcessAndInMany) {
   std::ofstream(work_.path() / "closed.yaml")
       << "volumes:\n  Vol_P: {rigid_volume: 1 l}\n  Vol_T: {initial_pressure: 1 bar, fixed: true}\n"
          "components:\n  Pump: {type: ls_pump, port_a: Vol_P, port_b: Vol_T, speed: 1500 rpm, displacement: 28 cc/rev, "
@@ -108,7 +108,7 @@ TEST_F(InProcess, WhatStepsReportIsToldAlikeWithAndWithoutARecordingInOneProcess
   };
   const nlohmann::json recorded = notes({"--in-process"});
   ASSERT_FALSE(recorded.empty());
-  EXPECT_NE(recorded.dump().find("Vol_P: a pressure was beyond what the oil's law is good for"), std::string::npos)
+  EXPECT_NE(recorded.dump().find("Vol_P: a pressure was beyond the range of the oil's law"), std::string::npos)
       << recorded;
   EXPECT_EQ(notes({"--in-process", "--no-record"}), recorded);
   const CommandResult info = slewring({"info", work_.recording().string(), "--json"});
@@ -200,7 +200,7 @@ TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
   EXPECT_EQ(info.at("scene"), "truck_crane");
   EXPECT_EQ(info.at("step_ns"), 1'000'000);
   EXPECT_TRUE(info.at("complete").get<bool>());
-  EXPECT_EQ(info.at("topics").at("tick").at("recorded"), 1001);  // the last one says END
+  EXPECT_EQ(info.at("topics").at("tick").at("recorded"), 1001);  // the last one has the END flag
   EXPECT_EQ(info.at("topics").at("mechanism").at("lost"), "0");
 
   const CommandResult plotted = slewring({"plot", recording, "Cyl_*.force", "Bag.position.y", "-o", "out.svg"});
@@ -243,11 +243,11 @@ TEST_F(InProcess, AnExportTakesAPartAndNeverReplacesAFileByItself) {
   EXPECT_TRUE(part.out.starts_with("time [s],Cyl_Lift.force [N]\n0.1,")) << part.out;
 
   ASSERT_EQ(slewring({"export", recording, "Cyl_*", "-o", "crane.mat"}).out, "crane.mat\n");
-  const auto refused = [&](std::vector<std::string> arguments, int code, const std::string& said) {
+  const auto refused = [&](std::vector<std::string> arguments, int code, const std::string& sentence) {
     arguments.insert(arguments.begin(), {"export", recording});
     const CommandResult result = slewring(arguments);
     EXPECT_EQ(result.code, code) << result.err;
-    EXPECT_NE(result.err.find(said), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(sentence), std::string::npos) << result.err;
   };
   const auto size = std::filesystem::file_size(work_.path() / "crane.mat");
   refused({"-o", "crane.mat"}, 2, "crane.mat: the file exists already; it was left as it is;");
@@ -346,7 +346,7 @@ TEST_F(InProcess, ADamagedRecordingIsRecoveredAndReplays) {
   ASSERT_EQ(replayed.code, 0) << replayed.err;
   EXPECT_EQ(nlohmann::json::parse(replayed.out).at("different"), 0);
   EXPECT_EQ(nlohmann::json::parse(replayed.out).at("steps"), last + 1);
-  // what is there is never replaced
+  // an existing file is never replaced
   const CommandResult again = slewring({"recover", "cut.mcap"});
   EXPECT_EQ(again.code, 6);
   EXPECT_NE(again.err.find("cut.recovered.mcap: the file exists already"), std::string::npos) << again.err;
@@ -370,15 +370,15 @@ TEST_F(InProcess, ADamagedRecordingOfASessionThatGoesOnIsRecoveredFromItsFirstSt
   EXPECT_GT(saved.at("complete_to"), 1000);
   EXPECT_LE(saved.at("complete_to"), saved.at("last_step"));
   EXPECT_EQ(saved.at("lost_steps"), 0);
-  const CommandResult told = slewring({"recover", "cut.mcap", "-o", "again.mcap"});
-  EXPECT_NE(told.out.find("complete from step 700 up to step "), std::string::npos) << told.out;
-  EXPECT_EQ(told.out.find("ticks and samples"), std::string::npos) << told.out;
+  const CommandResult recovered = slewring({"recover", "cut.mcap", "-o", "again.mcap"});
+  EXPECT_NE(recovered.out.find("complete from step 700 up to step "), std::string::npos) << recovered.out;
+  EXPECT_EQ(recovered.out.find("ticks and samples"), std::string::npos) << recovered.out;
   const CommandResult replayed = slewring({"replay", "cut.recovered.mcap", "--json"});
   ASSERT_EQ(replayed.code, 0) << replayed.err;
   EXPECT_EQ(nlohmann::json::parse(replayed.out).at("different"), 0);
 }
 
-// what an operator did on one crane, done again on another, and both in one picture
+// an operator's inputs on one crane, played back on another, and both in one picture
 TEST_F(InProcess, AnInputIsTakenFromOneCraneToAnotherAndBothAreDrawnTogether) {
   const auto run_into = [&](const std::string& scene, const std::string& out, const std::string& input) {
     const CommandResult run = run_scene(scene, {"--duration", "2", "--out", out, "--input", input});
@@ -418,7 +418,7 @@ TEST_F(InProcess, AnInputIsTakenFromOneCraneToAnotherAndBothAreDrawnTogether) {
   EXPECT_EQ(slewring({"export", rigid, "Bag.*", "--input"}).code, 2);
 }
 
-TEST_F(InProcess, TheSummarySaysWhyALoadCannotBeLiftedAndHowMuchCouldBe) {
+TEST_F(InProcess, TheSummaryHasTheReasonWhyALoadCannotBeLiftedAndTheLargestLoad) {
   const CommandResult heavy = run_scene("truck_crane_heavy.yaml", {"--out", "heavy"});
   ASSERT_EQ(heavy.code, 0) << heavy.err;
   const nlohmann::json notes = nlohmann::json::parse(heavy.out).at("notes");
@@ -432,7 +432,7 @@ TEST_F(InProcess, TheSummarySaysWhyALoadCannotBeLiftedAndHowMuchCouldBe) {
   EXPECT_GT(most, 1100);
   EXPECT_LT(most, 1400);
 
-  // a little less than what it says is lifted indeed
+  // a load a little below the predicted one is lifted
   std::ofstream(work_.path() / "less.yaml")
       << "interpolation: step\ninputs:\n  Input_Lift: [[0 s, 0], [8 s, 1], [14 s, 0]]\n"
       << "parameters:\n  - {at: 1 s, set: Bag.mass, value: " << most * 0.97 << " kg, over: 1 s}\n";
@@ -449,7 +449,7 @@ TEST_F(InProcess, ALoadThatIsLiftedNeedsNoNote) {
   EXPECT_TRUE(nlohmann::json::parse(result.out).at("notes").empty()) << result.out;
 }
 
-TEST_F(InProcess, TheSummarySaysWhichStepsWereFlagged) {
+TEST_F(InProcess, TheSummaryNamesTheFlaggedSteps) {
   const CommandResult result = run_scene("truck_crane.yaml", {"--duration", "1", "--set", "hydraulics.substep_budget=3",
                                                               "--set", "hydraulics.relative_tolerance=1e-8"});
   ASSERT_EQ(result.code, 0) << result.err;

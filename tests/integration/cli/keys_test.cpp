@@ -27,12 +27,12 @@ class Keys : public ::testing::Test {
     arguments.insert(arguments.begin(), "keys");
     return run("slewring", arguments, folder());
   }
-  // what check says by identity; empty: good
+  // problem of each identity in check's output; empty: good
   std::map<std::string, std::string> problems(const std::string& store = "plant") {
     const CommandResult result = keys({"check", store, "--json"});
-    std::map<std::string, std::string> said;
-    for (const auto& one : nlohmann::json::parse(result.out, nullptr, false)) said[one.at("what")] = one.at("problem");
-    return said;
+    std::map<std::string, std::string> found;
+    for (const auto& one : nlohmann::json::parse(result.out, nullptr, false)) found[one.at("what")] = one.at("problem");
+    return found;
   }
   const fs::path& folder() const { return work_.path(); }
   [[nodiscard]] std::string domain() const { return std::to_string(domain_.number()); }
@@ -90,7 +90,7 @@ TEST_F(Keys, ExportTakesWhatHoldersNeedAndRevocationMakesItWorthless) {
   ASSERT_EQ(keys({"add", "plant", "--name", "joystick", "--session", "truck_*"}).code, 0);
   EXPECT_EQ(keys({"add", "plant", "--name", "joystick"}).code, 2);
   EXPECT_EQ(keys({"add", "plant", "--name", "a/b"}).code, 2);
-  EXPECT_EQ(keys({"export", "plant", "nobody", "--to", "out"}).code, 2);
+  EXPECT_EQ(keys({"export", "plant", "absent", "--to", "out"}).code, 2);
   EXPECT_FALSE(fs::exists(folder() / "out"));
   ASSERT_EQ(keys({"export", "plant", "joystick", "hydraulics", "--to", "out"}).code, 0);
   EXPECT_FALSE(fs::exists(folder() / "out/identity_ca.key"));
@@ -101,7 +101,7 @@ TEST_F(Keys, ExportTakesWhatHoldersNeedAndRevocationMakesItWorthless) {
   ASSERT_EQ(revoked.code, 0) << revoked.err;
   EXPECT_FALSE(fs::exists(folder() / "plant/joystick"));
   EXPECT_EQ(keys({"check", "plant"}).code, 0);
-  // what was exported is of the former authority
+  // the exported keys belong to the former authority
   const CommandResult mixed = keys({"export", "plant", "hydraulics", "--to", "out"});
   EXPECT_EQ(mixed.code, 2);
   EXPECT_NE(mixed.err.find("before a revocation"), std::string::npos) << mixed.err;
@@ -160,7 +160,7 @@ TEST_F(Keys, LeaveFoldersAndFilesOfOthersAsTheyAre) {
   ASSERT_EQ(keys({"export", "plant", "io", "--to", "out"}).code, 0);
   EXPECT_EQ(mode("out"), kOpen);
   EXPECT_EQ(mode("out/io/private_key.pem"), fs::perms::owner_read | fs::perms::owner_write);
-  // what lies beside the store or in it survives a revocation
+  // foreign files beside the store and in it survive a revocation
   for (const char* path : {"plant.old", "plant.new", "plant/notes"}) {
     make_folder(path);
     std::ofstream(folder() / path / "text") << path;
@@ -222,7 +222,7 @@ TEST_F(Keys, AreGoodFromADayBeforeTheyWereMade) {
   }
 }
 
-TEST_F(Keys, ThatHaveExpiredAreRefusedAndTold) {
+TEST_F(Keys, ThatHaveExpiredAreRefusedAndReported) {
   ASSERT_EQ(keys({"create", "plant"}).code, 0);
   const fs::path io = folder() / "plant/io", store = folder() / "plant";
   const auto openssl = [&](const std::vector<std::string>& arguments) {
@@ -238,12 +238,12 @@ TEST_F(Keys, ThatHaveExpiredAreRefusedAndTold) {
   const auto expect_refused = [&] {
     const CommandResult refused = start();
     EXPECT_EQ(refused.code, 2) << refused.err;
-    EXPECT_NE(refused.err.find("the keys of this process are not good; nothing was started; 'slewring keys check' "
-                               "tells what is wrong with them"),
+    EXPECT_NE(refused.err.find("the keys of this process are not valid; nothing was started; 'slewring keys check' "
+                               "lists their problems"),
               std::string::npos)
         << refused.err;
   };
-  EXPECT_EQ(start().code, 1) << "good keys, and nobody else";
+  EXPECT_EQ(start().code, 1) << "valid keys, and no other process";
   // permissions whose time is over
   const std::string permissions = text_of(io / "permissions.p7s");
   std::string over = text_of(io / "permissions.xml");
@@ -275,18 +275,20 @@ TEST_F(Keys, AViewerLooksOnAndCanDoNothing) {
                   {"run", scene_file("truck_crane.yaml"), "--keys", "plant", "--domain", domain(), "--session", "t",
                    "--duration", "0", "--step", "10 ms", "--json"},
                   folder());
-  const auto say = [&](std::vector<std::string> more) {
+  const auto run_verb = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--session", "t", "--domain", domain(), "--keys", "glass", "--identity", "viewer"});
     return run("slewring", more, folder());
   };
-  ASSERT_TRUE(wait_until([&] { return say({"watch", "Bag.position.y", "--count", "2"}).code == 0; })) << session.err();
-  const CommandResult named = say({"variables"});
+  ASSERT_TRUE(wait_until([&] {
+    return run_verb({"watch", "Bag.position.y", "--count", "2"}).code == 0;
+  })) << session.err();
+  const CommandResult named = run_verb({"variables"});
   EXPECT_EQ(named.code, 0) << named.err;
   EXPECT_NE(named.out.find("Bag.position.y"), std::string::npos) << named.out;
-  for (const std::vector<std::string>& wish :
+  for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"control", "stop"}, {"control", "reset"}, {"param", "set", "Bag.mass=900"}}) {
-    const CommandResult refused = say(wish);
-    EXPECT_EQ(refused.code, 2) << wish.back() << refused.err;
+    const CommandResult refused = run_verb(arguments);
+    EXPECT_EQ(refused.code, 2) << arguments.back() << refused.err;
     EXPECT_NE(refused.err.find("the keys of this process do not allow it"), std::string::npos) << refused.err;
   }
   EXPECT_FALSE(session.has_ended());
@@ -308,7 +310,7 @@ TEST_F(Keys, SessionWithKeysGivesTheBitsOfOneWithout) {
 }
 
 // The observer of a run that is not recorded reads the samples; stores of before did not let it.
-TEST_F(Keys, WhatStepsReportIsToldWithoutARecordingOrSaidToBeUnknown) {
+TEST_F(Keys, FlagsAreReportedWithoutARecordingOrAsMissing) {
   std::ofstream(folder() / "closed.yaml")
       << "volumes:\n  Vol_P: {rigid_volume: 1 l}\n  Vol_T: {initial_pressure: 1 bar, fixed: true}\n"
          "components:\n  Pump: {type: ls_pump, port_a: Vol_P, port_b: Vol_T, speed: 1500 rpm, displacement: 28 cc/rev, "
@@ -323,7 +325,7 @@ TEST_F(Keys, WhatStepsReportIsToldWithoutARecordingOrSaidToBeUnknown) {
     EXPECT_EQ(result.code, 0) << result.err;
     return nlohmann::json::parse(result.out, nullptr, false)["notes"].dump();
   };
-  EXPECT_NE(notes().find("Vol_P: a pressure was beyond what the oil's law is good for"), std::string::npos) << notes();
+  EXPECT_NE(notes().find("Vol_P: a pressure was beyond the range of the oil's law"), std::string::npos) << notes();
   const fs::path observer = folder() / "plant/observer";
   std::string narrower = text_of(observer / "permissions.xml");
   for (const std::string topic : {"slewring/mechanism", "slewring/actuators"}) {
@@ -339,7 +341,7 @@ TEST_F(Keys, WhatStepsReportIsToldWithoutARecordingOrSaidToBeUnknown) {
            "-inkey", (folder() / "plant/permissions_ca.key").string()},
           folder());
   ASSERT_EQ(made.code, 0) << made.err;
-  EXPECT_NE(notes().find("the flags of the steps are not known"), std::string::npos) << notes();
+  EXPECT_NE(notes().find("the flags of the steps are missing"), std::string::npos) << notes();
 }
 
 // CVE-2023-24011: Cyclone 0.10.2 takes permissions that any certificate of the authority has signed
@@ -370,7 +372,7 @@ TEST_F(Keys, HoldersCannotGrantThemselvesMore) {
   EXPECT_NE(forged.err.find("the keys of this process are not good"), std::string::npos) << forged.err;
 }
 
-TEST_F(Keys, WhoHasTheWrongOnesOrNoneIsNotHeardAndIsReported) {
+TEST_F(Keys, AProcessWithWrongOnesOrNoneIsIgnoredAndReported) {
   ASSERT_EQ(keys({"create", "plant"}).code, 0);
   ASSERT_EQ(keys({"create", "other"}).code, 0);
   ASSERT_EQ(keys({"add", "plant", "--role", "hydraulics", "--name", "guest", "--session", "foo_*"}).code, 0);
@@ -385,7 +387,7 @@ TEST_F(Keys, WhoHasTheWrongOnesOrNoneIsNotHeardAndIsReported) {
   };
   const auto with_none = hydraulics({}), with_others = hydraulics({"--keys", "other"}),
              as_guest = hydraulics({"--keys", "plant", "--identity", "guest"}),
-             as_nobody = hydraulics({"--keys", "plant", "--identity", "nobody"});
+             as_absent = hydraulics({"--keys", "plant", "--identity", "absent"});
   const CommandResult none = with_none->wait();
   EXPECT_EQ(none.code, 1);
   EXPECT_NE(none.err.find("no session was found within 2 s"), std::string::npos) << none.err;
@@ -396,9 +398,9 @@ TEST_F(Keys, WhoHasTheWrongOnesOrNoneIsNotHeardAndIsReported) {
   const CommandResult guest = as_guest->wait();
   EXPECT_EQ(guest.code, 2);
   EXPECT_NE(guest.err.find("the keys of this process do not allow it"), std::string::npos) << guest.err;
-  const CommandResult unknown = as_nobody->wait();
+  const CommandResult unknown = as_absent->wait();
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_NE(unknown.err.find("has no keys of 'nobody'"), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("has no keys of 'absent'"), std::string::npos) << unknown.err;
   const CommandResult ended = session.wait();
   EXPECT_EQ(ended.code, 1) << ended.err;
   EXPECT_NE(ended.err.find("no hydraulics node has been heard"), std::string::npos) << ended.err;

@@ -17,7 +17,7 @@ class Limits : public ::testing::TestWithParam<std::string> {
   void sweep(const std::vector<std::string>& limits) {
     int refused = 0, code = 0;
     for (const std::string& limit : limits) {
-      // files of who runs the tests do not count
+      // files of the calling program do not count
       const std::string close = "for f in /proc/self/fd/*; do f=${f##*/}; [ $f -gt 2 ] && eval \"exec $f>&-\"; done; ";
       const std::string command = close + "ulimit " + limit + "; exec " + program_file("slewring").string() + ' ' +
                                   GetParam() + " --domain " + std::to_string(domain_.number());
@@ -37,12 +37,12 @@ class Limits : public ::testing::TestWithParam<std::string> {
   TestDomain domain_;
 };
 
-TEST_P(Limits, OfFilesAreToldWithCode7) {
+TEST_P(Limits, OfFilesAreReportedWithCode7) {
   if (!can_run_without_files()) GTEST_SKIP() << "a sanitizer cannot do without files";
   sweep({"-n 4", "-n 5", "-n 7", "-n 10", "-n 15", "-n 18", "-n 20", "-n 40"});
 }
 
-TEST_P(Limits, OfMemoryAreToldWithCode7) {
+TEST_P(Limits, OfMemoryAreReportedWithCode7) {
   // a sanitizer reserves more than any machine has
   if (!sanitizers().empty()) GTEST_SKIP() << "not with a sanitizer";
   sweep({"-d 6000", "-d 10000", "-d 20000", "-d 40000", "-d 60000", "-d 90000", "-d 130000", "-d 150000", "-d 300000"});

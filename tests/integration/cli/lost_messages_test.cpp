@@ -43,7 +43,7 @@ struct Message {
   recording::Bytes payload;
 };
 
-// What of a recording may be changed in a copy.
+// Parts of a recording that a copy may change.
 struct Content {
   recording::SessionIdentity identity;
   std::vector<Message> messages;
@@ -95,8 +95,8 @@ int copy_without(const std::filesystem::path& from, const std::filesystem::path&
   return static_cast<int>(lost);
 }
 
-// Pendulums, so many that their variables come in several blocks; of the mechanics the first one is missing from 0.2 s
-// to 0.39 s, the last one at 0.7 s.
+// Enough pendulums for several blocks of variables; the first block of the mechanics is missing from 0.2 s to 0.39 s,
+// the last one at 0.7 s.
 class LostMessages : public ::testing::Test {
  protected:
   static constexpr int kPendulums = 80;

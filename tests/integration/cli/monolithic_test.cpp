@@ -15,7 +15,7 @@ class MonolithicRun : public ::testing::Test {
  protected:
   CommandResult slewring(const std::vector<std::string>& arguments) { return run("slewring", arguments, work_.path()); }
 
-  // with --monolithic unless `how` says otherwise
+  // `how`: the kind of run, --monolithic by default
   CommandResult run_scene(const std::string& scene, std::vector<std::string> more, const char* how = "--monolithic") {
     more.insert(more.begin(), {"run", scene, how, "--pace", "free", "--json"});
     return slewring(more);
@@ -103,7 +103,7 @@ TEST_F(MonolithicRun, OfMechanicsAloneHoldsLoopsAndKeepsEnergy) {
     largest = std::max(largest, std::fabs(a + b - first));
   }
   EXPECT_GT(lines, 1000);
-  EXPECT_LT(largest, 1e-5);  // of 36 J, 1.5 J of them moving
+  EXPECT_LT(largest, 1e-5);  // share of 36 J, of which 1.5 J move
 }
 
 TEST_F(MonolithicRun, EndsWithCodeFiveWhereShapesTouch) {

@@ -23,7 +23,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// An example that is refused as it is printed helps nobody: beyond this machine there are keys, or none by name.
+// A printed example must not be refused: beyond this machine it has keys, or names their absence.
 void expect_keys_beyond_this_machine(const std::string& help) {
   std::istringstream lines(help);
   for (std::string line; std::getline(lines, line);) {
@@ -112,7 +112,7 @@ TEST_F(Program, TheClockGoesBeforeThePhysicsAndThePhysicsBeforeTheRecorder) {
   EXPECT_GT(priority("recorder"), 0);
 }
 
-TEST_F(Program, EveryProgramTellsTheSameBuild) {
+TEST_F(Program, EveryProgramPrintsTheSameBuild) {
   const std::string own = slewring({"--version"}).out;
   ASSERT_TRUE(own.starts_with("slewring 0.")) << own;
   for (const char* node : {"io_node", "mechanics_node", "hydraulics_node", "flex_node", "recorder_node"}) {
@@ -125,7 +125,7 @@ TEST_F(Program, EveryProgramTellsTheSameBuild) {
 TEST_F(Program, UsageErrorsSayWhatWhereAndWhatToDoAndExitWith2) {
   struct Case {
     std::vector<std::string> arguments;
-    const char* says;
+    const char* sentence;
   };
   const std::vector<Case> cases = {
       {{}, "slewring: A subcommand is required; nothing was done; see 'slewring --help'\n"},
@@ -158,12 +158,12 @@ TEST_F(Program, UsageErrorsSayWhatWhereAndWhatToDoAndExitWith2) {
   for (const Case& c : cases) {
     const CommandResult result = slewring(c.arguments);
     EXPECT_EQ(result.code, 2) << result.err;
-    EXPECT_TRUE(contains(result.err, c.says)) << result.err << "\nexpected: " << c.says;
+    EXPECT_TRUE(contains(result.err, c.sentence)) << result.err << "\nexpected: " << c.sentence;
     EXPECT_TRUE(result.out.empty()) << result.out;
   }
 }
 
-TEST_F(Program, CheckTellsEveryProblemWithItsPlace) {
+TEST_F(Program, CheckPrintsEveryProblemWithItsPlace) {
   std::ofstream(work_.path() / "bad.yaml") << "bodies:\n  Rod: {mas: 2 kg, mass: -1 kg}\n";
   const CommandResult result = slewring({"check", "bad.yaml"});
   EXPECT_EQ(result.code, 2);
@@ -253,7 +253,7 @@ TEST_F(Program, ImportMakesASceneThatIsCheckedAndRuns) {
   EXPECT_EQ(json.at("scene"), std::string(std::istreambuf_iterator<char>(in), {}));
 }
 
-TEST_F(Program, ImportTellsTheLineOfWhatItCannotTake) {
+TEST_F(Program, ImportNamesTheLineOfAnUnsupportedElement) {
   const std::string urdf = work_.path() / "bad.urdf";
   std::ofstream(urdf) << "<robot name=\"r\">\n<link name=\"a\"/>\n<link name=\"b\"/>\n"
                          "<joint name=\"j\" type=\"gear\"><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>\n";
@@ -305,7 +305,7 @@ TEST_F(Program, DoctorJudgesThisMachine) {
   EXPECT_TRUE(contains(nowhere.out, "no_such_if")) << nowhere.out;
 }
 
-TEST_F(Program, InfoTellsWhatARecordingLacks) {
+TEST_F(Program, InfoNamesTheGapsOfARecording) {
   recording::SessionIdentity identity;
   identity.scene = "crane";
   identity.communication_step = milliseconds(1);

@@ -1,5 +1,5 @@
-// Loaded in front of the C library (LD_PRELOAD): a disk that confirms what was written only after a time, in s, that
-// the environment says.
+// Loaded in front of the C library (LD_PRELOAD): a disk that confirms writes only after a time in s from the
+// environment.
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>

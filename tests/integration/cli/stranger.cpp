@@ -22,7 +22,7 @@ constexpr std::size_t kHeader = 20;           // bytes of an RTPS message before
 constexpr std::size_t kSubmessageHeader = 4;  // id, flags, length
 constexpr std::size_t kMostBytes = 65536;
 constexpr std::uint32_t kMillion = 1'000'000;
-constexpr std::uint32_t kPorts = 250;  // of a domain
+constexpr std::uint32_t kPorts = 250;  // ports of a domain
 
 enum Submessage : std::uint8_t {
   acknack = 0x06,
@@ -77,7 +77,7 @@ std::vector<std::uint8_t> renumbered(std::vector<std::uint8_t> packet, std::uint
   return packet;
 }
 
-// without what a signature is made of
+// without the parts that a signature needs
 std::vector<std::uint8_t> without(const std::vector<std::uint8_t>& packet, std::initializer_list<std::uint8_t> ids) {
   std::vector<std::uint8_t> out(packet.begin(), packet.begin() + kHeader);
   for_each_submessage(packet, [&](std::uint8_t id, std::size_t begin, std::size_t, std::size_t end) {
@@ -184,7 +184,7 @@ void Stranger::remember(const Bytes& packet, std::uint16_t port) {
   });
 }
 
-bool Stranger::has_heard(std::size_t samples) const {
+bool Stranger::has_received(std::size_t samples) const {
   const std::lock_guard lock(mutex_);
   return samples_.size() >= samples && !reader_.empty();
 }
@@ -199,7 +199,7 @@ void Stranger::forge(Forgery kind, std::uint32_t count) const {
   Bytes reader;
   {
     const std::lock_guard lock(mutex_);
-    if (samples_.empty() || reader_.empty()) throw std::logic_error("too little was overheard");
+    if (samples_.empty() || reader_.empty()) throw std::logic_error("too little was captured");
     last = samples_.back();
     reader = reader_;
   }
@@ -209,7 +209,7 @@ void Stranger::forge(Forgery kind, std::uint32_t count) const {
       forged.push_back(forge_one(renumbered(last.packet, last.number + ahead)));
     }
   };
-  const auto say = [&](std::uint8_t id, const std::vector<std::uint32_t>& words) {
+  const auto send_submessage = [&](std::uint8_t id, const std::vector<std::uint32_t>& words) {
     forged.push_back(message(last.packet, last.body, reader, id, words));
     forged.push_back(behind_prefix(forged.back(), last.packet));
   };
@@ -224,10 +224,10 @@ void Stranger::forge(Forgery kind, std::uint32_t count) const {
       count_up([](const Bytes& packet) { return without(packet, {Submessage::signed_postfix}); });
       break;
     case Forgery::gap:
-      say(Submessage::gap, {0, last.number + 1, 0, last.number + kMillion, 32, 0});
+      send_submessage(Submessage::gap, {0, last.number + 1, 0, last.number + kMillion, 32, 0});
       break;
     case Forgery::heartbeat:
-      say(Submessage::heartbeat, {0, last.number + kMillion, 0, last.number + kMillion, kMillion});
+      send_submessage(Submessage::heartbeat, {0, last.number + kMillion, 0, last.number + kMillion, kMillion});
       break;
   }
   const int out = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);

@@ -1,5 +1,5 @@
-// Somebody without keys on the network of a session: sees the packets of one DDS domain on loopback and sends its own
-// (RTPS 2.5, 8.3 and 9.4). Needs CAP_NET_RAW.
+// A process without keys on the network of a session: it sees the packets of one DDS domain on loopback and sends its
+// own (RTPS 2.5, 8.3 and 9.4). Needs CAP_NET_RAW.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@
 namespace slew::testing {
 
 enum class Forgery : std::uint8_t {
-  newer,           // what was overheard, with a higher sequence number
+  newer,           // a captured message with a higher sequence number
   newer_unsigned,  // that as well, without its signature or the end of it
   gap,             // GAP: the next million samples are of no matter
   heartbeat,       // HEARTBEAT: the next million samples are gone
@@ -31,8 +31,8 @@ class Stranger {
   // Why it cannot listen; empty: it does.
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
-  // So many samples of a program, and who has answered one.
-  [[nodiscard]] bool has_heard(std::size_t samples) const;
+  // It has received this number of samples of a program, and the number of a process that has answered one.
+  [[nodiscard]] bool has_received(std::size_t samples) const;
   // This text was in a packet as it is.
   [[nodiscard]] bool has_seen(std::string_view text) const;
   // Sends forged packets in the name of the last sample's writer, to the last reader, up to `count` numbers ahead.

@@ -1,4 +1,4 @@
-// What somebody without keys can do to those who have them by sending packets in their names: nothing.
+// A process without keys that sends packets in the names of processes with keys: it has no effect on them.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -76,7 +76,7 @@ class AStranger : public ::testing::TestWithParam<Forgery> {
     const auto reader = open(domain_.number(), store(), "io", {}, {Topic::controller_input});
     EXPECT_NE(reader, nullptr);
     transport::Received message;
-    while (!stranger.has_heard(20)) {
+    while (!stranger.has_received(20)) {
       if (!next(*reader, message)) return numbers;
     }
     stranger.forge(forgery, kAhead);
@@ -101,9 +101,9 @@ constexpr std::size_t kEnough = 3 * kAhead;
 
 class StrangerWith : public AStranger {};
 
-TEST_P(StrangerWith, IsNotHeard) {
+TEST_P(StrangerWith, IsIgnored) {
   const std::vector<std::uint64_t> numbers = read_numbers(GetParam(), kEnough);
-  if (!skip_reason_.empty()) GTEST_SKIP() << "packets cannot be overheard here: " << skip_reason_;
+  if (!skip_reason_.empty()) GTEST_SKIP() << "packets cannot be captured here: " << skip_reason_;
   EXPECT_EQ(numbers.size(), kEnough);
   EXPECT_TRUE(are_in_order(numbers));
 }
@@ -111,18 +111,18 @@ TEST_P(StrangerWith, IsNotHeard) {
 // or the test above would show nothing
 class UnsignedStrangerWith : public AStranger {};
 
-TEST_P(UnsignedStrangerWith, WouldBeHeardIfNothingWereSigned) {
+TEST_P(UnsignedStrangerWith, WouldBeReceivedIfNothingWereSigned) {
   sign_nothing();
   const CommandResult checked = run("slewring", {"keys", "check", "plant"}, work_.path());
   EXPECT_EQ(checked.code, 1);
-  EXPECT_NE(checked.out.find("is that of another version and protects otherwise"), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find("is of another version and has other protection rules"), std::string::npos) << checked.out;
   const std::vector<std::uint64_t> numbers = read_numbers(GetParam(), kEnough);
-  if (!skip_reason_.empty()) GTEST_SKIP() << "packets cannot be overheard here: " << skip_reason_;
+  if (!skip_reason_.empty()) GTEST_SKIP() << "packets cannot be captured here: " << skip_reason_;
   EXPECT_FALSE(numbers.size() == kEnough && are_in_order(numbers));
 }
 
 // From when two processes meet until samples go between them; `keys`: the store, or none.
-std::unique_ptr<Stranger> overhear_a_start(std::uint32_t domain, const std::string& keys, const std::string& word) {
+std::unique_ptr<Stranger> capture_a_start(std::uint32_t domain, const std::string& keys, const std::string& word) {
   auto stranger = std::make_unique<Stranger>(domain);
   if (!stranger->problem().empty()) return stranger;
   ChildProcess writer([&] { return write_numbers(domain, keys, word); });
@@ -130,8 +130,8 @@ std::unique_ptr<Stranger> overhear_a_start(std::uint32_t domain, const std::stri
   EXPECT_NE(reader, nullptr);
   transport::Received message;
   for (int i = 0; i < 20; ++i) EXPECT_TRUE(next(*reader, message));
-  // the last of them may still be on their way to who listens
-  EXPECT_TRUE(wait_until([&] { return stranger->has_heard(20); }));
+  // the last packets may still be on their way to the listening process
+  EXPECT_TRUE(wait_until([&] { return stranger->has_received(20); }));
   return stranger;
 }
 
@@ -140,10 +140,10 @@ class AnOnlooker : public AStranger {};
 TEST_F(AnOnlooker, SeesOfAStartWithKeysNeitherProcessesNorValues) {
   const std::string word = "a_value_that_is_sent";
   const std::vector<std::string> secrets = {"test_cli_programs", "__ProcessName", "__Hostname", "__Pid", word};
-  const auto keyed = overhear_a_start(domain_.number(), store(), word);
-  if (!keyed->problem().empty()) GTEST_SKIP() << "packets cannot be overheard here: " << keyed->problem();
+  const auto keyed = capture_a_start(domain_.number(), store(), word);
+  if (!keyed->problem().empty()) GTEST_SKIP() << "packets cannot be captured here: " << keyed->problem();
   for (const std::string& secret : secrets) EXPECT_FALSE(keyed->has_seen(secret)) << secret;
-  // what docs/security.md says is seen all the same
+  // the parts that docs/security.md lists as visible are visible
   std::array<char, 256> host{};
   ASSERT_EQ(gethostname(host.data(), host.size() - 1), 0);
   for (const std::string& seen : {host.data() + std::string("/"), std::string("slewring/controller_input")}) {
@@ -151,7 +151,7 @@ TEST_F(AnOnlooker, SeesOfAStartWithKeysNeitherProcessesNorValues) {
   }
   // or it would show nothing
   const TestDomain plain;
-  const auto unkeyed = overhear_a_start(plain.number(), "", word);
+  const auto unkeyed = capture_a_start(plain.number(), "", word);
   for (const std::string& secret : secrets) EXPECT_TRUE(unkeyed->has_seen(secret)) << secret;
 }
 

@@ -1,5 +1,5 @@
-// Measured tables as users have them: long ones travel with the session, exports are played back, what cannot be used
-// is refused before anything starts.
+// Measured tables of users: long ones travel with the session, exports are played back, unusable ones are refused
+// before anything starts.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -72,12 +72,12 @@ TEST_F(Tradeoff, KeepsRefusedRowsWithTheReason) {
 
 TEST_F(Tradeoff, AnswersWithASceneThatChecks) {
   const std::vector<std::string> axis = {"--axis", "session.step=1ms,2ms,4ms,10ms"};
-  const auto ask = [&](const std::vector<std::string>& question) {
+  const auto tradeoff_with = [&](const std::vector<std::string>& question) {
     std::vector<std::string> more = axis;
     more.insert(more.end(), question.begin(), question.end());
     return tradeoff(more);
   };
-  const CommandResult loose = ask({"--error", "Cyl_Lift.force 20%"});
+  const CommandResult loose = tradeoff_with({"--error", "Cyl_Lift.force 20%"});
   ASSERT_EQ(loose.code, 0) << loose.err;
   ASSERT_NE(loose.out.find("boom_tradeoff.yaml"), std::string::npos) << loose.out;
   const CommandResult checked = run("slewring", {"check", "boom_tradeoff.yaml"}, work_.path());
@@ -87,12 +87,12 @@ TEST_F(Tradeoff, AnswersWithASceneThatChecks) {
   EXPECT_NE(text.find("boom.yaml"), std::string::npos) << text;
   EXPECT_NE(text.find("  step: "), std::string::npos) << text;
   const std::size_t before = results();
-  const CommandResult impossible = ask({"--error", "Cyl_Lift.force 0.001 N"});
+  const CommandResult impossible = tradeoff_with({"--error", "Cyl_Lift.force 0.001 N"});
   EXPECT_EQ(impossible.code, 1);
   EXPECT_NE(impossible.out.find("no stable row meets this"), std::string::npos) << impossible.out;
   EXPECT_EQ(results(), before);  // nothing was computed again
-  EXPECT_EQ(ask({"--error", "Cyl_Lft.force 1%"}).code, 2);
-  EXPECT_EQ(ask({"--budget", "20 s"}).code, 2);
+  EXPECT_EQ(tradeoff_with({"--error", "Cyl_Lft.force 1%"}).code, 2);
+  EXPECT_EQ(tradeoff_with({"--budget", "20 s"}).code, 2);
 }
 
 TEST_F(Tradeoff, RefusesAPlaceForTheAnswerBeforeAnythingRuns) {
@@ -121,7 +121,7 @@ TEST_F(Tradeoff, GoesOnAfterAnInterruption) {
   const nlohmann::json all = parsed(second);
   EXPECT_TRUE(all.at("is_complete").get<bool>());
   EXPECT_GE(all.at("kept").get<int>(), 1);
-  // what was kept is as it was
+  // the kept results are unchanged
   for (std::size_t i = 0; i < part.at("rows").size(); ++i) {
     if (!part.at("rows").at(i).at("is_done").get<bool>()) continue;
     EXPECT_EQ(all.at("rows").at(i).at("us_per_ms"), part.at("rows").at(i).at("us_per_ms"));

@@ -1,4 +1,4 @@
-// Variables that recording.variables leaves out: told before a run, and by who asks the recording for them.
+// Variables that recording.variables leaves out: the warning before a run, and the message when a recording lacks one.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -9,7 +9,7 @@
 namespace slew::testing {
 namespace unrecorded_test {
 
-TEST(Unrecorded, WhatIsNotRecordedIsToldBeforeAndWhoeverAsksForIt) {
+TEST(Unrecorded, IsReportedBeforeARunAndOnRequest) {
   const WorkFolder work;
   const auto slewring = [&](const std::vector<std::string>& arguments) {
     return run("slewring", arguments, work.path());
@@ -32,10 +32,10 @@ TEST(Unrecorded, WhatIsNotRecordedIsToldBeforeAndWhoeverAsksForIt) {
   EXPECT_EQ(report.at("notes").size(), 3u) << report.at("notes");
 
   const std::string recording = work.recording().string();
-  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& said) {
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& sentence) {
     const CommandResult refusal = slewring(arguments);
     EXPECT_EQ(refusal.code, 2);
-    EXPECT_NE(refusal.err.find(said), std::string::npos) << refusal.err;
+    EXPECT_NE(refusal.err.find(sentence), std::string::npos) << refusal.err;
   };
   const std::string pressure = "Vol_MainPump.pressure is not in this recording, whose scene records [Cyl_*] only";
   refused({"plot", recording, "Vol_MainPump.pressure", "-o", "a.svg"}, pressure);
@@ -47,7 +47,7 @@ TEST(Unrecorded, WhatIsNotRecordedIsToldBeforeAndWhoeverAsksForIt) {
   EXPECT_NE(drawn.err.find("warning: plot Slewing: not drawn: Body_Pillar.position is not in this recording"),
             std::string::npos)
       << drawn.err;
-  // what is io's own is in every recording
+  // io's own variables are in every recording
   EXPECT_EQ(slewring({"export", recording, "Input_Lift.raw", "session.slip", "mechanics.step_time"}).code, 0);
 }
 

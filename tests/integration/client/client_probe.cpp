@@ -1,4 +1,4 @@
-// A controller that prints what the library tells it, a line each, for tests that stop it, kill it and start it twice.
+// A controller that prints the library's results, a line each, for tests that stop it, kill it and start it twice.
 //
 //   client_probe SESSION DOMAIN NAME CHANNEL STEP_TIME_OUT acquire|take_over
 //
@@ -13,9 +13,9 @@
 namespace {
 
 constexpr double kSoon = 20;      // s
-constexpr double kStick = 0.375;  // of every answer
+constexpr double kStick = 0.375;  // value of every answer
 
-void say(const char* what, const char* text = "") {
+void print_line(const char* what, const char* text = "") {
   std::printf("%s%s\n", what, text);
   std::fflush(stdout);
 }
@@ -24,9 +24,9 @@ void say(const char* what, const char* text = "") {
 int take(slewring_session* session, const char* channel) {
   const int handle = slewring_acquire(session, channel, kSoon);
   if (handle < 0) {
-    say("refused: ", slewring_error(session));
+    print_line("refused: ", slewring_error(session));
   } else {
-    say("acquired");
+    print_line("acquired");
   }
   return handle;
 }
@@ -35,9 +35,9 @@ int take_over(slewring_session* session, const char* channel) {
   std::raise(SIGSTOP);
   const int handle = slewring_take_over(session, channel, kSoon);
   if (handle < 0) {
-    say("not taken over: ", slewring_error(session));
+    print_line("not taken over: ", slewring_error(session));
   } else {
-    say("taken over");
+    print_line("taken over");
   }
   return handle;
 }
@@ -51,14 +51,14 @@ void follow(slewring_session* session, const char* name, double timeout, bool ma
         slewring_write(session, channel, kStick);
         break;
       case SLEWRING_TIMEOUT:
-        say("timeout: ", slewring_error(session));
+        print_line("timeout: ", slewring_error(session));
         break;
       case SLEWRING_LOST:
-        say("lost: ", slewring_error(session));
+        print_line("lost: ", slewring_error(session));
         channel = take(session, name);
         break;
       default:
-        say("ended: ", slewring_error(session));
+        print_line("ended: ", slewring_error(session));
         channel = -1;
     }
   }
@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
   slewring_session* session =
       slewring_join(argv[1], argv[3], static_cast<unsigned>(std::atoi(argv[2])), "lo", "", kSoon);
   if (session == nullptr) {
-    say("not joined: ", slewring_error(nullptr));
+    print_line("not joined: ", slewring_error(nullptr));
     return 1;
   }
   follow(session, argv[4], std::atof(argv[5]), std::strcmp(argv[6], "take_over") == 0);

@@ -44,7 +44,7 @@ class ClientLibrary : public ::testing::Test {
   }
   [[nodiscard]] Client join(const char* controller) const {
     Client client(slewring_join(session->name().c_str(), controller, session->domain(), "lo", "", kSoon));
-    EXPECT_NE(client, nullptr) << slewring_error(nullptr) << session->said();
+    EXPECT_NE(client, nullptr) << slewring_error(nullptr) << session->errors();
     return client;
   }
   // a verb of the program on this session
@@ -62,7 +62,7 @@ class ClientLibrary : public ::testing::Test {
     }
     return false;
   }
-  // a controller in a process of its own, which prints what it is told
+  // a controller in a process of its own, which prints the library's results
   [[nodiscard]] std::unique_ptr<Program> start_probe(const std::string& name, const std::string& output,
                                                      const char* timeout = "20", const char* how = "acquire") const {
     const std::vector<std::string> arguments = {
@@ -76,25 +76,25 @@ class ClientLibrary : public ::testing::Test {
     }
   }
   // reads blocks until the program has printed the words
-  [[nodiscard]] static bool comes_to_say(slewring_session* client, const Program& program, const std::string& words) {
-    const auto has_said = [&] { return program.out().find(words) != std::string::npos; };
-    for (int i = 0; i < 3000 && !has_said(); ++i) {
+  [[nodiscard]] static bool comes_to_print(slewring_session* client, const Program& program, const std::string& words) {
+    const auto has_printed = [&] { return program.out().find(words) != std::string::npos; };
+    for (int i = 0; i < 3000 && !has_printed(); ++i) {
       if (slewring_latest(client, kSoon) != SLEWRING_OK) return false;
     }
-    return has_said();
+    return has_printed();
   }
   void stop() {
     session->node(Role::io).send(SIGINT);
     for (const auto& [role, code] : session->wait_all()) {
-      EXPECT_TRUE(code == 130 || (code == 0 && role != Role::io)) << node::to_text(role) << session->said();
+      EXPECT_TRUE(code == 130 || (code == 0 && role != Role::io)) << node::to_text(role) << session->errors();
     }
   }
 
   std::unique_ptr<Session> session;
 };
 
-TEST_F(ClientLibrary, LooksForNoVariableOfANodeThatSaysThatItHasNone) {
-  start({"--set", "recording.variables=[Vol_*]"});  // of hydraulics alone
+TEST_F(ClientLibrary, LooksForNoVariableOfANodeWithAnEmptyDirectory) {
+  start({"--set", "recording.variables=[Vol_*]"});  // variables of hydraulics alone
   const Client client = join("reader");
   EXPECT_GE(slewring_find(client.get(), "Vol_LiftCyl_A.pressure", kSoon), 0) << slewring_error(client.get());
   EXPECT_EQ(slewring_find(client.get(), "Bag.position.x", 3600), SLEWRING_REFUSED);
@@ -106,7 +106,7 @@ TEST_F(ClientLibrary, LooksForNoVariableOfANodeThatSaysThatItHasNone) {
   stop();
 }
 
-TEST_F(ClientLibrary, FindsAVariableOfANodeThatTellsItsNamesLongAfterTheOthers) {
+TEST_F(ClientLibrary, FindsAVariableOfANodeThatPublishesItsNamesLongAfterTheOthers) {
   const TestDomain domain;
   const ScratchFolder folder;
   Program played(program_path("played_session"), {"late", std::to_string(domain.number())}, folder.path() / "played");
@@ -114,9 +114,10 @@ TEST_F(ClientLibrary, FindsAVariableOfANodeThatTellsItsNamesLongAfterTheOthers) 
   ASSERT_NE(client, nullptr) << slewring_error(nullptr);
   EXPECT_GE(slewring_find(client.get(), "Input_Lift.value", kSoon), 0) << slewring_error(client.get());
   EXPECT_EQ(slewring_find(client.get(), "Bag.position.x", 0.5), SLEWRING_TIMEOUT);
-  EXPECT_STREQ(slewring_error(client.get()),
-               "session 'late' has not told all its variables within 0.5 s: 'Bag.position.x' is not among 1 so far; it "
-               "is still starting, or its nodes are not all heard here: wait longer, or see `slewring sessions`");
+  EXPECT_STREQ(
+      slewring_error(client.get()),
+      "session 'late' has not published all its variables within 0.5 s: 'Bag.position.x' is not among 1 so far; it "
+      "is still starting, or not all of its nodes reach this process: wait longer, or see `slewring sessions`");
   played.send(SIGUSR1);
   EXPECT_GE(slewring_find(client.get(), "Bag.position.x", kSoon), 0) << slewring_error(client.get());
   EXPECT_EQ(slewring_find(client.get(), "Bag.position.y", 3600), SLEWRING_REFUSED);
@@ -129,7 +130,7 @@ TEST_F(ClientLibrary, ReadsEveryBlockInOrderWithNamesAndUnits) {
   const Client client = join("reader");
   EXPECT_DOUBLE_EQ(slewring_step_size(client.get()), 1e-3);
   const int stroke = slewring_find(client.get(), "Cyl_Lift.stroke", kSoon);
-  const int slip = slewring_find(client.get(), "session.slip", kSoon);  // of another node
+  const int slip = slewring_find(client.get(), "session.slip", kSoon);  // a variable of another node
   ASSERT_GE(stroke, 0) << slewring_error(client.get());
   ASSERT_GE(slip, 0) << slewring_error(client.get());
   EXPECT_EQ(slewring_find(client.get(), "Cyl_Lift.stroke", 0), stroke);
@@ -206,7 +207,7 @@ TEST_F(ClientLibrary, TwoControllersMoveTwoChannelsOneOfThemDigital) {
   stop();
 }
 
-TEST_F(ClientLibrary, TheSupervisorTakesOverAndTheHolderIsTold) {
+TEST_F(ClientLibrary, TheSupervisorTakesOverAndTheHolderIsInformed) {
   start({"--set", "Input_Lift.supervisor=instructor"});
   const Client trainee = join("trainee"), instructor = join("instructor");
   ASSERT_EQ(slewring_step(trainee.get(), kSoon), SLEWRING_OK) << "the session runs: it can be stopped";
@@ -228,33 +229,33 @@ TEST_F(ClientLibrary, TheSupervisorTakesOverAndTheHolderIsTold) {
   stop();
 }
 
-// acquire() asks again while it is not answered, so that a refusal may come more than once
+// acquire() repeats its request while it is not answered, so that a refusal may arrive more than once
 TEST_F(ClientLibrary, ALateAnswerToAcquireIsNoAnswerToTakeOver) {
   start({"--set", "Input_Lift.supervisor=instructor"});
   Observer& observer = session->observer();
-  ASSERT_TRUE(observer.wait_for_step(1)) << session->said();
+  ASSERT_TRUE(observer.wait_for_step(1)) << session->errors();
   ASSERT_TRUE(observer.acquire("trainee", "Input_Lift").is_granted);
   const auto probe = start_probe("instructor", "instructor", "20", "take_over");
   const auto refusal = [&] {
     return std::find_if(observer.leases().begin(), observer.leases().end(),
                         [](const wire::ControllerLease& lease) { return lease.controller == "instructor"; });
   };
-  const auto has_said = [&](const char* words) { return probe->out().find(words) != std::string::npos; };
-  ASSERT_TRUE(observer.wait_until([&] { return refusal() != observer.leases().end() && has_said("refused: "); }));
+  const auto has_printed = [&](const char* words) { return probe->out().find(words) != std::string::npos; };
+  ASSERT_TRUE(observer.wait_until([&] { return refusal() != observer.leases().end() && has_printed("refused: "); }));
   const wire::ControllerLease late = *refusal();
   session->node(Role::io).send(SIGSTOP);
   for (int i = 0; i < 20; ++i) {
     probe->send(SIGCONT);
-    observer.say(wire::Topic::controller_lease, late);
-    EXPECT_FALSE(observer.wait_until([&] { return has_said("not taken over: "); }, 20'000'000)) << probe->out();
+    observer.publish(wire::Topic::controller_lease, late);
+    EXPECT_FALSE(observer.wait_until([&] { return has_printed("not taken over: "); }, 20'000'000)) << probe->out();
   }
   session->node(Role::io).send(SIGCONT);
-  ASSERT_TRUE(observer.wait_until([&] { return has_said("taken over\n"); })) << probe->out();
+  ASSERT_TRUE(observer.wait_until([&] { return has_printed("taken over\n"); })) << probe->out();
   // nor does it take the channel away again
-  observer.say(wire::Topic::controller_lease, late);
-  ASSERT_TRUE(observer.wait_for_step(observer.step() + 200)) << session->said();
+  observer.publish(wire::Topic::controller_lease, late);
+  ASSERT_TRUE(observer.wait_for_step(observer.step() + 200)) << session->errors();
   EXPECT_EQ(observer.variable("Input_Lift.raw"), 0.375);
-  EXPECT_FALSE(has_said("lost")) << probe->out();
+  EXPECT_FALSE(has_printed("lost")) << probe->out();
   stop();
 }
 
@@ -262,7 +263,7 @@ TEST_F(ClientLibrary, WhatIsGrantedAfterItGaveUpIsGivenBack) {
   start();
   const Client hasty = join("hasty"), other = join("other");
   ASSERT_EQ(slewring_step(hasty.get(), kSoon), SLEWRING_OK) << "the session runs: it can be stopped";
-  // the session hears it
+  // the session receives from it
   ASSERT_GE(slewring_acquire(hasty.get(), "Input_Slew", kSoon), 0) << slewring_error(hasty.get());
   // beside other programs the answer may be there all the same
   int code = 0;
@@ -313,25 +314,25 @@ TEST_F(ClientLibrary, WhatCannotBeIsRefusedWithASentence) {
   const TestDomain empty;
   const unsigned domain = empty.number();
   EXPECT_EQ(slewring_join_code(), SLEWRING_OK);
-  EXPECT_EQ(slewring_join("nobody", "pid", domain, "lo", "", 0.2), nullptr);
+  EXPECT_EQ(slewring_join("absent", "pid", domain, "lo", "", 0.2), nullptr);
   EXPECT_EQ(slewring_join_code(), SLEWRING_TIMEOUT);
   EXPECT_EQ(slewring_error(nullptr),
-            "no session 'nobody' was heard in domain " + std::to_string(domain) +
+            "no session 'absent' was found in domain " + std::to_string(domain) +
                 " on lo within 0.2 s; start it first, and compare its name, domain, interface, peers and keys");
-  // who goes on without looking reads that, and no other sentence
+  // a caller that ignores the failure gets this sentence, and no other
   EXPECT_EQ(slewring_find(nullptr, "Cyl_Lift.stroke", 0), SLEWRING_BAD_ARGUMENT);
-  EXPECT_NE(std::string(slewring_error(nullptr)).find("no session 'nobody' was heard"), std::string::npos);
-  EXPECT_EQ(slewring_join("nobody", "", domain, "lo", "", 0.2), nullptr);
+  EXPECT_NE(std::string(slewring_error(nullptr)).find("no session 'absent' was found"), std::string::npos);
+  EXPECT_EQ(slewring_join("absent", "", domain, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("is no name of a controller"), std::string::npos);
   EXPECT_EQ(slewring_join_code(), SLEWRING_BAD_ARGUMENT);
-  EXPECT_EQ(slewring_join("no*body", "pid", domain, "lo", "", 0.2), nullptr);
+  EXPECT_EQ(slewring_join("ab*sent", "pid", domain, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("is no session name"), std::string::npos);
-  EXPECT_EQ(slewring_join("nobody", "pid", 231, "lo", "", 0.2), nullptr);
+  EXPECT_EQ(slewring_join("absent", "pid", 231, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("DDS domain 231 is out of range"), std::string::npos);
   EXPECT_EQ(slewring_join_code(), SLEWRING_BAD_ARGUMENT);
   try {
     slewring::Options absent;
-    absent.session = "nobody";
+    absent.session = "absent";
     absent.controller = "pid";
     absent.domain = domain;
     absent.timeout = 0.2;
@@ -401,7 +402,7 @@ TEST_F(ClientLibrary, TheHeaderForCxxThrowsAndReleasesAtTheEnd) {
 
 // ---- controllers that leave, stand still, die or are there twice ----------------------------------------------
 
-TEST_F(ClientLibrary, WhoLeavesALockstepChannelAfterReadingABlockIsNotWaitedFor) {
+TEST_F(ClientLibrary, NoTickWaitsForAControllerThatLeavesALockstepChannelAfterReadingABlock) {
   start({"--set", "Input_Lift.controller=lockstep", "--set", "Input_Lift.controller_wait=4 s", "--set",
          "recording.every=1"});
   const Client reader = join("reader");
@@ -420,43 +421,43 @@ TEST_F(ClientLibrary, WhoLeavesALockstepChannelAfterReadingABlockIsNotWaitedFor)
   }
   read_to(reader.get(), 400);
   EXPECT_EQ(slewring_value(reader.get(), late), 0);
-  const std::string said = session->said();
-  EXPECT_EQ(said.find("waited"), std::string::npos) << said;
-  EXPECT_NE(said.find("warning: 'pid' has released channel Input_Lift (controller: lockstep): it is free from tick"),
+  const std::string errors = session->errors();
+  EXPECT_EQ(errors.find("waited"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("warning: 'pid' has released channel Input_Lift (controller: lockstep): it is free from tick"),
             std::string::npos)
-      << said;
+      << errors;
   stop();
 }
 
 // the gate has a standstill over a reset, and one below this time
-TEST_F(ClientLibrary, NightlyWhoStoodStillLongerThanTheMiddlewareKnowsItLearnsThatItsChannelIsGone) {
+TEST_F(ClientLibrary, NightlyAControllerThatStoodStillLongerThanItsLivelinessLeaseLosesItsChannel) {
   start();
   const Client reader = join("reader");
   const auto probe = start_probe("probe", "probe");
-  ASSERT_TRUE(comes_to_say(reader.get(), *probe, "acquired")) << session->said();
+  ASSERT_TRUE(comes_to_print(reader.get(), *probe, "acquired")) << session->errors();
   probe->send(SIGSTOP);
-  // nobody hears it for 2 s, and it has been silent for 5 s
+  // no process receives from it for 2 s, and it has been silent for 5 s
   read_to(reader.get(), slewring_present_step(reader.get()) + 7500);
   probe->send(SIGCONT);
-  EXPECT_TRUE(comes_to_say(reader.get(), *probe,
-                           "lost: 'probe' does not hold channel Input_Lift: it is free; acquire it again to go on\n"
-                           "acquired"))
-      << probe->out() << session->said();
+  EXPECT_TRUE(comes_to_print(reader.get(), *probe,
+                             "lost: 'probe' does not hold channel Input_Lift: it is free; acquire it again to go on\n"
+                             "acquired"))
+      << probe->out() << session->errors();
   stop();
 }
 
-TEST_F(ClientLibrary, WhoStoodStillOverAResetLearnsOfIt) {
+TEST_F(ClientLibrary, AControllerThatStoodStillOverAResetSeesIt) {
   start();
   const Client reader = join("reader");
   const auto probe = start_probe("probe", "probe");
-  ASSERT_TRUE(comes_to_say(reader.get(), *probe, "acquired")) << session->said();
+  ASSERT_TRUE(comes_to_print(reader.get(), *probe, "acquired")) << session->errors();
   probe->send(SIGSTOP);
   control("reset");
   read_to(reader.get(), slewring_present_step(reader.get()) + 20);
   read_to(reader.get(), 3000);
   probe->send(SIGCONT);
-  EXPECT_TRUE(comes_to_say(reader.get(), *probe, "lost: ")) << probe->out() << session->said();
-  EXPECT_TRUE(comes_to_say(reader.get(), *probe, "go on\nacquired")) << probe->out() << session->said();
+  EXPECT_TRUE(comes_to_print(reader.get(), *probe, "lost: ")) << probe->out() << session->errors();
+  EXPECT_TRUE(comes_to_print(reader.get(), *probe, "go on\nacquired")) << probe->out() << session->errors();
   stop();
 }
 
@@ -464,7 +465,7 @@ TEST_F(ClientLibrary, ItsOwnStandstillIsNoTimeOut) {
   start();
   const Client reader = join("reader");
   const auto probe = start_probe("probe", "probe", "3");
-  ASSERT_TRUE(comes_to_say(reader.get(), *probe, "acquired")) << session->said();
+  ASSERT_TRUE(comes_to_print(reader.get(), *probe, "acquired")) << session->errors();
   // no block comes, so that it finds none when it wakes up behind its time-out
   control("pause");
   probe->send(SIGSTOP);
@@ -474,7 +475,7 @@ TEST_F(ClientLibrary, ItsOwnStandstillIsNoTimeOut) {
   probe->send(SIGCONT);
   control("resume");
   read_to(reader.get(), slewring_present_step(reader.get()) + 200);
-  EXPECT_EQ(probe->out(), "acquired\n") << session->said();
+  EXPECT_EQ(probe->out(), "acquired\n") << session->errors();
   stop();
 }
 
@@ -484,7 +485,7 @@ TEST_F(ClientLibrary, OfTwoProcessesOfOneNameTheSecondIsRefusedUntilTheFirstIsGo
   const int raw = slewring_find(reader.get(), "Input_Lift.raw", kSoon);
   ASSERT_GE(raw, 0);
   const auto first = start_probe("probe", "first");
-  ASSERT_TRUE(comes_to_say(reader.get(), *first, "acquired")) << session->said();
+  ASSERT_TRUE(comes_to_print(reader.get(), *first, "acquired")) << session->errors();
   const auto second = start_probe("probe", "second");
   EXPECT_EQ(second->wait(), 0);
   const std::string process = "(process " + std::to_string(first->pid()) + " on ";
@@ -497,11 +498,11 @@ TEST_F(ClientLibrary, OfTwoProcessesOfOneNameTheSecondIsRefusedUntilTheFirstIsGo
   EXPECT_EQ(slewring_value(reader.get(), raw), 0.375);
   first->send(SIGKILL);
   static_cast<void>(first->wait());
-  // the middleware knows it for 2 s more
+  // the middleware keeps it for 2 s more
   std::unique_ptr<Program> third;
   for (int i = 0; i < 100; ++i) {
     third = start_probe("probe", "third" + std::to_string(i));
-    ASSERT_TRUE(comes_to_say(reader.get(), *third, "d")) << session->said();
+    ASSERT_TRUE(comes_to_print(reader.get(), *third, "d")) << session->errors();
     if (third->out() == "acquired\n") break;
   }
   EXPECT_EQ(third->out(), "acquired\n");
@@ -513,7 +514,7 @@ TEST_F(ClientLibrary, TwoSessionsOfOneProcessUnderOneNameAreTwoControllers) {
   const Client first = join("pid"), second = join("pid");
   const int lift = slewring_acquire(first.get(), "Input_Lift", kSoon);
   ASSERT_GE(lift, 0) << slewring_error(first.get());
-  // what the first was told has come to the second, whose name it has: it is no answer to what is asked later
+  // a lease for the first has reached the second, which has the same name: it is no answer to a later request
   for (int blocks = 0; blocks < 3; ++blocks) ASSERT_EQ(slewring_step(second.get(), kSoon), SLEWRING_OK);
   EXPECT_EQ(slewring_acquire(second.get(), "Input_Lift", kSoon), SLEWRING_REFUSED);
   EXPECT_NE(std::string(slewring_error(second.get())).find("is held by another process named 'pid'"), std::string::npos)
@@ -523,16 +524,16 @@ TEST_F(ClientLibrary, TwoSessionsOfOneProcessUnderOneNameAreTwoControllers) {
   stop();
 }
 
-TEST_F(ClientLibrary, OfTwoOfOneNameThatAskTogetherOneHasTheChannel) {
+TEST_F(ClientLibrary, OneOfTwoWithOneNameThatRequestTogetherHasTheChannel) {
   start();
   const std::array<Client, 2> both = {join("pid"), join("pid")};
   const auto find = [&](std::size_t i) { return slewring_find(both[i].get(), "Input_Lift.loop_delay", kSoon); };
   const std::array<int, 2> delay = {find(0), find(1)};
   ASSERT_EQ(slewring_step(both[0].get(), kSoon), SLEWRING_OK) << "the session runs: it can be stopped";
   for (int round = 0; round < 50; ++round) {
-    const auto ask = [&](std::size_t i) { return slewring_acquire(both[i].get(), "Input_Lift", kSoon); };
-    auto second = std::async(std::launch::async, ask, 1);
-    const int of_first = ask(0), of_second = second.get();
+    const auto acquire = [&](std::size_t i) { return slewring_acquire(both[i].get(), "Input_Lift", kSoon); };
+    auto second = std::async(std::launch::async, acquire, 1);
+    const int of_first = acquire(0), of_second = second.get();
     ASSERT_NE(of_first >= 0, of_second >= 0) << round;
     const std::size_t winner = of_first >= 0 ? 0 : 1;
     ASSERT_EQ(std::min(of_first, of_second), SLEWRING_REFUSED) << slewring_error(both[1 - winner].get());
@@ -542,7 +543,7 @@ TEST_F(ClientLibrary, OfTwoOfOneNameThatAskTogetherOneHasTheChannel) {
       ASSERT_EQ(slewring_write(both[winner].get(), lift, 0.5), SLEWRING_OK) << slewring_error(both[winner].get());
     } while (slewring_value(both[winner].get(), delay[winner]) < 0);
     ASSERT_EQ(slewring_release(both[winner].get(), lift), SLEWRING_OK) << slewring_error(both[winner].get());
-    ASSERT_TRUE(reaches(both[winner].get(), delay[winner], -1)) << "nobody has it when it is asked for again";
+    ASSERT_TRUE(reaches(both[winner].get(), delay[winner], -1)) << "the channel is free when it is requested again";
   }
   stop();
 }
@@ -558,7 +559,7 @@ TEST_F(ClientLibrary, CountsTheBlocksThatItWasTooSlowFor) {
   read(50);
   const long long first = slewring_present_step(slow.get());
   EXPECT_EQ(slewring_blocks_missed(slow.get()), 0);
-  // it computes for longer than what is kept for it
+  // its computing takes longer than the kept blocks last
   read_to(reader.get(), first + 3000);
   int blocks = 0;
   while (slewring_present_step(slow.get()) < first + 3000) {
@@ -569,7 +570,7 @@ TEST_F(ClientLibrary, CountsTheBlocksThatItWasTooSlowFor) {
   EXPECT_LT(blocks, passed);
   EXPECT_EQ(slewring_blocks_missed(slow.get()), passed - blocks);
   EXPECT_EQ(slewring_steps_per_block(slow.get()), 1);
-  // passing over what has come is no loss
+  // blocks that are passed over are not lost
   const long long before = slewring_blocks_missed(slow.get());
   read_to(reader.get(), slewring_present_step(slow.get()) + 100);
   ASSERT_EQ(slewring_latest(slow.get(), kSoon), SLEWRING_OK);
@@ -596,7 +597,7 @@ TEST_F(ClientLibrary, GoesOnWhenANodeIsReplacedAndTheOneThatStoodStillWakesUp) {
   long long before = held_at;
   for (int i = 0; i < 100; ++i) {
     ASSERT_EQ(slewring_step(client.get(), kSoon), SLEWRING_OK) << slewring_error(client.get());
-    EXPECT_GT(slewring_present_step(client.get()), before) << "a step that was computed again is told once";
+    EXPECT_GT(slewring_present_step(client.get()), before) << "a step that was computed again is reported once";
     before = slewring_present_step(client.get());
   }
   control("stop");
@@ -605,7 +606,7 @@ TEST_F(ClientLibrary, GoesOnWhenANodeIsReplacedAndTheOneThatStoodStillWakesUp) {
   EXPECT_EQ(result, SLEWRING_ENDED) << slewring_error(client.get());
 }
 
-// what the library reads from the environment of its program
+// environment variables that the library reads
 class Environment {
  public:
   Environment(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
@@ -617,7 +618,7 @@ class Environment {
   const char* name_;
 };
 
-TEST_F(ClientLibrary, InASessionWithKeysMovesItsChannelAndWithoutThemHearsNothing) {
+TEST_F(ClientLibrary, InASessionWithKeysMovesItsChannelAndWithoutThemReceivesNothing) {
   session = std::make_unique<Session>(
       std::vector<std::string>{"--pace", "real", "--duration", "60s", "--input", "none"}, kScene);
   const std::string plant = (session->folder() / "plant").string();
@@ -650,13 +651,13 @@ TEST_F(ClientLibrary, InASessionWithKeysMovesItsChannelAndWithoutThemHearsNothin
     EXPECT_NE(refused(2).find("the keys of this process do not allow it"), std::string::npos);
   }
   {
-    const Environment keys("SLEWRING_KEYS", plant), identity("SLEWRING_IDENTITY", "nobody");
-    EXPECT_NE(refused(2).find("has no keys of 'nobody'"), std::string::npos);
+    const Environment keys("SLEWRING_KEYS", plant), identity("SLEWRING_IDENTITY", "absent");
+    EXPECT_NE(refused(2).find("has no keys of 'absent'"), std::string::npos);
   }
   EXPECT_NE(refused(2).find("compare its name, domain, interface, peers and keys"), std::string::npos);
   slewring({"control", "stop", "--session", session->name(), "--domain", std::to_string(session->domain()), "--keys",
             plant});
-  EXPECT_EQ(session->wait_all(), all_ok()) << session->said();
+  EXPECT_EQ(session->wait_all(), all_ok()) << session->errors();
 }
 
 }  // namespace client_test

@@ -16,7 +16,7 @@ namespace transport = slew::transport;
 using wire::Role;
 
 template <typename Message>
-void say(transport::Transport& transport, const Message& message) {
+void publish_message(transport::Transport& transport, const Message& message) {
   transport::ByteBuffer bytes;
   if (!transport::encode(message, bytes) || !transport.publish(transport::kTopicOf<Message>, bytes).is_ok())
     std::exit(1);
@@ -72,9 +72,9 @@ int main(int argc, char** argv) {
   std::unique_ptr<transport::CycloneTransport> transport;
   transport::Network network{static_cast<std::uint32_t>(std::atoi(argv[2])), "lo", {}};
   if (!transport::CycloneTransport::open(network, options, transport).is_ok()) return 1;
-  say(*transport, session_of(argv[1]));
-  say(*transport, directory_of(Role::io, "Input_Lift.value"));
+  publish_message(*transport, session_of(argv[1]));
+  publish_message(*transport, directory_of(Role::io, "Input_Lift.value"));
   wait_for(SIGUSR1);
-  say(*transport, directory_of(Role::mechanics, "Bag.position.x"));
+  publish_message(*transport, directory_of(Role::mechanics, "Bag.position.x"));
   wait_for(SIGTERM);
 }

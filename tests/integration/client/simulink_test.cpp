@@ -53,7 +53,7 @@ class SimulinkBlock : public ::testing::Test {
 
 TEST_F(SimulinkBlock, ReadsVariablesAndMovesItsChannel) {
   begin();
-  ASSERT_EQ(block_.error, nullptr) << block_.error << session_.said();
+  ASSERT_EQ(block_.error, nullptr) << block_.error << session_.errors();
   EXPECT_EQ(block_.wanted, block_.given);
   EXPECT_EQ(block_.outputs, 2);
   EXPECT_EQ(block_.inputs, 1);
@@ -63,7 +63,7 @@ TEST_F(SimulinkBlock, ReadsVariablesAndMovesItsChannel) {
   const double before = block_.y[0];
   EXPECT_GT(before, 0.5);
   block_.u[0] = 0.7;
-  // what it answers comes back, and the cylinder moves by it
+  // its answers arrive, and the cylinder moves by them
   for (int k = 0; k < 2000 && (block_.y[1] != 0.7 || std::fabs(block_.y[0] - before) < 1e-3); ++k) {
     step();
     ASSERT_EQ(block_.error, nullptr) << block_.error;
@@ -77,7 +77,7 @@ TEST_F(SimulinkBlock, ReadsVariablesAndMovesItsChannel) {
 TEST_F(SimulinkBlock, APeriodThatIsNotTheSessionsEndsTheModel) {
   block_.parameters[5].number = 0.02;
   begin();
-  ASSERT_EQ(block_.error, nullptr) << block_.error << session_.said();
+  ASSERT_EQ(block_.error, nullptr) << block_.error << session_.errors();
   for (int k = 0; k < 20 && block_.error == nullptr; ++k) step();
   ASSERT_NE(block_.error, nullptr);
   EXPECT_STREQ(block_.error,

@@ -1,6 +1,6 @@
-// Random faults between the nodes of a session, by seed. Safety: whatever happens on the way, everybody comes to the
-// bits of the session without faults, and nobody says two things of one step. Liveness: when the faults have ended,
-// ticks go on within 100 ms, and the session ends in order.
+// Random faults between the nodes of a session, by seed. Safety: with any losses on the way, all nodes reach the bits
+// of the session without faults, and no node publishes two different messages of one step. Liveness: when the faults
+// have ended, ticks go on within 100 ms, and the session ends in order.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,13 +18,13 @@
 namespace slew::testing {
 namespace fault_seeds_test {
 
-constexpr std::int64_t kProgressWithin = 100 * kMs;    // of ticks at 1 ms
+constexpr std::int64_t kProgressWithin = 100 * kMs;    // for ticks at 1 ms
 constexpr std::int64_t kReplacedWithin = 6'000 * kMs;  // two nodes, one after the other
-constexpr std::int64_t kEndWithin = 20'000 * kMs;      // of a session of 0.4 s
+constexpr std::int64_t kEndWithin = 20'000 * kMs;      // for a session of 0.4 s
 constexpr StepIndex kSteps = 400;
 constexpr std::uint32_t kSeeds = 1000;
 
-// What a session may be made of; seed s takes entry s mod their number.
+// Variants of a session; seed s takes entry s mod their number.
 struct Machine {
   const char* file;
   scene::Overrides overrides;
@@ -142,7 +142,7 @@ TEST_F(FaultSeeds, ARoleThatIsReadyYieldsToNoStatus) {
   }
 }
 
-TEST_F(FaultSeeds, ARecorderThatHearsNothingForLessThan2SecondsMissesNoStepAtAnyStep) {
+TEST_F(FaultSeeds, ARecorderThatReceivesNothingForLessThan2SecondsMissesNoStepAtAnyStep) {
   for (const char* step : {"1 ms", "0.5 ms", "0.25 ms"}) {
     SCOPED_TRACE(step);
     const scene::Scene scene =
@@ -243,7 +243,7 @@ TEST_F(FaultSeeds, AllComeToTheBitsOfACleanRun) {
 }
 
 // Whatever is dropped for good: within the time in which a node may wait there is a tick or a sentence, and at the end
-// either all steps are done or every node that could not go on says why.
+// either all steps are done or every node that could not go on reports its reason.
 class DropSeeds : public FaultSeeds {
  protected:
   static constexpr std::int64_t kSilence = 1'000 * kMs;       // between a tick and the sentence that it waits
@@ -272,12 +272,12 @@ class DropSeeds : public FaultSeeds {
     }
     EXPECT_TRUE(session.is_finished()) << session.text();
     EXPECT_EQ(session.unnamed_end(), "") << session.text();
-    // what was computed has the bits of a clean run; a mutated message may be a lawful one with other content
+    // computed samples have the bits of a clean run; a mutated message may be a valid one with other content
     if (plan.mutation == 0) {
       EXPECT_EQ(session.auditor().contradiction(), "") << session.text();
       const Auditor::Chain& expected = clean(which);
       for (const auto& [key, hash] : session.auditor().chain()) {
-        // the last tick of a session that ends early says END, where the clean one has inputs
+        // the last tick of a session that ends early has the END flag, where the clean one has inputs
         if (key.first == wire::Topic::tick && key.second >= session.next_tick()) continue;
         const auto found = expected.find(key);
         const bool differs = found != expected.end() && found->second != hash;

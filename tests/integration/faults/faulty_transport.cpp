@@ -24,7 +24,7 @@ std::int64_t between(std::mt19937_64& random, std::int64_t low, std::int64_t hig
   return low + static_cast<std::int64_t>(share(random) * static_cast<double>(high - low));
 }
 
-// What its reader never asks for again.
+// Topics that the reader never requests again.
 bool is_dialogue(Topic topic, Role reader) {
   switch (topic) {
     case Topic::flexible:
@@ -208,7 +208,7 @@ void FaultyTransport::deliver(const transport::Received& message) {
   if (!is_over && plan_.mutation > 0 && happens(plan_.mutation)) return deliver_mutated(message);
   const std::int64_t cut_ns = has_sender && !is_over ? plan_.cut_until(header.role, self_, now_ns) : 0;
   if (is_dialogue(message.topic, self_)) {
-    std::int64_t& last_ns = last_said_[{header.role, message.topic}];
+    std::int64_t& last_ns = last_sent_[{header.role, message.topic}];
     last_ns = std::max({last_ns, now_ns, cut_ns});
     if (!is_over && cut_ns == 0 && happens(plan_.messages.late)) {
       ++count_.late;
@@ -239,7 +239,7 @@ void FaultyTransport::deliver(const transport::Received& message) {
   }
 }
 
-// What a damaged or hostile datagram does: the message with some bytes changed, or cut, in front of it or in its place.
+// A damaged or hostile datagram: the message with some bytes changed, or cut, in front of it or in its place.
 void FaultyTransport::deliver_mutated(const transport::Received& message) {
   ++count_.mutated;
   Pending changed{message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}};

@@ -1,5 +1,5 @@
-// Faults between the nodes of one process, drawn from a seed: what a transport does to messages, and what a scheduler
-// does to nodes. Times are those of a clock that is a number.
+// Faults between the nodes of one process, drawn from a seed: faults of a transport and of a scheduler. Times are those
+// of a clock that is a number.
 //
 // Ticks, samples, resends and health are lost, doubled, late and overtaken; in a partition they are lost. The rest
 // (session, status, variables, leases, requests, to the recorder bodies' shapes too) is late only and keeps its order,
@@ -90,7 +90,7 @@ struct FaultPlan {
   [[nodiscard]] std::string text() const;
 };
 
-// What was done to messages.
+// Counts of the faults.
 struct FaultCount {
   std::uint64_t lost = 0, doubled = 0, late = 0, dropped = 0, mutated = 0;
   std::uint64_t overtaken = 0;  // by one of its own writer and topic that was sent behind it
@@ -138,8 +138,8 @@ class FaultyTransport final : public transport::Transport {
   FaultCount& count_;
   std::mt19937_64 random_;
   std::multimap<std::int64_t, Pending> pending_;                          // by the time at which they are there
-  std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_said_;  // due, of a dialogue
-  std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_due_;   // of all that was sent so far
+  std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_sent_;  // due, of a dialogue
+  std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_due_;   // time at which the last sent message is due
   Pending taken_;
 };
 

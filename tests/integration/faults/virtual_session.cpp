@@ -40,29 +40,31 @@ Auditor::Auditor(transport::InProcessBus& bus)
 
 template <typename Message>
 void Auditor::hear(const transport::Received& message) {
-  Message heard;
-  if (!transport::decode(message.bytes, heard)) {
-    contradiction_ = fmt::format("{} says what cannot be read", node::to_text(message.topic));
+  Message decoded;
+  if (!transport::decode(message.bytes, decoded)) {
+    contradiction_ = fmt::format("{} publishes a message that cannot be decoded", node::to_text(message.topic));
     return;
   }
-  // JOIN repeats its step -1 until it is heard
-  if (heard.header.phase == wire::Phase::join) return;
-  // whoever says it
-  heard.header.incarnation = 0;
+  // JOIN repeats its step -1 until it is received
+  if (decoded.header.phase == wire::Phase::join) return;
+  // independent of the process
+  decoded.header.incarnation = 0;
   std::vector<std::byte> bytes;
-  if (!transport::encode(heard, bytes)) contradiction_ = "a message cannot be encoded again";
-  const auto [said, is_new] = said_.try_emplace({message.topic, heard.header.phase, heard.header.step}, bytes);
-  const bool is_same = said->second == bytes;
+  if (!transport::encode(decoded, bytes)) contradiction_ = "a message cannot be encoded again";
+  const auto [entry, is_new] =
+      published_.try_emplace({message.topic, decoded.header.phase, decoded.header.step}, bytes);
+  const bool is_same = entry->second == bytes;
   if (!is_new && !is_same && contradiction_.empty()) {
-    contradiction_ = fmt::format("{} says two things of step {}", node::to_text(message.topic), heard.header.step);
+    contradiction_ = fmt::format("{} publishes two different messages of step {}", node::to_text(message.topic),
+                                 decoded.header.step);
   }
   std::uint64_t hash = 0;
-  if constexpr (requires { heard.state.state_hash; }) {
-    hash = heard.state.state_hash;
+  if constexpr (requires { decoded.state.state_hash; }) {
+    hash = decoded.state.state_hash;
   } else {
-    hash = heard.state_hash;
+    hash = decoded.state_hash;
   }
-  chain_[{message.topic, heard.header.step}] = hash;
+  chain_[{message.topic, decoded.header.step}] = hash;
 }
 
 std::size_t Auditor::given_up(Role role) const {
@@ -150,14 +152,14 @@ std::unique_ptr<node::Node> VirtualSession::make_physics(const Place& place) {
       place.role, *place.transport, node::subsystem_factory(maker_of(place.role), SLEWRING_SOURCE_DIR "/scenes"));
 }
 
-// A process that has died says nothing more; the one that a supervisor starts in its place hears what is kept.
+// A process that has died publishes no more; the process in its place receives the kept messages.
 void VirtualSession::kill_and_replace() {
   for (Place& place : places_) {
     if (!place.is_dead) {
       const auto due = std::find_if(kills_.begin(), kills_.end(), [&](const Kill& kill) {
         return kill.role == place.role && kill.at_ns <= clock_.now_ns;
       });
-      // a session that does not tick yet has nothing to give, one that is through needs nobody
+      // a session without ticks has no state yet, one that has ended needs no replacement
       if (due == kills_.end() || io_->next_step() < 1) continue;
       kills_.erase(due);
       if (io_->member().state() >= wire::NodeState::ended || place.node->is_finished()) continue;
@@ -235,7 +237,7 @@ bool VirtualSession::is_finished() const {
 }
 
 bool VirtualSession::has_ended_well() const {
-  // what was on its way to a recorder that lags is lost with its writer
+  // messages in transit to a recorder that lags are lost with their writer
   const bool may_lose = plan_.cut_off_ns(Role::recorder) > node::kLinger.ns / 2 || restarts_ > 0;
   return is_finished() && std::all_of(places_.begin(), places_.end(), [may_lose](const Place& place) {
            if (place.is_dead) return false;
@@ -258,22 +260,22 @@ std::string VirtualSession::sentence() const {
   for (const Place& place : places_) {
     if (place.is_dead) continue;
     const node::SessionMember& member = place.node->member();
-    const bool says = member.state() == wire::NodeState::holding || member.state() == wire::NodeState::fault;
-    if (says && !member.reason().empty()) return member.reason();
+    const bool has_reason = member.state() == wire::NodeState::holding || member.state() == wire::NodeState::fault;
+    if (has_reason && !member.reason().empty()) return member.reason();
   }
   return "";
 }
 
 std::uint64_t VirtualSession::resends() const {
-  std::uint64_t asked = 0;
+  std::uint64_t requested = 0;
   for (const Place& place : places_) {
-    if (!place.is_dead) asked += place.node->health().resends_asked;
+    if (!place.is_dead) requested += place.node->health().resends_asked;
   }
-  return asked;
+  return requested;
 }
 
 std::string VirtualSession::text() const {
-  std::string text = fmt::format("{} lost, {} doubled, {} late, {} asked for again", count_.lost, count_.doubled,
+  std::string text = fmt::format("{} lost, {} doubled, {} late, {} requested again", count_.lost, count_.doubled,
                                  count_.late, resends());
   for (const Place& place : places_) {
     if (place.is_dead) {

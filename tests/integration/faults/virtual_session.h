@@ -1,5 +1,5 @@
 // A whole session in one thread on a clock that is a number: the nodes' own code, their real subsystems, the bus of one
-// process, and a plan of faults between them. What everybody says is audited on the way.
+// process, and a plan of faults between them. An auditor checks all published messages.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@
 
 namespace slew::testing {
 
-// Hears everything at once and without faults: two different messages of one step are two states.
+// Receives all messages at once and without faults: two different messages of one step are two states.
 class Auditor {
  public:
   explicit Auditor(transport::InProcessBus& bus);
@@ -37,7 +37,7 @@ class Auditor {
 
   std::unique_ptr<transport::Transport> transport_;
   Chain chain_;
-  std::map<std::tuple<wire::Topic, wire::Phase, StepIndex>, std::vector<std::byte>> said_;
+  std::map<std::tuple<wire::Topic, wire::Phase, StepIndex>, std::vector<std::byte>> published_;
   std::string contradiction_;
   std::vector<wire::GivenUp> given_up_;
 };
@@ -54,7 +54,7 @@ class VirtualSession {
   void run_until(std::int64_t virtual_ns);
   [[nodiscard]] bool is_finished() const;
 
-  // Somebody tells all that another process has had this role from the begin of time on, and is as far as anybody.
+  // Publishes a claim that another process has had this role since the begin of time, with the highest step of all.
   void claim(wire::Role role);
 
   [[nodiscard]] std::int64_t now_ns() const noexcept { return clock_.now_ns; }
@@ -65,13 +65,13 @@ class VirtualSession {
   [[nodiscard]] std::uint64_t resends() const;
   // Nodes that died and whose place another one took.
   [[nodiscard]] std::size_t restarts() const noexcept { return restarts_; }
-  // Nobody is dead, and nobody is about to die.
+  // No node is dead, and none is about to be killed.
   [[nodiscard]] bool is_settled() const;
   // By role: its state, step and reason.
   [[nodiscard]] std::string text() const;
   // Every node that ended otherwise than in order has a sentence for it; empty: the first that has none, by name.
   [[nodiscard]] std::string unnamed_end() const;
-  // A sentence of the session as it is now: a state that waits or ended and says why; empty: nobody says a word.
+  // A sentence of the present state: why a node waits or has ended; empty: no node has a reason.
   [[nodiscard]] std::string sentence() const;
   // Every node with code ok; a recorder that was cut off for longer than it waits at the end may have losses.
   [[nodiscard]] bool has_ended_well() const;

@@ -2,8 +2,7 @@
 # One claim about the launch scripts:  launch_scripts_test.sh CASE SOURCE_TREE SLEWRING
 #
 # The scripts are copied into a scratch tree whose package lists are the test's own. Folder `bin` in front of PATH holds
-# stand-ins for what they call; each writes its name and arguments into `calls`, and does nothing else unless the case
-# says so.
+# stand-ins for the called programs; each writes its name and arguments into `calls`, and does nothing else by default.
 set -euo pipefail
 
 claim=$1 source=$2 slewring=$3
@@ -70,7 +69,7 @@ missing_without_root() {
   stand_in cmake
   local unprivileged=()
   [ "$(id -u)" -ne 0 ] || unprivileged=(setpriv --reuid=65534 --regid=65534 --clear-groups)
-  # whoever it runs as may write everywhere: what stays as it was is not for want of permission
+  # the test's user may write everywhere: unchanged files are not a lack of permission
   chmod -R a+w "$tree"
   local before
   before=$(state)

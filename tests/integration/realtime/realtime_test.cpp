@@ -38,7 +38,7 @@ class RealTime : public ::testing::Test {
     return wait_until([&] { return command.out().find("  running") != std::string::npos || command.has_ended(); }) &&
            !command.has_ended();
   }
-  // As somebody without these rights ("sys_nice,-ipc_lock", "all"), and with 64 KiB of memory that may be locked.
+  // Runs without these rights ("sys_nice,-ipc_lock", "all"), and with 64 KiB of memory that may be locked.
   CommandResult run_without(const std::string& rights, std::vector<std::string> arguments) const {
     std::vector<std::string> command = {"--memlock=65536:65536", "/usr/bin/setpriv", "--bounding-set=-" + rights,
                                         program_file("slewring").string()};
@@ -95,11 +95,11 @@ TEST_F(RealTime, AProcessorThatIsNotThereIsRefusedByNameOfThoseThatAre) {
                       cpu_list(usable_cpus()) + "; nothing was started; name one of them in --cpu or session.cpus\n"),
       std::string::npos)
       << result.err;
-  // of a role that is started elsewhere nothing is known here
+  // a role that is started elsewhere cannot be checked here
   const CommandResult elsewhere =
       run_crane({"--cpu", "mechanics=1000,hydraulics=1001", "--remote", "mechanics", "--duration", "0.1"});
   EXPECT_NE(elsewhere.err.find("hydraulics=1001: there is no processor"), std::string::npos) << elsewhere.err;
-  const CommandResult node = run("mechanics_node", {"--session", "nobody", "--cpu", "1000"}, work_.path());
+  const CommandResult node = run("mechanics_node", {"--session", "absent", "--cpu", "1000"}, work_.path());
   EXPECT_EQ(node.code, 2);
   EXPECT_NE(node.err.find("there is no processor 1000"), std::string::npos) << node.err;
   const CommandResult role = run_crane({"--cpu", "mechanic=0"});
@@ -146,13 +146,13 @@ TEST_F(RealTime, NodesAreScheduledFifoWithLockedMemory) {
 TEST_F(RealTime, ARefusedPermissionIsOneWarningWithTheRemedy) {
   rlimit allowed{};
   getrlimit(RLIMIT_RTPRIO, &allowed);
-  if (allowed.rlim_cur > 0) GTEST_SKIP() << "real-time scheduling is allowed to everybody here";
+  if (allowed.rlim_cur > 0) GTEST_SKIP() << "real-time scheduling is allowed to all users here";
   const CommandResult result = run_without("all", arguments({"--rt", "--duration", "0.1", "--quiet", "--no-record"}));
   ASSERT_EQ(result.code, 0) << result.err;
   const std::string refusal = "SCHED_FIFO was refused (";
   const std::size_t first = result.err.find(refusal);
   ASSERT_NE(first, std::string::npos) << result.err;
-  EXPECT_EQ(result.err.find(refusal, first + 1), std::string::npos) << "said twice: " << result.err;
+  EXPECT_EQ(result.err.find(refusal, first + 1), std::string::npos) << "printed twice: " << result.err;
   EXPECT_NE(result.err.find("the run goes on with normal scheduling"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("to allow it, run as root, or set 'rtprio 95' and 'memlock unlimited' for the user in "
                             "/etc/security/limits.conf and log in again"),
@@ -172,7 +172,7 @@ TEST_F(RealTime, MemoryThatMayNotBeLockedLeavesTheScheduling) {
   EXPECT_EQ(result.err.find("SCHED_FIFO"), std::string::npos) << result.err;
 }
 
-TEST_F(RealTime, StressTellsOnceThatMemoryMayNotBeLocked) {
+TEST_F(RealTime, StressReportsOnceThatMemoryMayNotBeLocked) {
   if (!kLocksMemory) GTEST_SKIP() << "the sanitizers lock no memory";
   if (geteuid() != 0) GTEST_SKIP() << "needs the right to SCHED_FIFO: run it as root";
   const CommandResult result =
@@ -182,27 +182,27 @@ TEST_F(RealTime, StressTellsOnceThatMemoryMayNotBeLocked) {
   const std::string refusal = "locking memory was refused (";
   const std::size_t first = result.err.find(refusal);
   ASSERT_NE(first, std::string::npos) << result.err;
-  EXPECT_EQ(result.err.find(refusal, first + 1), std::string::npos) << "said twice: " << result.err;
+  EXPECT_EQ(result.err.find(refusal, first + 1), std::string::npos) << "printed twice: " << result.err;
 }
 
 TEST_F(RealTime, ABoundThatCouldNotBeMeasuredIsNotKept) {
   rlimit allowed{};
   getrlimit(RLIMIT_RTPRIO, &allowed);
-  if (allowed.rlim_cur > 0) GTEST_SKIP() << "real-time scheduling is allowed to everybody here";
+  if (allowed.rlim_cur > 0) GTEST_SKIP() << "real-time scheduling is allowed to all users here";
   std::vector<std::string> stress = {
       "stress", scene_file("truck_crane.yaml"), "--domain", std::to_string(domain_.number()), "--rt", "--seconds", "2",
       "--quiet"};
-  const CommandResult told = run_without("sys_nice", stress);
-  EXPECT_EQ(told.code, 0) << told.err;
-  EXPECT_NE(told.err.find("SCHED_FIFO was refused, and cells that need it were not run"), std::string::npos)
-      << told.err;
+  const CommandResult result_of_stress = run_without("sys_nice", stress);
+  EXPECT_EQ(result_of_stress.code, 0) << result_of_stress.err;
+  EXPECT_NE(result_of_stress.err.find("SCHED_FIFO was refused, and cells that need it were not run"), std::string::npos)
+      << result_of_stress.err;
   stress.insert(stress.end(), {"--max-miss", "100"});
   EXPECT_EQ(run_without("sys_nice", stress).code, 7);
 }
 
 TEST_F(RealTime, NodesTakeNothingFromTheHeapAfterReadyNorCycloneOnceItsHistoryIsFull) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "a sanitizer is in front of malloc";
-  // what up to four topics keep; in 3000 steps each node sends 6000 messages and more
+  // the depth of up to four topics; in 3000 steps each node sends 6000 messages and more
   constexpr int kMostKept = 4 * 1024;
   std::vector<const char*> scenes = {"truck_crane_flexible.yaml"};  // has nodes of every role
   if (is_nightly()) scenes.push_back("truck_crane.yaml");
@@ -223,7 +223,7 @@ TEST_F(RealTime, NodesTakeNothingFromTheHeapAfterReadyNorCycloneOnceItsHistoryIs
   }
 }
 
-TEST_F(RealTime, WhatIsLeftOutUnderLoadIsTold) {
+TEST_F(RealTime, VariablesLeftOutUnderLoadAreReported) {
   const CommandResult result = run_crane(
       {"--step", "10 us", "--duration", "0.02", "--set", "session.shed=variables", "--set", "session.start_grace=0 s"});
   ASSERT_EQ(result.code, 0) << result.err;
@@ -250,14 +250,14 @@ TEST_F(RealTime, StopsASessionThatCannotKeepUpWithCode3) {
   EXPECT_NE(result.err.find("it was ended, what was recorded is valid"), std::string::npos) << result.err;
 }
 
-TEST_F(RealTime, ASessionThatSlipsTellsItOnceAndItsBooksBalance) {
+TEST_F(RealTime, ASessionThatSlipsReportsItOnceAndItsBooksBalance) {
   const CommandResult result =
       run_crane({"--step", "10 us", "--duration", "0.05", "--no-record", "--json", "--set", "session.start_grace=0 s"});
   ASSERT_EQ(result.code, 0) << result.err;
-  const std::string told = "steps of wall time were given up";
-  const std::size_t first = result.err.find(told);
+  const std::string warning = "steps of wall time were given up";
+  const std::size_t first = result.err.find(warning);
   ASSERT_NE(first, std::string::npos) << result.err;
-  EXPECT_EQ(result.err.find(told, first + 1), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find(warning, first + 1), std::string::npos) << result.err;
   const json deadline = json::parse(result.out).at("deadline");
   EXPECT_TRUE(deadline.at("books_balance"));
   EXPECT_GT(deadline.at("steps_skipped"), 0);

@@ -1,4 +1,4 @@
-// `slewring stress`: what it tells and with which code. Bounds are such that they are always or never kept.
+// `slewring stress`: its output and exit codes. Bounds are such that they are always or never kept.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <unistd.h>
@@ -31,10 +31,10 @@ class Stress : public ::testing::Test {
   CommandResult stress(std::vector<std::string> more) const {
     return run("slewring", arguments(std::move(more)), work_.path());
   }
-  void expect_refused(const std::vector<std::string>& more, int code, const std::string& says) const {
+  void expect_refused(const std::vector<std::string>& more, int code, const std::string& sentence) const {
     const CommandResult result = stress(more);
     EXPECT_EQ(result.code, code) << result.err;
-    EXPECT_NE(result.err.find(says), std::string::npos) << result.err << "\nexpected: " << says;
+    EXPECT_NE(result.err.find(sentence), std::string::npos) << result.err << "\nexpected: " << sentence;
     EXPECT_EQ(result.out, "");
     EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
   }
@@ -50,7 +50,7 @@ class Stress : public ::testing::Test {
   static long judged_and_done(const json& of) {
     return of.at("response").at("count").get<long>() - of.at("skipped").get<long>();
   }
-  // The session has done this step, by what `slewring sessions` says.
+  // The session has done this step, by the output of `slewring sessions`.
   [[nodiscard]] bool wait_until_at(long step) const {
     return wait_until([&] {
       const CommandResult seen =
@@ -84,19 +84,20 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
     const double behind = rest < 0 ? 0 : std::floor(rest / 1e-3) + 1;
     EXPECT_EQ(books.at("due").get<double>(), 2000 + books.at("skipped").get<double>() + behind);
     EXPECT_NEAR(lag, books.at("skipped").get<double>() * 1e-3 + rest, 1e-9);
-    for (const char* who : {"session", "yardstick"}) {
-      expect_ordered(cell.at(who).at("response"));
-      EXPECT_LE(cell.at(who).at("missed"), cell.at(who).at("response").at("count"));
-      EXPECT_LE(cell.at(who).at("skipped"), cell.at(who).at("missed"));
-      EXPECT_LE(cell.at(who).at("longest_run_of_misses"), cell.at(who).at("missed"));
-      // looks at half a second may find nobody running
-      EXPECT_GE(cell.at(who).at("runnable"), cell.at("load") == "mixed" && who == std::string("session") ? 0.5 : 0)
-          << who;
-      EXPECT_GT(cell.at(who).at("busy"), 0) << who;
-      EXPECT_GE(cell.at(who).at("steal"), 0) << who;
+    for (const char* source : {"session", "yardstick"}) {
+      expect_ordered(cell.at(source).at("response"));
+      EXPECT_LE(cell.at(source).at("missed"), cell.at(source).at("response").at("count"));
+      EXPECT_LE(cell.at(source).at("skipped"), cell.at(source).at("missed"));
+      EXPECT_LE(cell.at(source).at("longest_run_of_misses"), cell.at(source).at("missed"));
+      // looks at half a second may find no running thread
+      EXPECT_GE(cell.at(source).at("runnable"),
+                cell.at("load") == "mixed" && source == std::string("session") ? 0.5 : 0)
+          << source;
+      EXPECT_GT(cell.at(source).at("busy"), 0) << source;
+      EXPECT_GE(cell.at(source).at("steal"), 0) << source;
     }
     // half a second of start-up grace is not judged, and the step that the end cuts off; of the yardstick a quarter is
-    // judged; what was given up was due too
+    // judged; steps that were given up were due too
     EXPECT_EQ(judged_and_done(cell.at("session")), 1499);
     EXPECT_EQ(judged_and_done(cell.at("yardstick")), 500);
     EXPECT_LE(cell.at("session").at("skipped"), books.at("skipped"));
@@ -113,7 +114,7 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
     EXPECT_GT(computing.at("mechanics"), 0);
     EXPECT_EQ(computing.at("io"), 0);
     for (const auto& [role, part] : computing.items()) EXPECT_LE(part, loops.at(role)) << role;
-    // of a step behind those that were given up the loops may have begun before it was due
+    // after given-up steps the loops may begin a step before it is due
     if (cell.at("yardstick").at("skipped") == 0) {
       EXPECT_GE(cell.at("yardstick").at("response").at("min"), computing.at("mechanics"));
     }
@@ -129,8 +130,8 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
   std::ifstream page(work_.path() / "stress.html");
   const std::string text((std::istreambuf_iterator<char>(page)), {});
   EXPECT_NE(text.find("normal, load mixed, 0 us added"), std::string::npos);
-  EXPECT_EQ(text.find("http://"), text.find("http://www.w3.org")) << "asks for nothing from elsewhere";
-  // what came is gone again
+  EXPECT_EQ(text.find("http://"), text.find("http://www.w3.org")) << "needs no external resource";
+  // temporary files are removed
   EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
 }
 
@@ -161,7 +162,7 @@ TEST_F(Stress, StepsThatAreGivenUpAreMissed) {
   EXPECT_TRUE(cell.at("books").at("balance"));
 }
 
-TEST_F(Stress, ACellThatSomebodyEndsFails) {
+TEST_F(Stress, ACellThatIsEndedFromOutsideFails) {
   Command session("slewring", arguments({"--json", "--no-record", "--seconds", "20", "--max-miss", "100"}),
                   work_.path());
   ASSERT_TRUE(wait_until_at(600));
@@ -174,9 +175,10 @@ TEST_F(Stress, ACellThatSomebodyEndsFails) {
   EXPECT_LT(cell.at("steps"), 20000);
   const std::string message = cell.at("messages").at(0);
   EXPECT_NE(message.find("normal, load none, 0 us added: the session ended at step "), std::string::npos) << message;
-  EXPECT_NE(message.find(" of 20000, and a part of a cell is no result; somebody ended it ('slewring control stop'), "
-                         "run it again"),
-            std::string::npos)
+  EXPECT_NE(
+      message.find(" of 20000, and a part of a cell is no result; it was ended from outside ('slewring control stop'), "
+                   "run it again"),
+      std::string::npos)
       << message;
 }
 
@@ -194,15 +196,16 @@ TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {
   const CommandResult result = stress({"--no-record", "--p99", "0.001"});
   EXPECT_EQ(result.code, 3) << result.err;
   EXPECT_NE(result.out.find(", preemption "), std::string::npos) << result.out;
-  const std::size_t verdict = result.out.find("over, as the yardstick"), told = result.out.find("over; the yardstick");
-  EXPECT_TRUE(verdict != std::string::npos || told != std::string::npos) << result.out;
+  const std::size_t verdict = result.out.find("over, as the yardstick"),
+                    over_alone = result.out.find("over; the yardstick");
+  EXPECT_TRUE(verdict != std::string::npos || over_alone != std::string::npos) << result.out;
   EXPECT_NE(result.out.find("steps due = "), std::string::npos) << result.out;
   EXPECT_EQ(result.out.find("NOT BALANCE"), std::string::npos) << result.out;
 }
 
 TEST_F(Stress, WorkThatIsAddedIsDone) {
   // twice the step's time: every step overruns, all of them in a row, and the session falls behind; it goes on to its
-  // end whatever the scene would have it do
+  // end with any overrun policy of the scene
   const CommandResult result =
       stress({"--json", "--no-record", "--seconds", "0.6", "--add-work", "2000,2e3", "--load", "none,none",
               "--scheduling", "normal,normal", "--set", "session.start_grace=0 s", "--set", "session.overrun=hold"});
@@ -215,7 +218,7 @@ TEST_F(Stress, WorkThatIsAddedIsDone) {
   EXPECT_GE(cell.at("yardstick").at("missed_share"), 0.99);
   EXPECT_GT(cell.at("books").at("skipped"), 0);
   EXPECT_TRUE(cell.at("books").at("balance"));
-  EXPECT_EQ(cell.at("verdict"), "") << "none was asked for";
+  EXPECT_EQ(cell.at("verdict"), "") << "no bound was stated";
 }
 
 TEST_F(Stress, RefusesWhatHasNoDeadline) {
@@ -252,7 +255,7 @@ TEST_F(Stress, ALoadThatCannotWorkFailsItsCell) {
   ASSERT_EQ(cell.at("messages").size(), 1u) << cell;
   const std::string message = cell.at("messages").at(0);
   EXPECT_TRUE(message.starts_with("load mixed: its disk process (")) << message;
-  EXPECT_NE(message.find("exited with code 6, and what is measured without it is no result; runs/stress-"),
+  EXPECT_NE(message.find("exited with code 6, and a measurement without it is no result; runs/stress-"),
             std::string::npos)
       << message;
   EXPECT_NE(message.find(": cannot be written (File too large); the disk is no load; free space, or"),
@@ -268,7 +271,7 @@ TEST_F(Stress, ALoadThatIsKilledFailsItsCell) {
   const CommandResult result = session.wait();
   EXPECT_EQ(result.code, 1) << result.err;
   EXPECT_NE(result.out.find("failed with code 1"), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find("was killed by signal 9 (Killed), and what is measured without it is no result; find out"),
+  EXPECT_NE(result.out.find("was killed by signal 9 (Killed), and a measurement without it is no result; find the"),
             std::string::npos)
       << result.out;
   EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
@@ -287,11 +290,11 @@ std::multiset<int> fifo_priorities(pid_t pid) {
   return priorities;
 }
 
-// What was seen of a cell from outside while it ran.
+// Observations of a cell from outside while it ran.
 struct SeenCell {
   pid_t io = 0;
   std::multiset<int> nodes;  // priorities of the nodes' loops that are FIFO
-  std::multiset<int> loops;  // of the yardstick's
+  std::multiset<int> loops;  // loops of the yardstick
 };
 
 void look_at_cell(pid_t stress, std::vector<SeenCell>& cells) {

@@ -5,9 +5,9 @@
 #
 # Each <name>.mcap.gz has its values beside it, as `slewring export` wrote them then. A pair is added with each new
 # protocol version and each new layout of saved states, and none is ever changed. With `bits` those listed in
-# golden/same_bits.txt are computed again too, to the same bits, where the arithmetic is the one that stands there
-# (`slewring doctor` tells it). Who changes what is computed, or the layout of saved states, takes out of the list what has
-# other bits then, and adds a recording that has the new ones.
+# golden/same_bits.txt are computed again too, to the same bits, if the machine has the arithmetic that the file names
+# (`slewring doctor` prints it). A change of the computed values, or of the layout of saved states, removes the recordings
+# with other bits from the list, and adds a recording with the new ones.
 set -euo pipefail
 
 bin=$1

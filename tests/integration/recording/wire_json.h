@@ -1,4 +1,4 @@
-// The messages of a session as JSON, with the names of idl/slewring.idl: what an independent decoder must find.
+// The messages of a session as JSON, with the names of idl/slewring.idl: the expected result of an independent decoder.
 //
 // Written from the structs, not from the bytes. Integers of 64 bits and numbers that JSON lacks become strings.
 #pragma once

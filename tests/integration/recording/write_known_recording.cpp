@@ -1,4 +1,4 @@
-// Writes DIR/known.mcap with messages of every topic and DIR/known.json with what they say.
+// Writes DIR/known.mcap with messages of every topic and DIR/known.json with their contents.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -66,7 +66,7 @@ wire::SampleState state_at(StepIndex step) {
   return state;
 }
 
-// Writes messages and remembers what they say.
+// Writes messages and remembers their contents.
 class KnownRecording {
  public:
   explicit KnownRecording(const std::filesystem::path& directory) {

@@ -72,23 +72,23 @@ class WallClock : public ::testing::Test {
   // Ends the session here; it was as one in which nothing happens.
   void expect_an_undisturbed_session() {
     EXPECT_TRUE(session.observer().request(wire::ControlAction::stop).is_accepted);
-    ASSERT_EQ(session.wait_all(), all_ok()) << session.said();
+    ASSERT_EQ(session.wait_all(), all_ok()) << session.errors();
     EXPECT_TRUE(clocks.all_are_read()) << "the clock was not in the way: the test shows nothing";
     for (const Role role : kAllNodes) EXPECT_EQ(session.node(role).err(), "") << node::to_text(role);
     recorded = session.recorded();
     EXPECT_EQ(recorded.problem, "");
     EXPECT_TRUE(recorded.has_all_messages);
     EXPECT_EQ(recorded.losses(), 0);
-    for (const SaidStatus& said : recorded.statuses) {
-      EXPECT_NE(said.status.state, NodeState::holding) << said.status.reason;
-      EXPECT_EQ(said.status.reason, "");
+    for (const PublishedStatus& published : recorded.statuses) {
+      EXPECT_NE(published.status.state, NodeState::holding) << published.status.reason;
+      EXPECT_EQ(published.status.reason, "");
     }
-    // what a busy machine costs, and nothing of the hours
+    // the slips of a busy machine, and none of the hours
     EXPECT_LT(recorded.largest.at("session.slip"), 60);
     EXPECT_EQ(first_difference(recorded.chain(), undisturbed_chain(kScene, recorded.last_complete_step())), "");
   }
 
-  // nothing is told of a busy machine
+  // no message about a busy machine
   Session session{{"--pace", "real", "--duration", "0", "--set", "session.overrun_lag=60s"}};
   Clocks clocks{session};
   RecordedSession recorded;
@@ -99,7 +99,7 @@ TEST_F(WallClock, ThatDiffersByHoursBetweenTheNodesChangesNothing) {
   clocks.set(Role::hydraulics, -7 * kHour);
   clocks.set(Role::recorder, 30 * 24 * kHour);
   session.start_all();
-  ASSERT_TRUE(session.observer().wait_for_step(1000)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(1000)) << session.errors();
   expect_an_undisturbed_session();
 }
 
@@ -123,19 +123,19 @@ class JumpingClock : public WallClock, public ::testing::WithParamInterface<Jump
   }
 };
 
-// of all nodes or of one
+// the clock of all nodes or of one
 TEST_P(JumpingClock, InMidRunChangesNothing) {
   session.start_all();
-  ASSERT_TRUE(session.observer().wait_for_step(300)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(300)) << session.errors();
   jump(GetParam().shift_ns);
   // a client that comes now finds the session, and is answered
   Program late(program_path("slewring"),
                {"param", "get", "Bag.mass", "--session", session.name(), "--domain", std::to_string(session.domain())},
                session.folder() / "late");
   EXPECT_EQ(late.wait(), 0) << late.err();
-  ASSERT_TRUE(session.observer().wait_for_step(session.observer().step() + 1000)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(session.observer().step() + 1000)) << session.errors();
   jump(0);
-  ASSERT_TRUE(session.observer().wait_for_step(session.observer().step() + 500)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(session.observer().step() + 500)) << session.errors();
   expect_an_undisturbed_session();
 }
 

@@ -51,15 +51,15 @@ class Control : public ::testing::Test {
     session_ = std::make_unique<Session>(io_arguments);
     observer_ = &session_->observer();
     session_->start_all();
-    ASSERT_TRUE(observer_->wait_for_step(step)) << session_->said();
+    ASSERT_TRUE(observer_->wait_for_step(step)) << session_->errors();
   }
-  // no tick while io sends so many health messages, ten a second
+  // no tick while io sends this number of health messages, ten a second
   void expect_stands_still(std::uint64_t healths) {
     const std::uint64_t ticks = observer_->ticks();
-    ASSERT_TRUE(observer_->wait_for_healths(Role::io, healths)) << session_->said();
+    ASSERT_TRUE(observer_->wait_for_healths(Role::io, healths)) << session_->errors();
     EXPECT_EQ(observer_->ticks(), ticks);
   }
-  void expect_ends_well() { EXPECT_EQ(session_->wait_all(), all_ok()) << session_->said(); }
+  void expect_ends_well() { EXPECT_EQ(session_->wait_all(), all_ok()) << session_->errors(); }
 
   std::unique_ptr<Session> session_;
   Observer* observer_ = nullptr;
@@ -145,7 +145,7 @@ TEST_F(Control, ResetOfAPausedSessionStaysPausedAtStepZero) {
     return observer_->epoch() == 1 && observer_->status(Role::io)->state == wire::NodeState::holding &&
            observer_->status(Role::io)->header.epoch == 1;
   };
-  ASSERT_TRUE(observer_->wait_until(is_back)) << session_->said();
+  ASSERT_TRUE(observer_->wait_until(is_back)) << session_->errors();
   expect_stands_still(2);
   EXPECT_EQ(observer_->step(), kJoinStep);
   ASSERT_TRUE(observer_->request(ControlAction::resume).is_accepted);
@@ -159,7 +159,7 @@ TEST_F(Control, AcceptedParameterEntersTheTickItWasPromisedFor) {
   start({"--pace", "real", "--duration", "1.6s"}, 200);
   const ControlReply reply = observer_->request(ControlAction::set_parameter, 1500, "Bag.mass");
   ASSERT_TRUE(reply.is_accepted) << reply.reason;
-  // also for who did not hear the request, as a recorder that did not know yet who asks
+  // also for readers that did not receive the request, such as a recorder that had not discovered its writer
   EXPECT_EQ(reply.asked, "set Bag.mass to 1500");
   expect_ends_well();
   const RecordedSession recorded = session_->recorded();
@@ -205,12 +205,12 @@ TEST_F(Control, CouplingLevelsChangeWhileItRunsAndTheTicksReproduceIt) {
                                                                      {"Cyl_Lift.coupling", 1, 1000}};
   StepIndex first = -1;
   for (const auto& [path, level, step] : kChanges) {
-    ASSERT_TRUE(observer_->wait_for_step(step)) << session_->said();
+    ASSERT_TRUE(observer_->wait_for_step(step)) << session_->errors();
     const ControlReply reply = observer_->request(ControlAction::set_parameter, level, path);
     ASSERT_TRUE(reply.is_accepted) << reply.reason;
     if (first < 0) first = reply.header.step;
   }
-  ASSERT_TRUE(observer_->wait_for_step(1100)) << session_->said();
+  ASSERT_TRUE(observer_->wait_for_step(1100)) << session_->errors();
   EXPECT_EQ(observer_->request(ControlAction::get_parameter, 0, "Cyl_Lift.coupling").value, 1);
   EXPECT_FALSE(observer_->request(ControlAction::set_parameter, 5, "Cyl_Lift.coupling").is_accepted);
   EXPECT_FALSE(observer_->request(ControlAction::set_parameter, 1, "Cyl_Lift.coupling", 1'000'000).is_accepted);
@@ -243,7 +243,7 @@ TEST_F(Control, WrongParametersAreRefusedWithTheReasonAndTouchNothing) {
   EXPECT_EQ(first_difference(session_->recorded().chain(), undisturbed()), "");
 }
 
-TEST_F(Control, PresentValueOfAParameterIsToldInAPauseToLatecomersAndAfterAReset) {
+TEST_F(Control, PresentValueOfAParameterIsPublishedInAPauseForLateReadersAndAfterAReset) {
   start({"--pace", "real", "--duration", "0"}, 200);
   const auto present = [this](const std::string& path) {
     const ControlReply reply = observer_->request(ControlAction::get_parameter, 0, path);
@@ -347,7 +347,7 @@ TEST_F(Controller, ChannelIsLeasedToOneAtATime) {
   EXPECT_EQ(refused.holder, "a");
   EXPECT_NE(refused.reason.find("held by 'a'"), std::string::npos) << refused.reason;
   EXPECT_FALSE(observer_->acquire("b", "Input_Nothing").is_granted);
-  // what another one writes is counted, not applied
+  // values of another controller are counted, not applied
   const double before = rejected();
   ASSERT_TRUE(write_until("b", 1.0, [&] { return rejected() >= before + 3; }));
   EXPECT_EQ(control(), 0);
@@ -357,19 +357,19 @@ TEST_F(Controller, ChannelIsLeasedToOneAtATime) {
   stop();
 }
 
-TEST_F(Controller, ResetTellsTheHolderThatItsChannelIsFree) {
+TEST_F(Controller, ResetInformsTheHolderThatItsChannelIsFree) {
   start_session();
   ASSERT_TRUE(observer_->acquire("a", kChannel).is_granted);
   ASSERT_TRUE(write_until("a", 0.5, [this] { return control() == 250; }));
   ASSERT_TRUE(observer_->request(ControlAction::reset).is_accepted);
-  const auto is_told = [this] {
+  const auto is_informed = [this] {
     const std::vector<ControllerLease>& leases = observer_->leases();
     return std::any_of(leases.begin(), leases.end(), [](const ControllerLease& lease) {
       return lease.controller == "a" && lease.channel == kChannel && !lease.is_granted && lease.holder.empty() &&
              lease.header.epoch == 1 && lease.reason.find("the session was reset") != std::string::npos;
     });
   };
-  EXPECT_TRUE(observer_->wait_until(is_told));
+  EXPECT_TRUE(observer_->wait_until(is_informed));
   ASSERT_TRUE(observer_->wait_until([this] { return observer_->epoch() == 1 && observer_->step() > 0; }));
   EXPECT_TRUE(observer_->acquire("b", kChannel).is_granted);
   stop();
@@ -379,9 +379,9 @@ TEST_F(Controller, SilentControllerGoesToNeutral) {
   start_session();
   ASSERT_TRUE(observer_->acquire("a", kChannel).is_granted);
   ASSERT_TRUE(write_until("a", 0.5, [this] { return control() == 250; }));
-  // nobody writes any more
+  // no controller writes any more
   ASSERT_TRUE(observer_->wait_until([this] { return control() == 0; }));
-  // it still holds the channel, and its next word counts again
+  // it still holds the channel, and its next value counts again
   EXPECT_FALSE(observer_->acquire("b", kChannel).is_granted);
   ASSERT_TRUE(write_until("a", 0.5, [this] { return control() == 250; }));
   stop();
@@ -389,7 +389,7 @@ TEST_F(Controller, SilentControllerGoesToNeutral) {
 
 TEST_F(Controller, MayNotMoveTheScriptsChannelBeforeItHasTheLease) {
   start({"--pace", "real", "--duration", "1.6s"}, 100);
-  // what it writes arrives, and is counted
+  // its values arrive, and are counted
   ASSERT_TRUE(write_until("a", -1, [this] { return rejected() >= 3; }));
   expect_ends_well();
   EXPECT_EQ(first_difference(physics_only(session_->recorded().chain()), physics_only(undisturbed())), "");

@@ -34,7 +34,7 @@ TEST_P(ControllerExampleOptions, HelpHasAnExample) {
 TEST_P(ControllerExampleOptions, WhatIsNoNumberMovesNothing) {
   for (const char* option : {"--target", "--tolerance", "--gain", "--overlap", "--seconds", "--domain"}) {
     for (const char* value : {"abc", "", "0.8m", "nan", "inf"}) {
-      const auto program = controller({"--session", "nobody", option, value});
+      const auto program = controller({"--session", "absent", option, value});
       EXPECT_EQ(program->wait(), 2) << option << " '" << value << "' " << program->out();
       EXPECT_NE(program->err().find(std::string("position_controller: ") + option), std::string::npos)
           << program->err();
@@ -48,9 +48,9 @@ TEST_P(ControllerExampleOptions, WhatIsMissingOrUnknownIsNamed) {
     const char* problem;
   } cases[] = {{{}, "--session: expected the name"},
                {{"--session"}, "--session: expected a value"},
-               {{"--session", "nobody", "--domain", "231"}, "--domain: expected a whole number, 0 to 230"},
-               {{"--session", "nobody", "--domain", "1.5"}, "--domain: expected a whole number, 0 to 230"},
-               {{"--session", "nobody", "--taget", "1"}, "--taget: unknown option"}};
+               {{"--session", "absent", "--domain", "231"}, "--domain: expected a whole number, 0 to 230"},
+               {{"--session", "absent", "--domain", "1.5"}, "--domain: expected a whole number, 0 to 230"},
+               {{"--session", "absent", "--taget", "1"}, "--taget: unknown option"}};
   for (const auto& c : cases) {
     const auto program = controller(c.arguments);
     EXPECT_EQ(program->wait(), 2) << c.problem;
@@ -63,7 +63,7 @@ class ControllerExample : public ::testing::TestWithParam<ExampleFolder> {
   void SetUp() override {
     path = example_program(GetParam());
     session.start_all();
-    ASSERT_TRUE(session.observer().wait_for_step(50)) << session.said();
+    ASSERT_TRUE(session.observer().wait_for_step(50)) << session.errors();
   }
   std::unique_ptr<Program> controller() {
     const std::vector<std::string> arguments = {
@@ -74,7 +74,7 @@ class ControllerExample : public ::testing::TestWithParam<ExampleFolder> {
   }
   void stop() {
     EXPECT_TRUE(session.observer().request(wire::ControlAction::stop).is_accepted);
-    EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+    EXPECT_EQ(session.wait_all(), all_ok()) << session.errors();
   }
 
   std::string path;
@@ -98,11 +98,11 @@ TEST_P(ControllerExample, ReachesItsTargetAndTheTicksReproduceTheRun) {
   EXPECT_EQ(first_difference(chain_of_ticks(scene, recorded.ticks.at(0)), physics_only(recorded.chain())), "");
 }
 
-TEST_P(ControllerExample, SaysWhoHoldsTheChannelWhenItIsRefused) {
-  ASSERT_TRUE(session.observer().acquire("somebody_else", "Input_Lift").is_granted);
+TEST_P(ControllerExample, NamesTheHolderOfTheChannelWhenItIsRefused) {
+  ASSERT_TRUE(session.observer().acquire("other_controller", "Input_Lift").is_granted);
   const auto program = controller();
   EXPECT_EQ(program->wait(), 1) << program->out();
-  EXPECT_NE(program->err().find("held by 'somebody_else'"), std::string::npos) << program->err();
+  EXPECT_NE(program->err().find("held by 'other_controller'"), std::string::npos) << program->err();
   stop();
 }
 
@@ -116,14 +116,14 @@ TEST_P(ControllerExample, ASecondOneOfItsNameIsRefusedAndTheFirstGoesOn) {
   };
   const auto raw = [this] { return session.observer().variable("Input_Lift.raw").value_or(0); };
   const auto first = start("first");
-  ASSERT_TRUE(session.observer().wait_until([&] { return raw() > 0; })) << first->err() << session.said();
+  ASSERT_TRUE(session.observer().wait_until([&] { return raw() > 0; })) << first->err() << session.errors();
   const auto second = start("second");
   EXPECT_EQ(second->wait(), 1) << second->out();
   EXPECT_NE(second->err().find("is held by another process named 'position_controller'"), std::string::npos)
       << second->err();
-  ASSERT_TRUE(session.observer().wait_for_step(session.observer().step() + 1000)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(session.observer().step() + 1000)) << session.errors();
   EXPECT_TRUE(first->is_running()) << first->err();
-  EXPECT_GT(raw(), 0) << first->err() << session.said();
+  EXPECT_GT(raw(), 0) << first->err() << session.errors();
   EXPECT_EQ(first->err(), "");
   stop();
 }
@@ -134,15 +134,15 @@ TEST_P(ControllerExample, NightlyAPauseDoesNotEndIt) {
       "--session", session.name(), "--domain", std::to_string(session.domain()), "--target", "1.4", "--seconds", "60"};
   Program program(path, arguments, session.folder() / "controller");
   const auto raw = [this] { return session.observer().variable("Input_Lift.raw").value_or(0); };
-  ASSERT_TRUE(session.observer().wait_until([&] { return raw() > 0; })) << program.err() << session.said();
+  ASSERT_TRUE(session.observer().wait_until([&] { return raw() > 0; })) << program.err() << session.errors();
   ASSERT_TRUE(session.observer().request(wire::ControlAction::pause).is_accepted);
   // three times as long as it waits for a block
-  ASSERT_TRUE(session.observer().wait_for_healths(Role::io, 30)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_healths(Role::io, 30)) << session.errors();
   EXPECT_TRUE(program.is_running()) << program.err();
   ASSERT_TRUE(session.observer().request(wire::ControlAction::resume).is_accepted);
-  ASSERT_TRUE(session.observer().wait_for_step(session.observer().step() + 1000)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(session.observer().step() + 1000)) << session.errors();
   EXPECT_TRUE(program.is_running()) << program.err();
-  EXPECT_GT(raw(), 0) << program.err() << session.said();
+  EXPECT_GT(raw(), 0) << program.err() << session.errors();
   stop();
 }
 
@@ -155,11 +155,11 @@ class ClientExamples : public ::testing::Test {
     Observer& observer = session->observer();
     session->start_all();
     // one that waits for its controller in every step does not step yet
-    ASSERT_TRUE(observer.wait_until([&] { return !observer.descriptions().empty(); })) << session->said();
+    ASSERT_TRUE(observer.wait_until([&] { return !observer.descriptions().empty(); })) << session->errors();
   }
   void stop() {
     EXPECT_TRUE(session->observer().request(wire::ControlAction::stop).is_accepted);
-    EXPECT_EQ(session->wait_all(), all_ok()) << session->said();
+    EXPECT_EQ(session->wait_all(), all_ok()) << session->errors();
   }
   [[nodiscard]] std::string domain() const { return std::to_string(session->domain()); }
   std::unique_ptr<Session> session;
@@ -191,9 +191,9 @@ TEST_F(ClientExamples, TheShortestOneWaitsThroughAPauseAndCtrlCGivesTheChannelBa
   start({"--pace", "real"});
   Program first(path, {session->name(), domain()}, session->folder() / "first");
   const auto is_held = [&] { return session->observer().variable("Input_Lift.raw").value_or(0) == 0.5; };
-  ASSERT_TRUE(session->observer().wait_until(is_held)) << first.err() << session->said();
+  ASSERT_TRUE(session->observer().wait_until(is_held)) << first.err() << session->errors();
   ASSERT_TRUE(session->observer().request(wire::ControlAction::pause).is_accepted);
-  ASSERT_TRUE(session->observer().wait_for_healths(Role::io, 25)) << session->said();
+  ASSERT_TRUE(session->observer().wait_for_healths(Role::io, 25)) << session->errors();
   EXPECT_TRUE(first.is_running()) << first.out() << first.err();
   first.send(SIGINT);
   EXPECT_EQ(first.wait(), 0) << first.err();
@@ -213,17 +213,17 @@ TEST_F(ClientExamples, TheSameLoopInPython) {
   EXPECT_EQ(python.wait(), 0) << python.out() << python.err();
   EXPECT_NE(python.out().find(": reached"), std::string::npos) << python.out();
 
-  std::vector<std::string> to_nobody = arguments;
-  to_nobody[4] = "nobody";
-  to_nobody.insert(to_nobody.end(), {"--seconds", "1"});
-  Program alone("/usr/bin/env", to_nobody, session->folder() / "alone");
+  std::vector<std::string> to_absent = arguments;
+  to_absent[4] = "absent";
+  to_absent.insert(to_absent.end(), {"--seconds", "1"});
+  Program alone("/usr/bin/env", to_absent, session->folder() / "alone");
   EXPECT_EQ(alone.wait(), 1);
-  EXPECT_NE(alone.err().find("timeout: no session 'nobody' was heard"), std::string::npos) << alone.err();
+  EXPECT_NE(alone.err().find("timeout: no session 'absent' was found"), std::string::npos) << alone.err();
 
-  ASSERT_TRUE(session->observer().acquire("somebody_else", "Input_Lift").is_granted);
+  ASSERT_TRUE(session->observer().acquire("other_controller", "Input_Lift").is_granted);
   Program refused("/usr/bin/env", arguments, session->folder() / "refused");
   EXPECT_EQ(refused.wait(), 1);
-  EXPECT_NE(refused.err().find("refused: channel Input_Lift is held by 'somebody_else'"), std::string::npos)
+  EXPECT_NE(refused.err().find("refused: channel Input_Lift is held by 'other_controller'"), std::string::npos)
       << refused.err();
   stop();
 }

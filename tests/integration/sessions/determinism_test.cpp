@@ -32,7 +32,7 @@ const RecordedSession& reference() {
 }
 
 RecordedSession recorded_without_losses(Session& session) {
-  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.errors();
   RecordedSession recorded = session.recorded();
   EXPECT_EQ(recorded.problem, "");
   EXPECT_TRUE(recorded.has_all_messages);
@@ -109,12 +109,12 @@ TEST_P(StoppedNode, ForTwoHealthMessagesChangesNoBit) {
   Session session({"--pace", "free", "--duration", "0"});
   Observer& observer = session.observer();
   session.start_all();
-  ASSERT_TRUE(observer.wait_for_step(300)) << session.said();
+  ASSERT_TRUE(observer.wait_for_step(300)) << session.errors();
   session.node(GetParam()).send(SIGSTOP);
   const Role other = GetParam() == Role::io ? Role::mechanics : Role::io;
-  ASSERT_TRUE(observer.wait_for_healths(other, 2)) << session.said();
+  ASSERT_TRUE(observer.wait_for_healths(other, 2)) << session.errors();
   session.node(GetParam()).send(SIGCONT);
-  ASSERT_TRUE(observer.wait_for_step(observer.step() + 300)) << session.said();
+  ASSERT_TRUE(observer.wait_for_step(observer.step() + 300)) << session.errors();
   EXPECT_TRUE(observer.request(wire::ControlAction::stop).is_accepted);
   const RecordedSession recorded = recorded_without_losses(session);
   EXPECT_EQ(first_difference(recorded.chain(), undisturbed_chain(kScene, recorded.last_complete_step())), "");
@@ -135,7 +135,7 @@ TEST_P(StartOrder, ChangesNoBit) {
   Session session(kFree);
   for (const Role role : GetParam()) {
     Program& program = session.start(role);
-    // the next one starts when the middleware knows this one
+    // the next one starts when the middleware has discovered this one
     ASSERT_TRUE(session.observer().wait_for_process(program.pid())) << program.err();
   }
   expect_same_as_in_one_process(session);

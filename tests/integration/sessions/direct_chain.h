@@ -22,7 +22,7 @@ namespace slew::testing {
 // All four nodes on this thread over the in-process bus; the recording goes to `runs`.
 [[nodiscard]] RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesystem::path& runs);
 
-// The chain of a session of so many steps of 1 ms in which nothing happens, by the nodes on one thread.
+// The chain of an undisturbed session with this number of steps of 1 ms, by the nodes on one thread.
 [[nodiscard]] HashChain undisturbed_chain(const std::string& scene_file, StepIndex steps);
 
 // The physics hashes alone.

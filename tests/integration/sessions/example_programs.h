@@ -7,7 +7,7 @@
 namespace slew::testing {
 
 struct ExampleFolder {
-  const char* name;  // of the folder under examples/
+  const char* name;  // name of the folder under examples/
 };
 // in the names of tests
 inline void PrintTo(const ExampleFolder& folder, std::ostream* out) {

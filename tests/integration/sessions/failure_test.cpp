@@ -1,5 +1,4 @@
-// What happens when something goes wrong in a session: it is named at once, everybody ends with the right code, and
-// the recording is valid.
+// Faults in a session: the fault is named at once, all nodes end with the right code, and the recording is valid.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -27,7 +26,7 @@ namespace failure_test {
 using wire::NodeState;
 using wire::Role;
 
-// The design promises an end within 1 s, ten health messages. An io that waits in vain for somebody sends twenty.
+// The design promises an end within 1 s, ten health messages. An io that waits in vain for a node sends twenty.
 constexpr std::uint64_t kHealthsOfAnEnd = 15;
 
 std::string role_name(const ::testing::TestParamInfo<Role>& role) {
@@ -46,8 +45,8 @@ std::string pid_text(const Program& program) {
 
 class KilledNode : public ::testing::TestWithParam<Role> {};
 
-// At so many steps the recorder may lack what it lost on the way and the victim could not send again; in `real` pace it
-// has time to ask.
+// At this many steps the recorder may lack samples that it lost and the victim could not resend; in `real` pace it has
+// time to request them.
 constexpr StepIndex kLostWithVictim = 128;
 constexpr StepIndex kLostInRealPace = 2;
 
@@ -55,17 +54,19 @@ constexpr StepIndex kLostInRealPace = 2;
 void expect_named_and_ended(Session& session, Role victim, StepIndex killed_at, std::int64_t pace_step_ns) {
   const std::map<Role, int> codes = session.wait_all();
   for (const auto& [role, code] : codes) {
-    EXPECT_EQ(code, role == victim ? -SIGKILL : 4) << node::to_text(role) << "\n" << session.said();
+    EXPECT_EQ(code, role == victim ? -SIGKILL : 4) << node::to_text(role) << "\n" << session.errors();
     if (role == victim) continue;
-    const std::string said = session.node(role).err();
-    EXPECT_NE(said.find(std::string(node::to_text(victim)) + " (" + pid_text(session.node(victim))), std::string::npos)
-        << node::to_text(role) << " does not name the victim: " << said;
-    EXPECT_NE(said.find(role == Role::io ? "is gone; the session was held after step " : "is gone"), std::string::npos)
-        << said;
+    const std::string errors = session.node(role).err();
+    EXPECT_NE(errors.find(std::string(node::to_text(victim)) + " (" + pid_text(session.node(victim))),
+              std::string::npos)
+        << node::to_text(role) << " does not name the victim: " << errors;
+    EXPECT_NE(errors.find(role == Role::io ? "is gone; the session was held after step " : "is gone"),
+              std::string::npos)
+        << errors;
   }
   const std::filesystem::path path = only_recording(session.runs());
   if (victim == Role::recorder) {
-    // nobody closed it: it is readable up to what was handed over last
+    // no process closed it: it is readable up to the last data handed over
     std::unique_ptr<recording::Reader> reader;
     ASSERT_TRUE(recording::Reader::open(path, reader).is_ok());
     EXPECT_FALSE(reader->has_all_messages());
@@ -93,8 +94,8 @@ void expect_named_and_ended(Session& session, Role victim, StepIndex killed_at, 
     EXPECT_NE(hashes.hydraulics, 0u) << step;
   }
   // the recording has it too; how soon it was is in wall_time_test.cpp
-  EXPECT_TRUE(std::any_of(recorded.statuses.begin(), recorded.statuses.end(), [](const SaidStatus& said) {
-    return said.status.reason.find("is gone") != std::string::npos;
+  EXPECT_TRUE(std::any_of(recorded.statuses.begin(), recorded.statuses.end(), [](const PublishedStatus& published) {
+    return published.status.reason.find("is gone") != std::string::npos;
   }));
 }
 
@@ -106,7 +107,7 @@ TEST_P(KilledNode, IsNamedAndEndsTheSessionWithCode4) {
     Observer& observer = session.observer();
     session.start_all();
     const auto step = static_cast<StepIndex>((GetParam() == Role::recorder ? 1300 : 20) + random() % 400);
-    ASSERT_TRUE(observer.wait_for_step(step)) << session.said();
+    ASSERT_TRUE(observer.wait_for_step(step)) << session.errors();
     session.node(GetParam()).send(SIGKILL);
     expect_named_and_ended(session, GetParam(), step, 1'000'000);
   }
@@ -116,7 +117,7 @@ TEST_P(KilledNode, InFreePaceIsNamedAsWell) {
   Session session({"--pace", "free", "--duration", "100s"});
   Observer& observer = session.observer();
   session.start_all();
-  ASSERT_TRUE(observer.wait_for_step(1000)) << session.said();
+  ASSERT_TRUE(observer.wait_for_step(1000)) << session.errors();
   session.node(GetParam()).send(SIGKILL);
   expect_named_and_ended(session, GetParam(), 1000, 0);
 }
@@ -128,35 +129,36 @@ TEST(StoppedForGood, NodeIsNamedAfter300MillisecondsAndGivenUpAfter2Seconds) {
   Session session({"--pace", "real", "--duration", "20s"});
   Observer& observer = session.observer();
   session.start_all();
-  ASSERT_TRUE(observer.wait_for_step(100)) << session.said();
+  ASSERT_TRUE(observer.wait_for_step(100)) << session.errors();
   session.node(Role::hydraulics).send(SIGSTOP);
   const auto holds = [&] {
     const auto& io = observer.status(Role::io);
     return io && io->state == NodeState::holding && io->reason.find("hydraulics") != std::string::npos;
   };
-  ASSERT_TRUE(observer.wait_until(holds)) << session.said();
+  ASSERT_TRUE(observer.wait_until(holds)) << session.errors();
   EXPECT_NE(observer.status(Role::io)->reason.find("silent for 0.3 s"), std::string::npos);
-  EXPECT_EQ(session.node(Role::io).wait(), 4) << session.said();
-  EXPECT_EQ(session.node(Role::mechanics).wait(), 4) << session.said();
-  EXPECT_EQ(session.node(Role::recorder).wait(), 4) << session.said();
+  EXPECT_EQ(session.node(Role::io).wait(), 4) << session.errors();
+  EXPECT_EQ(session.node(Role::mechanics).wait(), 4) << session.errors();
+  EXPECT_EQ(session.node(Role::recorder).wait(), 4) << session.errors();
   // not before it had been silent for 0.3 s
   const RecordedSession recorded = session.recorded();
   EXPECT_EQ(recorded.problem, "");
   std::int64_t named_ns = INT64_MAX;
-  for (const SaidStatus& said : recorded.statuses) {
-    if (said.status.reason.find("silent for 0.3 s") != std::string::npos) named_ns = std::min(named_ns, said.sent_ns);
+  for (const PublishedStatus& published : recorded.statuses) {
+    if (published.status.reason.find("silent for 0.3 s") != std::string::npos)
+      named_ns = std::min(named_ns, published.sent_ns);
   }
   ASSERT_NE(named_ns, INT64_MAX);
   EXPECT_GE(named_ns - recorded.last_word_before(Role::hydraulics, named_ns), node::kSilentAfter.ns);
   // when it comes back it finds that the others have gone
   session.node(Role::hydraulics).send(SIGCONT);
-  EXPECT_EQ(session.node(Role::hydraulics).wait(), 4) << session.said();
+  EXPECT_EQ(session.node(Role::hydraulics).wait(), 4) << session.errors();
 }
 
 // ---- signals --------------------------------------------------------------------------------------------------
 
-// but for what a busy machine costs
-std::string said_without_slips(Program& program) {
+// without the messages of a busy machine
+std::string errors_without_slips(Program& program) {
   std::istringstream lines(program.err());
   std::string rest;
   for (std::string line; std::getline(lines, line);) {
@@ -167,16 +169,16 @@ std::string said_without_slips(Program& program) {
 
 void expect_orderly_end(Session& session, int signal) {
   Program& io = session.node(Role::io);
-  EXPECT_EQ(io.wait(), signal == SIGINT ? 130 : 143) << session.said();
+  EXPECT_EQ(io.wait(), signal == SIGINT ? 130 : 143) << session.errors();
   ASSERT_TRUE(session.observer().wait_until([] { return true; }));  // all that has come is taken
   EXPECT_LT(session.observer().healths_after_end(Role::io), kHealthsOfAnEnd);
-  // those that never learned of the session are ended as a supervisor does it
+  // nodes without the session are ended as a supervisor does it
   for (const Role role : kAllNodes) {
     if (session.has(role)) session.node(role).send(signal);
   }
   for (const auto& [role, code] : session.wait_all()) {
-    EXPECT_TRUE(code == 0 || code == 128 + signal) << node::to_text(role) << " ended with " << code << session.said();
-    EXPECT_EQ(said_without_slips(session.node(role)), "");
+    EXPECT_TRUE(code == 0 || code == 128 + signal) << node::to_text(role) << " ended with " << code << session.errors();
+    EXPECT_EQ(errors_without_slips(session.node(role)), "");
   }
   for (const auto& entry : std::filesystem::recursive_directory_iterator(session.folder())) {
     if (entry.path().extension() != ".mcap") continue;
@@ -192,7 +194,7 @@ TEST(Interrupted, InMidRunEndsInOrderWithinASecond) {
     Session session({"--pace", "real", "--duration", "20s"});
     session.start_all();
     const auto step = static_cast<StepIndex>(1 + random() % 300);
-    ASSERT_TRUE(session.observer().wait_for_step(step)) << session.said();
+    ASSERT_TRUE(session.observer().wait_for_step(step)) << session.errors();
     session.node(Role::io).send(signal);
     expect_orderly_end(session, signal);
     const RecordedSession recorded = session.recorded();
@@ -206,7 +208,7 @@ TEST(Interrupted, AtAnyMomentOfTheStartEndsInOrder) {
   for (int round = 0; round < testing::rounds(3, 40); ++round) {
     Session session({"--pace", "free", "--duration", "100s"});
     session.start_all();
-    // after so many messages of anybody: name check, JOIN, INIT, first steps
+    // after this many messages of all nodes: name check, JOIN, INIT, first steps
     const std::uint64_t moment = round == 0 ? 0 : random() % 120;
     ASSERT_TRUE(session.observer().wait_until([&] { return session.observer().messages() >= moment; }));
     session.node(Role::io).send(SIGINT);
@@ -221,28 +223,28 @@ TEST(Interrupted, WhileTheOthersAreMissingEndsWithinASecond) {
   session.start(Role::io);
   session.start(Role::mechanics);
   const auto joins = [&] { return session.observer().status(Role::mechanics).has_value(); };
-  ASSERT_TRUE(session.observer().wait_until(joins)) << session.said();
+  ASSERT_TRUE(session.observer().wait_until(joins)) << session.errors();
   session.node(Role::io).send(SIGINT);
   expect_orderly_end(session, SIGINT);
 }
 
-TEST_P(KilledNode, AskedToEndByASignalEndsTheSessionInOrder) {
+TEST_P(KilledNode, EndsTheSessionInOrderAfterASignal) {
   Session session({"--pace", "real", "--duration", "20s"});
   session.start_all();
-  ASSERT_TRUE(session.observer().wait_for_step(50)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(50)) << session.errors();
   session.node(GetParam()).send(SIGTERM);
   for (const auto& [role, code] : session.wait_all()) {
-    EXPECT_TRUE(code == 143 || code == 0) << node::to_text(role) << " ended with " << code << "\n" << session.said();
+    EXPECT_TRUE(code == 143 || code == 0) << node::to_text(role) << " ended with " << code << "\n" << session.errors();
   }
   EXPECT_EQ(session.node(GetParam()).wait(), 143);
   EXPECT_EQ(session.node(Role::io).wait(), 143);
-  // io names the node that was asked; a node that was asked itself has nothing to tell its owner
+  // io names the node that received the signal; that node itself has no fault to report
   for (const Role role : kAllNodes) {
     const bool must_name = role == Role::io && GetParam() != Role::io;
     const std::string named =
         "io_node: " + std::string(node::to_text(GetParam())) + " (" + pid_text(session.node(GetParam())) + " on ";
-    EXPECT_TRUE(session.node(role).err().starts_with(must_name ? named : "")) << session.said();
-    EXPECT_EQ(session.node(role).err().empty(), !must_name) << session.said();
+    EXPECT_TRUE(session.node(role).err().starts_with(must_name ? named : "")) << session.errors();
+    EXPECT_EQ(session.node(role).err().empty(), !must_name) << session.errors();
   }
   EXPECT_EQ(session.recorded().problem, "");
 }
@@ -255,20 +257,20 @@ TEST_P(SecondNode, IsRefusedNamingTheFirstWhichGoesOn) {
   Session session({"--pace", "real", "--duration", "60s"});
   Observer& observer = session.observer();
   session.start_all();
-  ASSERT_TRUE(observer.wait_for_step(100)) << session.said();
+  ASSERT_TRUE(observer.wait_for_step(100)) << session.errors();
   Program& second = session.start(GetParam(), {}, "_second");
   EXPECT_EQ(second.wait(), 2) << second.err();
-  const std::string said = second.err();
-  EXPECT_NE(said.find(pid_text(session.node(GetParam()))), std::string::npos) << said;
-  EXPECT_NE(said.find("started 20"), std::string::npos) << said;
+  const std::string errors = second.err();
+  EXPECT_NE(errors.find(pid_text(session.node(GetParam()))), std::string::npos) << errors;
+  EXPECT_NE(errors.find("started 20"), std::string::npos) << errors;
   char host[256] = {};
   gethostname(host, sizeof host - 1);
-  EXPECT_NE(said.find(host), std::string::npos) << said;
+  EXPECT_NE(errors.find(host), std::string::npos) << errors;
   // the first goes on, and only its words are recorded
   const StepIndex step = observer.step() + 100;
-  ASSERT_TRUE(observer.wait_for_step(step)) << session.said();
+  ASSERT_TRUE(observer.wait_for_step(step)) << session.errors();
   EXPECT_TRUE(observer.request(wire::ControlAction::stop).is_accepted);
-  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.errors();
   const RecordedSession recorded = session.recorded();
   EXPECT_EQ(recorded.problem, "");
   EXPECT_EQ(recorded.losses(), 0);
@@ -297,7 +299,7 @@ TEST_P(StartedTogether, ExactlyOneOfTwoStays) {
   EXPECT_NE(loser.err().find(pid_text(*both[codes[0] == 2 ? 1 : 0])), std::string::npos) << loser.err();
   for (const auto& [role, code] : session.wait_all()) {
     if (role == GetParam()) continue;
-    EXPECT_EQ(code, 0) << node::to_text(role) << "\n" << session.said();
+    EXPECT_EQ(code, 0) << node::to_text(role) << "\n" << session.errors();
   }
   EXPECT_EQ(session.recorded().last_complete_step(), 1000);
 }
@@ -305,14 +307,14 @@ TEST_P(StartedTogether, ExactlyOneOfTwoStays) {
 INSTANTIATE_TEST_SUITE_P(Roles, StartedTogether, ::testing::ValuesIn(kGateRoles), role_name);
 INSTANTIATE_TEST_SUITE_P(NightlyRoles, StartedTogether, ::testing::ValuesIn(kNightlyRoles), role_name);
 
-// An io that holds the same name and goes first, for its id is the lowest there is; the observer speaks for it.
-class Rival {
+// An io with the same name and priority, since its id is the lowest possible; the observer publishes its messages.
+class Claimant {
  public:
-  Rival(Observer& observer, const wire::SessionDescription& first) : observer_(observer), description_(first) {
+  Claimant(Observer& observer, const wire::SessionDescription& first) : observer_(observer), description_(first) {
     description_.header.session = {};
     description_.header.phase = wire::Phase::running;
     description_.pid = static_cast<std::uint32_t>(::getpid());
-    observer_.say(wire::Topic::session, description_);
+    observer_.publish(wire::Topic::session, description_);
   }
   [[nodiscard]] const wire::SessionId& id() const noexcept { return description_.header.session; }
   void end_its_session() {
@@ -322,7 +324,7 @@ class Rival {
     status.exit_code = static_cast<std::int32_t>(ExitCode::interrupted);
     status.host = description_.host;
     status.pid = description_.pid;
-    observer_.say(wire::Topic::node_status, status);
+    observer_.publish(wire::Topic::node_status, status);
   }
 
  private:
@@ -338,20 +340,20 @@ TEST(WithdrawnSession, LosesItsNodesToTheOneThatHoldsTheName) {
     const std::optional<wire::NodeStatus>& status = observer.status(role);
     return status && status->header.session == id && status->state < NodeState::ended;
   };
-  ASSERT_TRUE(observer.wait_until([&] { return !observer.descriptions().empty(); })) << session.said();
+  ASSERT_TRUE(observer.wait_until([&] { return !observer.descriptions().empty(); })) << session.errors();
   const wire::SessionDescription first = observer.descriptions().begin()->second;
   for (const Role role : {Role::mechanics, Role::recorder}) {
-    ASSERT_TRUE(observer.wait_until([&] { return takes_part(role, first.header.session); })) << session.said();
+    ASSERT_TRUE(observer.wait_until([&] { return takes_part(role, first.header.session); })) << session.errors();
   }
-  Rival rival(observer, first);
-  EXPECT_EQ(session.node(Role::io).wait(), 2) << session.said();
+  Claimant claimant(observer, first);
+  EXPECT_EQ(session.node(Role::io).wait(), 2) << session.errors();
   for (const Role role : {Role::mechanics, Role::recorder}) {
-    EXPECT_TRUE(observer.wait_until([&] { return takes_part(role, rival.id()); })) << session.said();
+    EXPECT_TRUE(observer.wait_until([&] { return takes_part(role, claimant.id()); })) << session.errors();
   }
-  rival.end_its_session();
+  claimant.end_its_session();
   const std::map<Role, int> codes = session.wait_all();
-  EXPECT_EQ(codes.at(Role::mechanics), 130) << session.said();
-  EXPECT_EQ(codes.at(Role::recorder), 130) << session.said();
+  EXPECT_EQ(codes.at(Role::mechanics), 130) << session.errors();
+  EXPECT_EQ(codes.at(Role::recorder), 130) << session.errors();
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(session.runs()), {}), 1) << "the first left nothing";
 }
 
@@ -363,15 +365,15 @@ TEST(MissingNode, IsNamedWhenJoinDoesNotComeAbout) {
   session.start(Role::mechanics);
   session.start(Role::recorder);
   const std::map<Role, int> codes = session.wait_all();
-  EXPECT_EQ(codes.at(Role::io), 1) << session.said();
-  EXPECT_EQ(codes.at(Role::mechanics), 1) << session.said();
-  EXPECT_EQ(codes.at(Role::recorder), 1) << session.said();
-  const std::string said = session.node(Role::io).err();
-  EXPECT_NE(said.find("JOIN did not come about within 1 s"), std::string::npos) << said;
-  EXPECT_NE(said.find("no hydraulics node has been heard"), std::string::npos) << said;
-  EXPECT_NE(said.find("slewring/actuators, type slewring::ActuatorMessage; found no writer of it"), std::string::npos)
-      << said;
-  EXPECT_EQ(said.find("no mechanics node"), std::string::npos) << said;
+  EXPECT_EQ(codes.at(Role::io), 1) << session.errors();
+  EXPECT_EQ(codes.at(Role::mechanics), 1) << session.errors();
+  EXPECT_EQ(codes.at(Role::recorder), 1) << session.errors();
+  const std::string errors = session.node(Role::io).err();
+  EXPECT_NE(errors.find("JOIN did not come about within 1 s"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("no hydraulics node has been heard"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("slewring/actuators, type slewring::ActuatorMessage; found no writer of it"), std::string::npos)
+      << errors;
+  EXPECT_EQ(errors.find("no mechanics node"), std::string::npos) << errors;
 }
 
 TEST(MissingSession, IsNamedByANodeThatWaitsForIt) {
@@ -416,13 +418,13 @@ TEST(Assets, ThatDifferAreNamedAndTheNodeDoesNotTakePart) {
   session.start(Role::hydraulics, {"--assets", assets.folder_with("same")});
   session.start(Role::mechanics, {"--assets", assets.folder_with("other")});
   const std::map<Role, int> codes = session.wait_all();
-  EXPECT_EQ(codes.at(Role::mechanics), 2) << session.said();
-  const std::string said = session.node(Role::mechanics).err();
-  EXPECT_NE(said.find("asset 'table.csv' differs from the session's (5 bytes here, 4 there)"), std::string::npos)
-      << said;
-  // the session cannot take place and says why
-  EXPECT_EQ(codes.at(Role::io), 2) << session.said();
-  EXPECT_NE(session.node(Role::io).err().find("asset 'table.csv' differs"), std::string::npos) << session.said();
+  EXPECT_EQ(codes.at(Role::mechanics), 2) << session.errors();
+  const std::string errors = session.node(Role::mechanics).err();
+  EXPECT_NE(errors.find("asset 'table.csv' differs from the session's (5 bytes here, 4 there)"), std::string::npos)
+      << errors;
+  // the session cannot take place; io reports the reason
+  EXPECT_EQ(codes.at(Role::io), 2) << session.errors();
+  EXPECT_NE(session.node(Role::io).err().find("asset 'table.csv' differs"), std::string::npos) << session.errors();
 }
 
 TEST(Assets, ThatAreMissingAreNamed) {
@@ -433,7 +435,7 @@ TEST(Assets, ThatAreMissingAreNamed) {
   EXPECT_EQ(session.node(Role::mechanics).wait(), 2);
   EXPECT_NE(session.node(Role::mechanics).err().find("asset 'table.csv' cannot be read: No such file or directory"),
             std::string::npos)
-      << session.said();
+      << session.errors();
 }
 
 TEST(Assets, ThatAreTheSameLetTheSessionRun) {
@@ -443,7 +445,7 @@ TEST(Assets, ThatAreTheSameLetTheSessionRun) {
   session.start(Role::recorder);
   session.start(Role::hydraulics, {"--assets", assets.folder_with("same")});
   session.start(Role::mechanics, {"--assets", assets.scenes.path().string()});
-  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.errors();
 }
 
 // ---- storage --------------------------------------------------------------------------------------------------
@@ -454,12 +456,13 @@ TEST(Storage, ThatIsFullEndsTheRecordingAndNotTheSession) {
   session.run_under(Role::recorder, {"/usr/bin/prlimit", "--fsize=1200000"}, {});
   session.start_all();
   for (const auto& [role, code] : session.wait_all())
-    EXPECT_EQ(code, role == Role::recorder ? 6 : 0) << node::to_text(role) << "\n" << session.said();
-  const std::string said = session.node(Role::recorder).err();
-  EXPECT_NE(said.find("recorder: warning: "), std::string::npos) << said;
-  EXPECT_NE(said.find("session.mcap: cannot write "), std::string::npos) << said;
-  EXPECT_NE(said.find("(File too large); the file was cut back to "), std::string::npos) << said;
-  EXPECT_NE(said.find("; the session goes on without its recording and ends with code 6"), std::string::npos) << said;
+    EXPECT_EQ(code, role == Role::recorder ? 6 : 0) << node::to_text(role) << "\n" << session.errors();
+  const std::string errors = session.node(Role::recorder).err();
+  EXPECT_NE(errors.find("recorder: warning: "), std::string::npos) << errors;
+  EXPECT_NE(errors.find("session.mcap: cannot write "), std::string::npos) << errors;
+  EXPECT_NE(errors.find("(File too large); the file was cut back to "), std::string::npos) << errors;
+  EXPECT_NE(errors.find("; the session goes on without its recording and ends with code 6"), std::string::npos)
+      << errors;
   const RecordedSession recorded = session.recorded();
   EXPECT_GT(recorded.last_complete_step(), 0);
   EXPECT_LT(recorded.last_complete_step(), 5'000);
@@ -492,11 +495,11 @@ TEST(Divergence, IsLatchedWithTheOffendersNameAndCode5AndTheLastGoodStateIsRecor
   Session session({}, write_runaway(folder));
   session.start_all();
   for (const auto& [role, code] : session.wait_all())
-    EXPECT_EQ(code, 5) << node::to_text(role) << "\n" << session.said();
-  const std::string said = session.node(Role::io).err();
-  EXPECT_NE(said.find("mechanics"), std::string::npos) << said;
-  EXPECT_NE(said.find("diverged in step"), std::string::npos) << said;
-  EXPECT_NE(said.find("Slide is not finite"), std::string::npos) << said;
+    EXPECT_EQ(code, 5) << node::to_text(role) << "\n" << session.errors();
+  const std::string errors = session.node(Role::io).err();
+  EXPECT_NE(errors.find("mechanics"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("diverged in step"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("Slide is not finite"), std::string::npos) << errors;
   const RecordedSession recorded = session.recorded();
   EXPECT_EQ(recorded.problem, "");
   const std::vector<wire::MechanismMessage>& samples = recorded.mechanisms;

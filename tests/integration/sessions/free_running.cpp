@@ -25,11 +25,11 @@ double largest_eta(const RecordedSession& recorded) {
 RecordedSession run_with_a_partner_that_stands_still() {
   Session session({"--pace", "real", "--duration", "3s", "--set", "session.mode=free_running"});
   session.start_all();
-  EXPECT_TRUE(session.observer().wait_for_step(1000)) << session.said();
+  EXPECT_TRUE(session.observer().wait_for_step(1000)) << session.errors();
   session.node(Role::hydraulics).send(SIGSTOP);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   session.node(Role::hydraulics).send(SIGCONT);
-  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.errors();
   return session.recorded();
 }
 
@@ -48,7 +48,7 @@ LossyRun run_over_a_lossy_cable(std::int64_t seconds) {
   }
   if (!cable.lose(1)) return {"packets cannot be lost here: " + cable.problem(), {}, 0};
   session.start_all();
-  EXPECT_EQ(session.wait_all(1'000'000'000 * (seconds + 60)), all_ok()) << session.said();
+  EXPECT_EQ(session.wait_all(1'000'000'000 * (seconds + 60)), all_ok()) << session.errors();
   EXPECT_GT(cable.lost(cable.left()), 0u) << "nothing was lost: the test shows nothing";
   EXPECT_GT(cable.lost(cable.right()), 0u) << "nothing was lost: the test shows nothing";
   LossyRun run{"", session.recorded(), 0};

@@ -1,4 +1,4 @@
-// Free-running sessions of real processes, and what a test counts in their recordings.
+// Free-running sessions of real processes, and counts of their recordings.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Free-running sessions of real processes: nobody waits longer than the budget.
+// Free-running sessions of real processes: no node waits longer than the budget.
 #include "free_running.h"
 
 #include <gtest/gtest.h>

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kTries = 100'000;
 
-// what follows makes only calls that are safe behind a fork of a process with threads
+// only calls that are safe after a fork of a process with threads
 
 bool stop(pid_t thread) {
   int status = 0;
@@ -41,7 +41,7 @@ bool is_in_its_wait(const char* call_file) {
   return call == SYS_futex && how == FUTEX_WAIT_BITSET_PRIVATE;
 }
 
-[[noreturn]] void hold(pid_t thread, const char* call_file, int told) {
+[[noreturn]] void hold(pid_t thread, const char* call_file, int pipe_end) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   bool is_stopped = ptrace(PTRACE_SEIZE, thread, nullptr, nullptr) == 0 && stop(thread);
   for (int i = 0; i < kTries && is_stopped && !is_in_its_wait(call_file); ++i) {
@@ -49,8 +49,8 @@ bool is_in_its_wait(const char* call_file) {
   }
   int status = 0;
   const char word = is_stopped ? 'y' : 'n';
-  if (write(told, &word, 1) != 1) _exit(1);
-  // its end is told to the tracer first, and to its parent behind that
+  if (write(pipe_end, &word, 1) != 1) _exit(1);
+  // the kernel reports its end to the tracer first, and to its parent after that
   while (is_stopped && waitpid(thread, &status, __WALL) == thread && !WIFEXITED(status) && !WIFSIGNALED(status)) {
   }
   _exit(0);
@@ -60,18 +60,18 @@ bool is_in_its_wait(const char* call_file) {
 
 HeldLoop::HeldLoop(pid_t process) {
   const std::string call_file = "/proc/" + std::to_string(process) + "/syscall";
-  std::array<int, 2> told{};
-  if (pipe(told.data()) != 0) throw std::runtime_error("no pipe for a tracer");
+  std::array<int, 2> ends{};
+  if (pipe(ends.data()) != 0) throw std::runtime_error("no pipe for a tracer");
   tracer_ = fork();
   if (tracer_ < 0) throw std::runtime_error("no process for a tracer");
-  if (tracer_ == 0) hold(process, call_file.c_str(), told[1]);
-  close(told[1]);
+  if (tracer_ == 0) hold(process, call_file.c_str(), ends[1]);
+  close(ends[1]);
   char word = 'n';
-  is_held_ = read(told[0], &word, 1) == 1 && word == 'y';
-  close(told[0]);
+  is_held_ = read(ends[0], &word, 1) == 1 && word == 'y';
+  close(ends[0]);
 }
 
-// who was traced goes on when its tracer is gone
+// a traced process goes on when its tracer is gone
 void HeldLoop::let_go() {
   if (tracer_ < 0) return;
   kill(tracer_, SIGKILL);

@@ -17,7 +17,7 @@ class HeldLoop {
   void let_go();
 
  private:
-  pid_t tracer_ = -1;  // a process of its own, so that nobody else has to take note of the node's end
+  pid_t tracer_ = -1;  // a process of its own, so that no other process has to wait for the node's end
   bool is_held_ = false;
 };
 

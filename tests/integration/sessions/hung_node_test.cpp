@@ -1,4 +1,4 @@
-// Nodes that stand still for a while, or so long that the others give them up: as processes, and by their loop alone.
+// Nodes that stand still for a while, or until the others give them up: as processes, and by their loop alone.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -63,7 +63,7 @@ std::map<Role, Program*> start_with(Role role, Session& session, const std::stri
 }
 
 void expect_all_well(Session& session) {
-  for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 0) << node::to_text(role) << session.said();
+  for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 0) << node::to_text(role) << session.errors();
 }
 
 HashChain bits_of_a_flexible_session() {
@@ -73,7 +73,7 @@ HashChain bits_of_a_flexible_session() {
   return session.recorded().chain();
 }
 
-// of a session that has this role, when nothing happens in it
+// hashes of an undisturbed session with this role
 const HashChain& undisturbed_with(Role role) {
   static const HashChain rigid = [] {
     const ScratchFolder folder;
@@ -92,18 +92,18 @@ void expect_undisturbed_bits(Role role, const RecordedSession& recorded) {
 
 // by the others, with the step at which they waited
 void expect_named(const RecordedSession& recorded, Role role, const Program& program) {
-  std::string told;
-  for (const SaidStatus& said : recorded.statuses) told += said.status.reason + "\n";
-  EXPECT_NE(told.find("waits for " + name_of(role, program)), std::string::npos) << told;
-  EXPECT_NE(told.find(", which has been silent for 0.3 s at step "), std::string::npos) << told;
+  std::string reasons;
+  for (const PublishedStatus& published : recorded.statuses) reasons += published.status.reason + "\n";
+  EXPECT_NE(reasons.find("waits for " + name_of(role, program)), std::string::npos) << reasons;
+  EXPECT_NE(reasons.find(", which has been silent for 0.3 s at step "), std::string::npos) << reasons;
 }
 
 void expect_given_up_by_all(Session& session, Role hung) {
   for (const Role role : roles_with(hung)) {
     if (role == hung) continue;
-    EXPECT_EQ(session.node(role).wait(), 4) << node::to_text(role) << "\n" << session.said();
-    EXPECT_NE(session.node(role).err().find(name_of(hung, session.node(hung))), std::string::npos) << session.said();
-    EXPECT_NE(session.node(role).err().find(" is gone; "), std::string::npos) << session.said();
+    EXPECT_EQ(session.node(role).wait(), 4) << node::to_text(role) << "\n" << session.errors();
+    EXPECT_NE(session.node(role).err().find(name_of(hung, session.node(hung))), std::string::npos) << session.errors();
+    EXPECT_NE(session.node(role).err().find(" is gone; "), std::string::npos) << session.errors();
   }
 }
 
@@ -130,9 +130,9 @@ bool is_waited_for(Session& session, Role role, const Program& program) {
 TEST_P(HungNode, ThatComesBackInTimeGoesOnWithTheSameBits) {
   Session session(kRealPace, scene_with(GetParam()));
   start_with(GetParam(), session);
-  ASSERT_TRUE(session.observer().wait_for_step(100)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(100)) << session.errors();
   session.node(GetParam()).send(SIGSTOP);
-  EXPECT_TRUE(is_waited_for(session, GetParam(), session.node(GetParam()))) << session.said();
+  EXPECT_TRUE(is_waited_for(session, GetParam(), session.node(GetParam()))) << session.errors();
   session.node(GetParam()).send(SIGCONT);
   expect_all_well(session);
   const RecordedSession recorded = session.recorded();
@@ -171,7 +171,7 @@ TEST_P(HungNode, ThatIsGivenUpFindsThatItsSessionIsOverAndDoesNotDisturbTheNextO
   const Role hung = GetParam();
   Session session(kRealPace, scene_with(hung));
   start_with(hung, session);
-  ASSERT_TRUE(session.observer().wait_for_step(100)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(100)) << session.errors();
   Program& stopped = session.node(hung);
   stopped.send(SIGSTOP);
   const std::int64_t stopped_ns = monotonic_ns();
@@ -185,28 +185,28 @@ TEST_P(HungNode, ThatIsGivenUpFindsThatItsSessionIsOverAndDoesNotDisturbTheNextO
   const std::uint64_t ticks = observer.ticks();
   ASSERT_TRUE(observer.wait_until([&] { return observer.ticks() >= ticks + 300; })) << next.at(Role::io)->err();
   stopped.send(SIGCONT);
-  EXPECT_EQ(stopped.wait(), 4) << session.said();
-  const std::string said = stopped.err();
-  EXPECT_NE(said.find(" stood still for "), std::string::npos) << said;
-  EXPECT_NE(said.find("; look for what stopped the process (a signal, a debugger, lack of memory or of processors)"),
+  EXPECT_EQ(stopped.wait(), 4) << session.errors();
+  const std::string errors = stopped.err();
+  EXPECT_NE(errors.find(" stood still for "), std::string::npos) << errors;
+  EXPECT_NE(errors.find("; look for what stopped the process (a signal, a debugger, lack of memory or of processors)"),
             std::string::npos)
-      << said;
+      << errors;
 
   for (const auto& [role, program] : next) EXPECT_EQ(program->wait(), 0) << program->err();
   const RecordedSession recorded = read_session(other_recording(session.runs(), first));
   expect_undisturbed_bits(hung, recorded);
   // nothing of the one in the other's recording, and the first one's is as whole as it was
-  for (const SaidStatus& said_there : recorded.statuses) {
-    EXPECT_NE(said_there.status.pid, static_cast<std::uint32_t>(stopped.pid())) << said_there.status.reason;
+  for (const PublishedStatus& published : recorded.statuses) {
+    EXPECT_NE(published.status.pid, static_cast<std::uint32_t>(stopped.pid())) << published.status.reason;
   }
   const RecordedSession before = read_session(first);
   EXPECT_EQ(before.problem, "");
   EXPECT_TRUE(before.has_all_messages);
   EXPECT_GT(before.last_complete_step(), 0);
   EXPECT_LT(before.last_complete_step(), 2900);
-  for (const SaidStatus& said_there : before.statuses) {
+  for (const PublishedStatus& published : before.statuses) {
     for (const auto& [role, program] : next) {
-      EXPECT_NE(said_there.status.pid, static_cast<std::uint32_t>(program->pid())) << node::to_text(role);
+      EXPECT_NE(published.status.pid, static_cast<std::uint32_t>(program->pid())) << node::to_text(role);
     }
   }
 }
@@ -221,7 +221,7 @@ class HungLoop : public ::testing::TestWithParam<Role> {
   void start_and_hold(const std::string& duration) {
     session_.emplace(std::vector<std::string>{"--pace", "real", "--duration", duration}, scene_with(GetParam()));
     start_with(GetParam(), *session_);
-    ASSERT_TRUE(session_->observer().wait_for_step(100)) << session_->said();
+    ASSERT_TRUE(session_->observer().wait_for_step(100)) << session_->errors();
     held_.emplace(node().pid());
     if (!held_->is_held()) GTEST_SKIP() << "no process may trace another one here";
   }
@@ -239,12 +239,12 @@ class HungLoop : public ::testing::TestWithParam<Role> {
 TEST_P(HungLoop, ThatComesBackInTimeGoesOnWithTheSameBits) {
   start_and_hold(kDuration);
   if (IsSkipped() || HasFailure()) return;
-  EXPECT_TRUE(is_waited_for(*session_, GetParam(), node())) << session_->said();
+  EXPECT_TRUE(is_waited_for(*session_, GetParam(), node())) << session_->errors();
   held_->let_go();
   const bool is_recorder = GetParam() == Role::recorder;
-  // in real pace nobody waits for a recorder, and after so long not all can be said again: what it lacks is counted
+  // in real pace no node waits for a recorder, and after so long not all can be resent: missing samples are counted
   for (const auto& [role, code] : session_->wait_all()) {
-    EXPECT_TRUE(code == 0 || (code == 3 && is_recorder && role == Role::recorder)) << code << session_->said();
+    EXPECT_TRUE(code == 0 || (code == 3 && is_recorder && role == Role::recorder)) << code << session_->errors();
   }
   const RecordedSession recorded = session_->recorded();
   EXPECT_EQ(recorded.problem, "");
@@ -260,8 +260,8 @@ TEST_P(HungLoop, ThatDoesNotGoOnIsNamedAndGivenUp) {
   expect_given_up_by_all(*session_, GetParam());
   expect_own_word("has stood still for 1 s at step ");
   held_->let_go();
-  EXPECT_EQ(node().wait(), 4) << session_->said();
-  EXPECT_NE(node().err().find(" stood still for "), std::string::npos) << session_->said();
+  EXPECT_EQ(node().wait(), 4) << session_->errors();
+  EXPECT_NE(node().err().find(" stood still for "), std::string::npos) << session_->errors();
   const RecordedSession recorded = session_->recorded();
   EXPECT_EQ(recorded.problem, "");
   expect_named(recorded, GetParam(), node());
@@ -270,17 +270,17 @@ TEST_P(HungLoop, ThatDoesNotGoOnIsNamedAndGivenUp) {
 INSTANTIATE_TEST_SUITE_P(Roles, HungLoop, ::testing::ValuesIn(kGateRoles), role_name);
 INSTANTIATE_TEST_SUITE_P(NightlyRoles, HungLoop, ::testing::ValuesIn(kNightlyRoles), role_name);
 
-// A machine or container that is frozen and goes on. After so long the processes meet anew, and blocks of variables
-// that were on their way are nobody's any more: they are counted.
+// A machine or container that is frozen and goes on. After so long the processes discover each other again, and blocks
+// of variables in transit are lost: they are counted.
 TEST(FrozenSession, GoesOnWithTheSameBits) {
   Session session({"--pace", "real", "--duration", kDuration});
   session.start_all();
-  ASSERT_TRUE(session.observer().wait_for_step(100)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(100)) << session.errors();
   for (const Role role : kAllNodes) session.node(role).send(SIGSTOP);
   std::this_thread::sleep_for(std::chrono::seconds(rounds(4, 30)));
   for (const Role role : kAllNodes) session.node(role).send(SIGCONT);
   for (const auto& [role, code] : session.wait_all()) {
-    EXPECT_TRUE(code == 0 || (code == 3 && role == Role::recorder)) << code << "\n" << session.said();
+    EXPECT_TRUE(code == 0 || (code == 3 && role == Role::recorder)) << code << "\n" << session.errors();
   }
   RecordedSession recorded = session.recorded();
   EXPECT_EQ(recorded.problem, "");

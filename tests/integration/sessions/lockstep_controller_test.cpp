@@ -1,4 +1,4 @@
-// Loops that are closed from outside in lockstep: the same bits in every run, and what happens when a controller never
+// Loops that are closed from outside in lockstep: the same bits in every run, and the faults of a controller that never
 // comes, dies or is too late.
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using wire::Role;
 constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
 
 // two loops with delays of their own; from at rest, so that nothing but the controllers moves the machine
-// (what is too slow for controller_wait is in LockstepFault: the load of these tests is not to be)
+// (controllers too slow for controller_wait are in LockstepFault: these tests must not be)
 std::vector<std::string> lockstep_arguments(const char* pace, const char* duration) {
   return {"--pace",     pace,
           "--duration", duration,
@@ -73,8 +73,8 @@ std::unique_ptr<Program> start_controller(const Session& session, const std::str
                                    session.folder() / name);
 }
 
-std::string warnings_without_releases(const std::string& said) {
-  std::istringstream lines(said);
+std::string warnings_without_releases(const std::string& errors) {
+  std::istringstream lines(errors);
   std::string warnings;
   for (std::string line; std::getline(lines, line);) {
     const bool is_release = line.find("has released channel") != std::string::npos;
@@ -85,7 +85,7 @@ std::string warnings_without_releases(const std::string& said) {
 
 struct LoopRun {
   RecordedSession recorded;
-  std::string lift_words;  // what the lifting loop printed
+  std::string lift_words;  // output of the lifting loop
 };
 
 // One run with both loops closed by this program.
@@ -96,10 +96,10 @@ LoopRun run_loops(Session& session, const std::string& program, const Place& pla
   const auto slew = start_controller(
       session, program, "slew_loop",
       {"--variable", "Body_Pillar.position", "--channel", "Input_Slew", "--target", "-0.2", "--gain", "8"}, place);
-  EXPECT_EQ(session.wait_all(60'000'000'000), all_ok()) << session.said();
+  EXPECT_EQ(session.wait_all(60'000'000'000), all_ok()) << session.errors();
   EXPECT_TRUE(lift->wait().has_value());
-  // when a loop has reached its target it leaves: that is all that there is to say
-  EXPECT_EQ(warnings_without_releases(session.said()), "") << session.said();
+  // a loop that has reached its target leaves, with this one message
+  EXPECT_EQ(warnings_without_releases(session.errors()), "") << session.errors();
   return {session.recorded(), lift->out() + lift->err()};
 }
 
@@ -115,7 +115,7 @@ TEST_P(LockstepLoop, GivesTheSameBitsInEveryRunUnderLoadToo) {
   const LoopRun first_run = run_loops(program);
   const RecordedSession& first = first_run.recorded;
   ASSERT_EQ(first.problem, "");
-  ASSERT_EQ(first.ticks.at(0).size(), 3001u);  // and the last one, which says that it is the last
+  ASSERT_EQ(first.ticks.at(0).size(), 3001u);  // and the last one, with the END flag
   EXPECT_NE(first.ticks.at(0).at(2000).controls[0], 0) << "the slewing loop does not move";
   EXPECT_NE(first.ticks.at(0).at(300).controls[1], 0) << "the lifting loop does not move";
   EXPECT_EQ(first.ticks.at(0).at(300).age[1], 2u);
@@ -186,10 +186,10 @@ class LockstepFault : public ::testing::Test {
   }
   static void stop(Session& session) {
     EXPECT_TRUE(session.observer().request(wire::ControlAction::stop).is_accepted);
-    EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+    EXPECT_EQ(session.wait_all(), all_ok()) << session.errors();
   }
   // reasons that the recording has for a controller, in order
-  static std::vector<std::string> told(const Session& session, const std::string& controller) {
+  static std::vector<std::string> reasons_for(const Session& session, const std::string& controller) {
     std::vector<std::string> reasons;
     for (const wire::ControllerLease& lease : session.recorded().leases) {
       if (lease.controller == controller && !lease.reason.empty()) reasons.push_back(lease.reason);
@@ -206,40 +206,40 @@ TEST_F(LockstepFault, AControllerThatNeverComesEndsTheSessionByName) {
   session.start_all();
   const auto codes = session.wait_all();
   EXPECT_EQ(codes.at(Role::io), 1);
-  EXPECT_NE(session.said().find("no controller took channel Input_Lift within 2 s"), std::string::npos)
-      << session.said();
+  EXPECT_NE(session.errors().find("no controller took channel Input_Lift within 2 s"), std::string::npos)
+      << session.errors();
 }
 
 TEST_F(LockstepFault, AControllerThatIsKilledIsHeldPutToNeutralAndNamed) {
   Session session(arguments());
   session.start_all();
   const auto controller = lift_loop(session);
-  ASSERT_TRUE(session.observer().wait_for_step(700)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(700)) << session.errors();
   controller->send(SIGKILL);
   const auto is_neutral = [&] { return session.observer().tick().controls[1] == 0; };
   EXPECT_GT(session.observer().tick().controls[1], 0);
-  ASSERT_TRUE(session.observer().wait_until(is_neutral)) << session.said();
+  ASSERT_TRUE(session.observer().wait_until(is_neutral)) << session.errors();
   stop(session);
-  const std::vector<std::string> reasons = told(session, "lift_loop");
+  const std::vector<std::string> reasons = reasons_for(session, "lift_loop");
   ASSERT_EQ(reasons.size(), 2u);
   EXPECT_NE(reasons[0].find("waited 400 ms for the value of 'lift_loop' from step"), std::string::npos) << reasons[0];
   EXPECT_EQ(reasons[1], "'lift_loop' has been out of step for 500 ms: channel Input_Lift goes to neutral");
-  EXPECT_NE(session.said().find("warning: " + reasons[1]), std::string::npos) << session.said();
+  EXPECT_NE(session.errors().find("warning: " + reasons[1]), std::string::npos) << session.errors();
 }
 
 TEST_F(LockstepFault, AControllerThatStoodStillIsInStepAgain) {
   Session session(arguments());
   session.start_all();
   const auto controller = lift_loop(session);
-  ASSERT_TRUE(session.observer().wait_for_step(300)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(300)) << session.errors();
   controller->send(SIGSTOP);
   const auto is_late = [&] { return session.observer().variable("session.late_controllers").value_or(0) > 0; };
-  ASSERT_TRUE(session.observer().wait_until(is_late)) << session.said();
+  ASSERT_TRUE(session.observer().wait_until(is_late)) << session.errors();
   controller->send(SIGCONT);
   const auto is_back = [&] { return session.observer().variable("Input_Lift.loop_delay").value_or(0) == 1; };
-  ASSERT_TRUE(session.observer().wait_until(is_back)) << session.said();
+  ASSERT_TRUE(session.observer().wait_until(is_back)) << session.errors();
   stop(session);
-  const std::vector<std::string> reasons = told(session, "lift_loop");
+  const std::vector<std::string> reasons = reasons_for(session, "lift_loop");
   ASSERT_GE(reasons.size(), 2u);
   EXPECT_NE(reasons.back().find("'lift_loop' is in step from tick"), std::string::npos) << reasons.back();
 }

@@ -1,4 +1,4 @@
-// What a session shows to a network that it was not told to use: nothing.
+// A session sends nothing to a network that it is not configured to use.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,11 +17,11 @@ class Loopback : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!cable.problem().empty()) GTEST_SKIP() << "network namespaces are not possible here: " << cable.problem();
-    // every refusal is to be told, not six and then one a second
-    std::vector<std::string> tell = cable.left().command();
-    tell.insert(tell.end(), {"/bin/sh", "-c", "echo 0 > /proc/sys/net/ipv4/icmp_ratelimit"});
+    // every refusal is to be answered, not six and then one a second
+    std::vector<std::string> command_line = cable.left().command();
+    command_line.insert(command_line.end(), {"/bin/sh", "-c", "echo 0 > /proc/sys/net/ipv4/icmp_ratelimit"});
     const ScratchFolder folder;
-    Program limit(tell.front(), {tell.begin() + 1, tell.end()}, folder.path() / "limit");
+    Program limit(command_line.front(), {command_line.begin() + 1, command_line.end()}, folder.path() / "limit");
     if (limit.wait() != 0) GTEST_SKIP() << "refusals cannot be counted here: " << limit.err();
     if (!cable.count_sent()) GTEST_SKIP() << "nft cannot count here: " << cable.problem();
   }
@@ -31,7 +31,7 @@ class Loopback : public ::testing::Test {
     Session session({"--pace", "real", "--duration", "0"});
     for (const Role role : kAllNodes) session.run_under(role, cable.left().command(), more);
     session.start_all();
-    ASSERT_TRUE(session.wait_for_recorded_step()) << session.said();
+    ASSERT_TRUE(session.wait_for_recorded_step()) << session.errors();
     open_ports = 0;
     const std::uint32_t first = 7400 + 250 * session.domain() + 10;
     for (std::uint32_t port = first; port < first + 2 * kAllNodes.size(); ++port) {
@@ -39,10 +39,10 @@ class Loopback : public ::testing::Test {
     }
     session.node(Role::io).send(SIGINT);
     for (const auto& [role, code] : session.wait_all()) {
-      EXPECT_TRUE(code == 130 || (code == 0 && role != Role::io)) << code << session.said();
+      EXPECT_TRUE(code == 130 || (code == 0 && role != Role::io)) << code << session.errors();
     }
   }
-  // A datagram to a port that no socket hears is answered so that the next one fails.
+  // A datagram to a closed port is answered so that the next one fails.
   bool is_open(std::uint32_t port) {
     std::vector<std::string> command = cable.right().command();
     const std::string script = fmt::format(
@@ -74,7 +74,7 @@ TEST_F(Loopback, IsNotLeftWithoutKeysByMistake) {
   session.run_under(Role::io, cable.left().command(), {"--interface", cable.left().interface});
   Program& io = session.start(Role::io);
   EXPECT_EQ(io.wait(), 2);
-  EXPECT_NE(io.err().find("say --insecure-lan"), std::string::npos) << io.err();
+  EXPECT_NE(io.err().find("add --insecure-lan"), std::string::npos) << io.err();
   EXPECT_EQ(cable.sent(), 0u);
 }
 

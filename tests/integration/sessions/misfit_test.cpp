@@ -1,4 +1,4 @@
-// What the nodes themselves say of a program that takes part in their session in the wrong way.
+// The nodes' messages about a program that takes part in their session in the wrong way.
 #include <dds/dds.h>
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ class Endpoint {
       : what_(what),
         type_(type),
         name_(name),
-        told_(std::string(what == What::writer ? "writes" : "reads") + " topic '" + name + "' with " + problem +
-              (what == What::writer ? "; it is not heard" : "; it hears nothing")),
+        sentence_(std::string(what == What::writer ? "writes" : "reads") + " topic '" + name + "' with " + problem +
+                  (what == What::writer ? "; it is ignored" : "; it receives nothing")),
         qos_(dds_create_qos()) {
     dds_qset_reliability(qos_, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
     dds_qset_partition1(qos_, "slewring/s");
@@ -48,13 +48,13 @@ class Endpoint {
               0);
   }
   [[nodiscard]] dds_qos_t* qos() noexcept { return qos_; }
-  [[nodiscard]] const std::string& told() const noexcept { return told_; }
+  [[nodiscard]] const std::string& sentence() const noexcept { return sentence_; }
 
  private:
   What what_;
   dds_topic_descriptor_t type_;
   std::string name_;
-  std::string told_;
+  std::string sentence_;
   dds_qos_t* qos_;
   dds_entity_t participant_ = 0;
 };
@@ -65,7 +65,7 @@ TEST(Misfits, AreNamedByIoAtItsSecondLookAtTheLatest) {
   dds_topic_descriptor_t other_fields = slewring_ControlReply_desc;
   other_fields.m_typename = "slewring::ControllerInput";
   Endpoint best_effort(What::writer, slewring_ControllerInput_desc, input,
-                       "reliability best effort, and reliable is asked for");
+                       "reliability best effort, and the reader requests reliable");
   dds_qset_reliability(best_effort.qos(), DDS_RELIABILITY_BEST_EFFORT, 0);
   Endpoint outside(What::writer, slewring_ControllerInput_desc, input, "partition '', where 'slewring/s' is expected");
   dds_qset_partition(outside.qos(), 0, nullptr);
@@ -74,28 +74,28 @@ TEST(Misfits, AreNamedByIoAtItsSecondLookAtTheLatest) {
   Endpoint other_layout(What::writer, other_fields, input,
                         "type slewring::ControllerInput of another layout (built from another idl/slewring.idl)");
   Endpoint durable_reader(What::reader, slewring_Tick_desc, "slewring/tick",
-                          "a durability above the one that is offered (volatile)");
+                          "a durability above the one the writer offers (volatile)");
   dds_qset_durability(durable_reader.qos(), DDS_DURABILITY_TRANSIENT_LOCAL);
 
   Session session({"--pace", "real", "--duration", "0", "--no-record"});
   for (const wire::Role role : {wire::Role::io, wire::Role::mechanics, wire::Role::hydraulics}) session.start(role);
   Observer& observer = session.observer();
-  ASSERT_TRUE(observer.wait_for_step(10)) << session.said();
+  ASSERT_TRUE(observer.wait_for_step(10)) << session.errors();
   const std::uint64_t before = observer.healths(wire::Role::io);
   const auto endpoints = {&best_effort, &outside, &other_type, &other_layout, &durable_reader};
   for (Endpoint* endpoint : endpoints) ASSERT_NO_FATAL_FAILURE(endpoint->create(session.domain()));
   const auto is_named = [&](const Endpoint* endpoint) {
-    return session.node(wire::Role::io).err().find(endpoint->told()) != std::string::npos;
+    return session.node(wire::Role::io).err().find(endpoint->sentence()) != std::string::npos;
   };
   const auto has_looked_twice = [&] { return observer.healths(wire::Role::io) > before + kHealthsUntilNamed; };
   ASSERT_TRUE(observer.wait_until([&] {
     return has_looked_twice() || std::all_of(endpoints.begin(), endpoints.end(), is_named);
-  })) << session.said();
+  })) << session.errors();
   for (const Endpoint* endpoint : endpoints) {
-    EXPECT_TRUE(is_named(endpoint)) << endpoint->told() << "\n" << session.said();
+    EXPECT_TRUE(is_named(endpoint)) << endpoint->sentence() << "\n" << session.errors();
   }
   EXPECT_TRUE(observer.request(wire::ControlAction::stop).is_accepted);
-  for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 0) << session.said();
+  for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 0) << session.errors();
 }
 
 }  // namespace misfit_test

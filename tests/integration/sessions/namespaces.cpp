@@ -104,8 +104,8 @@ std::uint64_t NamespacePair::counted(const Side& side, const std::string& table)
   const ScratchFolder folder;
   Program program(kIp, {"netns", "exec", side.name, kNft, "list", "table", "ip", table}, folder.path() / "nft");
   if (program.wait() != 0) throw std::runtime_error("nft: " + program.err());
-  const std::string said = program.out();
-  return std::stoull(said.substr(said.find("packets ") + 8));
+  const std::string output = program.out();
+  return std::stoull(output.substr(output.find("packets ") + 8));
 }
 
 bool NamespacePair::filter(const Side& side, const std::vector<std::string>& arguments) {

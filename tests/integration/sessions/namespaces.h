@@ -14,7 +14,8 @@ namespace slew::testing {
 
 class NamespacePair {
  public:
-  // Makes both, or leaves problem() with the reason why that is not possible here. Removes what killed tests left.
+  // Makes both, or leaves problem() with the reason why that is not possible here. Removes the leftovers of killed
+  // tests.
   NamespacePair();
   ~NamespacePair();
   NamespacePair(const NamespacePair&) = delete;
@@ -23,7 +24,7 @@ class NamespacePair {
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
   struct Side {
-    std::string name;       // of the namespace
+    std::string name;       // name of the namespace
     std::string interface;  // its end of the cable
     std::string address;
     // in front of a program that is to run there
@@ -38,9 +39,9 @@ class NamespacePair {
   [[nodiscard]] bool lose(int percent);
   enum class Datagrams : std::uint8_t {
     all,
-    data,  // those to the odd ports: by the others the sides still discover each other (RTPS 2.5, 9.6.2)
+    data,  // datagrams to the odd ports: over the others the sides still discover each other (RTPS 2.5, 9.6.2)
   };
-  // From now on this side hears nothing of the other. False where that is not possible.
+  // From now on this side receives nothing from the other. False where that is not possible.
   [[nodiscard]] bool deafen(const Side& side, Datagrams which = Datagrams::all);
   // Datagrams that a side has lost since lose() or deafen().
   [[nodiscard]] std::uint64_t lost(const Side& side);
@@ -59,7 +60,7 @@ class NamespacePair {
   Side left_, right_;
 };
 
-// These nodes on the left side, the others on the right, with the options that two_machines.md tells the user.
+// These nodes on the left side, the others on the right, with the options of two_machines.md.
 void distribute(Session& session, const NamespacePair& cable,
                 std::initializer_list<wire::Role> on_left = {wire::Role::mechanics, wire::Role::recorder});
 

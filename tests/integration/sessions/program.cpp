@@ -45,8 +45,8 @@ Program::Program(const std::filesystem::path& path, const std::vector<std::strin
   pid_ = fork();
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    // a shell's background job ignores them, and so would what it starts
-    for (const int asked : {SIGINT, SIGHUP, SIGTERM}) signal(asked, SIG_DFL);
+    // a shell's background job ignores them, and so would its child processes
+    for (const int ignored : {SIGINT, SIGHUP, SIGTERM}) signal(ignored, SIG_DFL);
     setpgid(0, 0);
     dup2(out, STDOUT_FILENO);
     dup2(err, STDERR_FILENO);

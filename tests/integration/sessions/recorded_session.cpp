@@ -22,7 +22,7 @@ HashChain& epoch_of(RecordedSession& session, const wire::Header& header) {
   return session.epochs[header.epoch];
 }
 
-// names by role and index, as the directories tell them
+// names by role and index, from the directories
 using VariableNames = std::map<std::pair<wire::Role, std::size_t>, std::string>;
 
 void take_variables(RecordedSession& session, VariableNames& names, const recording::RecordedMessage& recorded) {
@@ -98,8 +98,8 @@ std::int64_t RecordedSession::last_word_before(wire::Role role, std::int64_t tim
   std::int64_t last = 0;
   const auto words = word_ns.find(role);
   if (words == word_ns.end()) return last;
-  for (const std::int64_t said : words->second) {
-    if (said < time_ns) last = std::max(last, said);
+  for (const std::int64_t sent_ns : words->second) {
+    if (sent_ns < time_ns) last = std::max(last, sent_ns);
   }
   return last;
 }

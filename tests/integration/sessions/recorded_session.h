@@ -1,4 +1,4 @@
-// What a test wants to know of a recording: the hash of every state by epoch and step, what the nodes said, losses.
+// A recording's contents for tests: the hash of every state by epoch and step, the nodes' statuses, losses.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace slew::testing {
 
-// State hashes at t_step; io's is of the tick of that step. 0: there is none.
+// State hashes at t_step; io's belongs to the tick of that step. 0: there is none.
 struct StepHashes {
   std::uint64_t io = 0;
   std::uint64_t mechanics = 0;
@@ -24,7 +24,7 @@ struct StepHashes {
 using HashChain = std::map<StepIndex, StepHashes>;
 
 // A NodeStatus with the wall time at which it was sent.
-struct SaidStatus {
+struct PublishedStatus {
   wire::NodeStatus status;
   std::int64_t sent_ns = 0;
 };
@@ -34,17 +34,17 @@ struct RecordedSession {
   std::vector<std::map<StepIndex, wire::Tick>> ticks;  // by epoch
   std::vector<wire::MechanismMessage> mechanisms;      // running samples in the order of the file
   std::vector<wire::ActuatorMessage> actuators;        // likewise
-  std::vector<SaidStatus> statuses;
+  std::vector<PublishedStatus> statuses;
   std::vector<wire::ControlReply> replies;
   std::vector<wire::ControllerLease> leases;
-  std::map<std::string, std::string> summary;  // what the recorder counted
+  std::map<std::string, std::string> summary;  // counts of the recorder
   std::map<std::string, double> largest;       // value of each variable
   std::string problem;                         // why the file is not valid; empty: every byte is as it was written
   bool has_all_messages = false;               // closed in order
 
-  std::map<wire::Role, std::vector<std::int64_t>> word_ns;  // wall times at which each role said anything
+  std::map<wire::Role, std::vector<std::int64_t>> word_ns;  // wall times at which each role published
 
-  // When the role said its last word before a wall time; 0: it had said nothing.
+  // Time of the role's last message before a wall time; 0: there was none.
   [[nodiscard]] std::int64_t last_word_before(wire::Role role, std::int64_t time_ns) const;
   [[nodiscard]] const HashChain& chain() const { return epochs.at(0); }
   // Sum of all "<topic>.lost" of the summary; -1 without a summary.

@@ -46,7 +46,7 @@ bool holds_a_place(Observer& observer, Role role, std::size_t times = 1) {
 }
 
 void expect_undisturbed_bits(Session& session, StepIndex steps = kSteps) {
-  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.errors();
   const RecordedSession recorded = session.recorded();
   EXPECT_EQ(recorded.problem, "");
   EXPECT_EQ(recorded.losses(), 0);
@@ -69,16 +69,16 @@ TEST_P(KilledAndReplaced, InMidMotionTheSessionGoesOnToTheSameBits) {
     Session session(places_held("real"));
     Observer& observer = session.observer();
     session.start_all();
-    ASSERT_TRUE(observer.wait_for_step(200 + static_cast<StepIndex>(random() % 1000))) << session.said();
+    ASSERT_TRUE(observer.wait_for_step(200 + static_cast<StepIndex>(random() % 1000))) << session.errors();
     session.node(GetParam()).send(SIGKILL);
-    ASSERT_TRUE(holds_a_place(observer, GetParam())) << session.said();
+    ASSERT_TRUE(holds_a_place(observer, GetParam())) << session.errors();
     const auto& io = observer.status(Role::io);
     EXPECT_TRUE(observer.wait_until([&] {
       return io->state == NodeState::holding && io->reason.find("its place is held for 20 s") != std::string::npos;
     })) << io->reason;
     session.start(GetParam());
     expect_undisturbed_bits(session);
-    EXPECT_NE(session.node(Role::io).err().find("goes on in the place of"), std::string::npos) << session.said();
+    EXPECT_NE(session.node(Role::io).err().find("goes on in the place of"), std::string::npos) << session.errors();
   }
 }
 
@@ -87,18 +87,18 @@ TEST_P(KilledAndReplaced, TwiceInFreePace) {
   Session session(places_held("free", "16s"));
   Observer& observer = session.observer();
   session.start_all();
-  ASSERT_TRUE(observer.wait_for_step(100)) << session.said();
+  ASSERT_TRUE(observer.wait_for_step(100)) << session.errors();
   session.node(GetParam()).send(SIGKILL);
-  ASSERT_TRUE(holds_a_place(observer, GetParam())) << session.said();
+  ASSERT_TRUE(holds_a_place(observer, GetParam())) << session.errors();
   session.start(GetParam());
   // as soon as it has begun to compute
   ASSERT_TRUE(observer.wait_until([&] {
     const auto& status = observer.status(GetParam());
     return status && status->pid == static_cast<std::uint32_t>(session.node(GetParam()).pid()) &&
            status->state >= NodeState::ready;
-  })) << session.said();
+  })) << session.errors();
   session.node(GetParam()).send(SIGKILL);
-  ASSERT_TRUE(holds_a_place(observer, GetParam(), 2)) << session.said();
+  ASSERT_TRUE(holds_a_place(observer, GetParam(), 2)) << session.errors();
   session.start(GetParam());
   expect_undisturbed_bits(session, 16000);
 }
@@ -106,14 +106,14 @@ TEST_P(KilledAndReplaced, TwiceInFreePace) {
 INSTANTIATE_TEST_SUITE_P(Roles, KilledAndReplaced, ::testing::Values(Role::mechanics), role_name);
 INSTANTIATE_TEST_SUITE_P(NightlyRoles, KilledAndReplaced, ::testing::Values(Role::hydraulics), role_name);
 
-TEST(Replaced, AStoppedProcessThatWakesUpIsToldThatItsRoleWasGivenAway) {
+TEST(Replaced, AStoppedProcessThatWakesUpReportsThatItsRoleWasGivenAway) {
   Session session(places_held("real"));
   Observer& observer = session.observer();
   session.start_all();
-  ASSERT_TRUE(observer.wait_for_step(300)) << session.said();
+  ASSERT_TRUE(observer.wait_for_step(300)) << session.errors();
   Program& first = session.node(Role::hydraulics);
   first.send(SIGSTOP);
-  ASSERT_TRUE(holds_a_place(observer, Role::hydraulics)) << session.said();
+  ASSERT_TRUE(holds_a_place(observer, Role::hydraulics)) << session.errors();
   Program& second = session.start(Role::hydraulics, {}, "_second");
   ASSERT_TRUE(observer.wait_until([&] {
     const auto& status = observer.status(Role::hydraulics);
@@ -127,17 +127,17 @@ TEST(Replaced, AStoppedProcessThatWakesUpIsToldThatItsRoleWasGivenAway) {
   EXPECT_EQ(first_difference(session.recorded().chain(), undisturbed()), "");
 }
 
-TEST(Replaced, NobodyComesInTimeTheSessionEndsWithCode4) {
+TEST(Replaced, WithoutAReplacementInTimeTheSessionEndsWithCode4) {
   Session session({"--pace", "real", "--duration", "20s", "--set", "session.rejoin=1s"});
   Observer& observer = session.observer();
   session.start_all();
-  ASSERT_TRUE(observer.wait_for_step(300)) << session.said();
+  ASSERT_TRUE(observer.wait_for_step(300)) << session.errors();
   session.node(Role::mechanics).send(SIGKILL);
   for (const Role role : {Role::io, Role::hydraulics, Role::recorder}) {
-    EXPECT_EQ(session.node(role).wait(), 4) << session.said();
+    EXPECT_EQ(session.node(role).wait(), 4) << session.errors();
   }
   EXPECT_NE(session.node(Role::io).err().find("no other process took its place within 1 s"), std::string::npos)
-      << session.said();
+      << session.errors();
   EXPECT_EQ(session.recorded().problem, "");
 }
 
@@ -145,10 +145,10 @@ TEST(Replaced, AKilledIoOrRecorderEndsTheSessionAsWithout) {
   for (const Role role : {Role::io, Role::recorder}) {
     Session session({"--pace", "real", "--duration", "20s", "--set", "session.rejoin=20s"});
     session.start_all();
-    ASSERT_TRUE(session.observer().wait_for_step(300)) << session.said();
+    ASSERT_TRUE(session.observer().wait_for_step(300)) << session.errors();
     session.node(role).send(SIGKILL);
     for (const auto& [other, code] : session.wait_all()) {
-      EXPECT_EQ(code, other == role ? -SIGKILL : 4) << node::to_text(other) << session.said();
+      EXPECT_EQ(code, other == role ? -SIGKILL : 4) << node::to_text(other) << session.errors();
     }
   }
 }
@@ -174,13 +174,13 @@ class ReplacedFlex : public ::testing::TestWithParam<FlexLoss> {
     session.start(Role::io);
     session.start(Role::recorder);
     for (const Role role : wire::kPhysicsRoles) session.start(role, files_);
-    EXPECT_TRUE(observer.wait_for_step(300)) << session.said();
+    EXPECT_TRUE(observer.wait_for_step(300)) << session.errors();
     for (const Role role : lost) session.node(role).send(SIGKILL);
     for (const Role role : lost) {
-      EXPECT_TRUE(holds_a_place(observer, role)) << session.said();
+      EXPECT_TRUE(holds_a_place(observer, role)) << session.errors();
       session.start(role, files_);
     }
-    for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 0) << node::to_text(role) << session.said();
+    for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 0) << node::to_text(role) << session.errors();
     RecordedSession recorded = session.recorded();
     EXPECT_EQ(recorded.problem, "");
     if (lost.empty()) return recorded;
@@ -214,7 +214,7 @@ INSTANTIATE_TEST_SUITE_P(NightlyLosses, ReplacedFlex,
 
 class RunWithRejoin : public ::testing::Test {
  protected:
-  // of a session in mid-motion
+  // waits for the role in a session in mid-motion
   void wait_for(Role role) {
     ASSERT_TRUE(observer_.wait_for_step(300)) << run_.out() << run_.err();
     ASSERT_TRUE(observer_.wait_until([&] { return observer_.status(role).has_value(); }));
@@ -224,7 +224,7 @@ class RunWithRejoin : public ::testing::Test {
     wait_for(role);
     if (!HasFatalFailure()) kill(pid_of(role), signal);
   }
-  // a node is started again, and what it goes on with is as if nothing had been
+  // a restarted node continues with the undisturbed bits
   void expect_one_restart_and_undisturbed_bits() {
     EXPECT_EQ(run_.wait(), 0) << run_.out() << run_.err();
     EXPECT_NE(run_.err().find("it is started again with the state of its last checkpoint (1 of 3)"), std::string::npos)
@@ -278,13 +278,13 @@ TEST(Replaced, BothPartnersOfAnExchangeAtEveryThirdStep) {
       {"--pace", "real", "--duration", kDuration, "--set", "session.rejoin=20s", "--set", "session.exchange_every=3"});
   Observer& observer = session.observer();
   session.start_all();
-  ASSERT_TRUE(observer.wait_for_step(600)) << session.said();
+  ASSERT_TRUE(observer.wait_for_step(600)) << session.errors();
   for (const Role role : {Role::mechanics, Role::hydraulics}) session.node(role).send(SIGKILL);
   for (const Role role : {Role::mechanics, Role::hydraulics}) {
-    ASSERT_TRUE(holds_a_place(observer, role)) << session.said();
+    ASSERT_TRUE(holds_a_place(observer, role)) << session.errors();
     session.start(role);
   }
-  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.errors();
   Program verify(program_path("slewring"), {"replay", only_recording(session.runs()).string(), "--verify"},
                  session.folder() / "replay");
   EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();

@@ -15,7 +15,7 @@ namespace {
 using wire::Role;
 using wire::Topic;
 
-constexpr std::int64_t kAskAgainNs = 500'000'000;
+constexpr std::int64_t kRequestIntervalNs = 500'000'000;
 
 }  // namespace
 
@@ -143,10 +143,10 @@ wire::ControlReply Observer::request(wire::ControlAction action, double value, c
   request.value = value;
   request.path = path;
   request.over_ns = over_ns;
-  // the writer may not be known to io yet; an unanswered question is asked again
+  // io may not have discovered the writer yet; an unanswered request is repeated
   for (int attempt = 0; attempt < 20; ++attempt) {
-    say(Topic::control_request, request);
-    if (wait_until([&] { return replies_.count(request.request) != 0; }, kAskAgainNs)) {
+    publish(Topic::control_request, request);
+    if (wait_until([&] { return replies_.count(request.request) != 0; }, kRequestIntervalNs)) {
       return replies_.at(request.request);
     }
   }
@@ -154,7 +154,7 @@ wire::ControlReply Observer::request(wire::ControlAction action, double value, c
 }
 
 void Observer::send(const wire::ControllerInput& input) {
-  say(Topic::controller_input, input);
+  publish(Topic::controller_input, input);
 }
 
 wire::ControllerLease Observer::acquire(const std::string& controller, const std::string& channel) {
@@ -165,7 +165,7 @@ wire::ControllerLease Observer::acquire(const std::string& controller, const std
       return lease.controller == controller && lease.channel == channel;
     };
     const auto answered = [&] { return std::any_of(leases_.begin(), leases_.end(), is_answer); };
-    if (wait_until(answered, kAskAgainNs)) return *std::find_if(leases_.begin(), leases_.end(), is_answer);
+    if (wait_until(answered, kRequestIntervalNs)) return *std::find_if(leases_.begin(), leases_.end(), is_answer);
   }
   throw std::runtime_error("io does not answer a controller");
 }
@@ -189,8 +189,8 @@ Program& Session::start(Role role, const std::vector<std::string>& more, const s
   all.insert(all.end(), more.begin(), more.end());
   const std::string name(node::to_text(role));
   std::filesystem::path path = program_path(name + "_node");
-  if (const auto around = surroundings_.find(role); around != surroundings_.end()) {
-    const Surroundings& s = around->second;
+  if (const auto around = prefixes_.find(role); around != prefixes_.end()) {
+    const CommandPrefix& s = around->second;
     all.insert(all.end(), s.more.begin(), s.more.end());
     all.insert(all.begin(), path.string());
     all.insert(all.begin(), s.command.begin() + 1, s.command.end());
@@ -206,7 +206,7 @@ Program& Session::start(Role role, const std::vector<std::string>& more, const s
 }
 
 void Session::run_under(Role role, std::vector<std::string> command, std::vector<std::string> more) {
-  surroundings_[role] = {std::move(command), std::move(more)};
+  prefixes_[role] = {std::move(command), std::move(more)};
 }
 
 void Session::start_all() {
@@ -238,7 +238,7 @@ bool Session::wait_for_recorded_step() {
   return is_there;
 }
 
-std::string Session::said() const {
+std::string Session::errors() const {
   std::string text;
   for (const auto& [role, program] : nodes_) text += std::string(node::to_text(role)) + ": " + program->err() + "\n";
   return text;

@@ -1,4 +1,5 @@
-// A session of real node processes on a DDS domain of its own, and an observer inside the test that hears everything.
+// A session of real node processes on a DDS domain of its own, and an observer inside the test that receives all
+// topics.
 #pragma once
 
 #include <array>
@@ -23,12 +24,12 @@
 
 namespace slew::testing {
 
-// Hears every topic of a session, and can publish what a cli or a controller publishes.
+// Receives every topic of a session, and can publish the messages of a cli or a controller.
 class Observer {
  public:
   Observer(std::uint32_t domain, const std::string& session);
 
-  // Takes what comes until the condition holds; false when it does not within the time.
+  // Takes messages until the condition holds; false when it does not within the time.
   [[nodiscard]] bool wait_until(const std::function<bool()>& condition, std::int64_t longest_ns = kSoonNs);
   // The tick of this step of the present epoch, or a later one, has been seen.
   [[nodiscard]] bool wait_for_step(StepIndex step);
@@ -42,15 +43,15 @@ class Observer {
   [[nodiscard]] wire::ControlReply request(wire::ControlAction action, double value = 0, const std::string& path = "",
                                            std::int64_t over_ns = -1);
   void send(const wire::ControllerInput& input);
-  // Speaks for somebody else.
+  // Publishes in the name of another process.
   template <typename Message>
-  void say(wire::Topic topic, const Message& message) {
+  void publish(wire::Topic topic, const Message& message) {
     if (!transport::encode(message, buffer_)) throw std::runtime_error("a message cannot be encoded");
     if (const Status sent = transport_->publish(topic, buffer_); !sent.is_ok()) throw std::runtime_error(sent.text);
   }
-  // What io has said to controllers since the last acquire().
+  // Leases that io has published since the last acquire().
   [[nodiscard]] const std::vector<wire::ControllerLease>& leases() const noexcept { return leases_; }
-  // Asks for a channel until it is answered.
+  // Requests a channel until it is answered.
   [[nodiscard]] wire::ControllerLease acquire(const std::string& controller, const std::string& channel);
 
   [[nodiscard]] StepIndex step() const noexcept { return step_; }
@@ -102,7 +103,7 @@ inline constexpr std::array<wire::Role, 4> kAllNodes = {wire::Role::io, wire::Ro
 
 class Session {
  public:
-  // io: io_node's arguments after --session and --domain, "--pace", "free", ... the scene is truck_crane unless said.
+  // io: io_node's arguments after --session and --domain, "--pace", "free", ...; scene: truck_crane by default.
   explicit Session(std::vector<std::string> io_arguments = {},
                    std::string scene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml");
 
@@ -116,11 +117,11 @@ class Session {
 
   // Waits for the end of every node; its exit codes. -1000: it still ran.
   [[nodiscard]] std::map<wire::Role, int> wait_all(std::int64_t longest_ns = kSoonNs);
-  // Waits for a step in the recording, which grows every second: for sessions in namespaces, which nobody outside
-  // hears. False when io ends before there is one.
+  // Waits for a step in the recording, which grows every second: for sessions in namespaces, which no process outside
+  // receives. False when io ends before there is one.
   [[nodiscard]] bool wait_for_recorded_step();
   // Everything the nodes wrote to standard error, for messages of failed expectations.
-  [[nodiscard]] std::string said() const;
+  [[nodiscard]] std::string errors() const;
 
   [[nodiscard]] Observer& observer();
   [[nodiscard]] RecordedSession recorded() const { return read_session(runs()); }
@@ -136,11 +137,11 @@ class Session {
   std::string name_ = "s";
   std::vector<std::string> io_arguments_;
   std::string scene_;
-  struct Surroundings {
+  struct CommandPrefix {
     std::vector<std::string> command;
     std::vector<std::string> more;
   };
-  std::map<wire::Role, Surroundings> surroundings_;
+  std::map<wire::Role, CommandPrefix> prefixes_;
   std::unique_ptr<Observer> observer_;
   std::map<wire::Role, std::unique_ptr<Program>> nodes_;
   std::vector<std::unique_ptr<Program>> copies_;

@@ -17,7 +17,7 @@ namespace {
 using slew::testing::ClockShift;
 
 constexpr std::int64_t kNs = 1'000'000'000;
-constexpr std::int64_t kLookAgainNs = 5'000'000;  // how late a sleeper may learn that the clock has jumped
+constexpr std::int64_t kLookAgainNs = 5'000'000;  // longest delay after which a sleeper sees a jump of the clock
 
 ClockShift* the_shift() {
   static ClockShift* const shift = [] {

@@ -1,4 +1,4 @@
-// Programs that cannot take part in a session: nothing is started, and they say why and what to do.
+// Programs that cannot take part in a session: nothing is started; the message has the cause and the remedy.
 #include <gtest/gtest.h>
 
 #include <netinet/in.h>
@@ -19,7 +19,7 @@ TEST(Start, ANodeThatTheSceneDoesNotNeedLeaves) {
   Program& flex = session.start(Role::flex);
   EXPECT_EQ(flex.wait(), 2);
   EXPECT_NE(flex.err().find("needs no flex node; nothing to do here"), std::string::npos) << flex.err();
-  EXPECT_TRUE(session.node(Role::io).is_running()) << session.said();
+  EXPECT_TRUE(session.node(Role::io).is_running()) << session.errors();
 }
 
 TEST(Start, AnInterfaceThatIsNotThereIsNamedBesideThoseThatAre) {
@@ -65,7 +65,7 @@ TEST(Start, AStateThatCannotBeIsRefusedNamingWhatToChange) {
   }
 }
 
-// UDP ports of this host that nobody else can have.
+// UDP ports of this host that no other program can have.
 class TakenPorts {
  public:
   TakenPorts(std::uint32_t first, std::uint32_t count) {
@@ -90,7 +90,7 @@ class TakenPorts {
   std::vector<int> files_;
 };
 
-TEST(Start, WithoutAPlaceInTheDomainSaysHowManyThereAre) {
+TEST(Start, WithoutAPlaceInTheDomainReportsTheNumberOfPlaces) {
   Session session;
   // two for each process, see RTPS 2.5, 9.6.2
   const TakenPorts taken(7400 + 250 * session.domain() + 10, 2 * 61);
@@ -116,7 +116,7 @@ TEST(Start, ARecorderThatCannotWriteEndsTheSessionBeforeItBegins) {
   EXPECT_EQ(recorder.wait(), 6);
   EXPECT_NE(recorder.err().find("/proc/slewring"), std::string::npos) << recorder.err();
   EXPECT_NE(recorder.err().find("--out"), std::string::npos) << recorder.err();
-  for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 6) << session.said();
+  for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 6) << session.errors();
 }
 
 }  // namespace start_test

@@ -28,7 +28,7 @@ TEST_F(TwoMachines, GiveTheSameBitsAsOneProcess) {
   Session session({"--pace", "free", "--duration", "1.6s"});
   distribute(session, cable);
   session.start_all();
-  ASSERT_EQ(session.wait_all(), all_ok()) << session.said();
+  ASSERT_EQ(session.wait_all(), all_ok()) << session.errors();
   const RecordedSession recorded = session.recorded();
   EXPECT_EQ(recorded.problem, "");
   EXPECT_EQ(recorded.losses(), 0);
@@ -41,12 +41,12 @@ TEST_F(TwoMachines, WhoseCableBreaksNameEachOtherAndEndWithCode4) {
   Session session({"--pace", "real", "--duration", "20s"});
   distribute(session, cable);
   session.start_all();
-  ASSERT_TRUE(session.wait_for_recorded_step()) << session.said();
+  ASSERT_TRUE(session.wait_for_recorded_step()) << session.errors();
   cable.unplug();
   for (const auto& [role, code] : session.wait_all())
-    EXPECT_EQ(code, 4) << node::to_text(role) << "\n" << session.said();
-  EXPECT_NE(session.node(Role::io).err().find(" is gone"), std::string::npos) << session.said();
-  EXPECT_NE(session.node(Role::mechanics).err().find(" is gone"), std::string::npos) << session.said();
+    EXPECT_EQ(code, 4) << node::to_text(role) << "\n" << session.errors();
+  EXPECT_NE(session.node(Role::io).err().find(" is gone"), std::string::npos) << session.errors();
+  EXPECT_NE(session.node(Role::mechanics).err().find(" is gone"), std::string::npos) << session.errors();
   const RecordedSession recorded = session.recorded();
   EXPECT_EQ(recorded.problem, "");
   EXPECT_GT(recorded.last_complete_step(), 0);

@@ -1,4 +1,4 @@
-// What the design promises in wall time. Any other load counts against it: judged alone on the machine, by `--nightly`.
+// Promises of the design in wall time. Any other load counts against it: judged alone on the machine, by `--nightly`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,15 +24,16 @@ TEST_P(NightlyWallTime, AKilledNodeIsNamedWithinHalfASecond) {
   for (const char* pace : {"real", "free"}) {
     Session session({"--pace", pace, "--duration", "100s"});
     session.start_all();
-    ASSERT_TRUE(session.observer().wait_for_step(300)) << session.said();
+    ASSERT_TRUE(session.observer().wait_for_step(300)) << session.errors();
     session.node(GetParam()).send(SIGKILL);
     static_cast<void>(session.wait_all());
     const RecordedSession recorded = session.recorded();
     std::int64_t named_ns = INT64_MAX;
-    for (const SaidStatus& said : recorded.statuses) {
-      if (said.status.reason.find("is gone") != std::string::npos) named_ns = std::min(named_ns, said.sent_ns);
+    for (const PublishedStatus& published : recorded.statuses) {
+      if (published.status.reason.find("is gone") != std::string::npos)
+        named_ns = std::min(named_ns, published.sent_ns);
     }
-    ASSERT_NE(named_ns, INT64_MAX) << session.said();
+    ASSERT_NE(named_ns, INT64_MAX) << session.errors();
     EXPECT_LT(named_ns - recorded.last_word_before(GetParam(), named_ns), kNamedWithinNs) << pace;
   }
 }

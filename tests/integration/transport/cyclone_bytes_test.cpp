@@ -96,7 +96,7 @@ TYPED_TEST(BytesOf, ArriveFieldByFieldInTheGeneratedTypeAndComeBackTheSame) {
   }
 }
 
-// what one refuses and the other takes would be a hole in the contract
+// a difference between the two decoders would be a hole in the contract
 TYPED_TEST(BytesOf, WhatWeAcceptCycloneAcceptsToo) {
   using Message = typename TypeParam::Message;
   const Serialiser<TypeParam> cyclone;

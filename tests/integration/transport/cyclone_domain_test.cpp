@@ -1,4 +1,4 @@
-// What a domain does to the program that opens it.
+// Effects of a domain on the program that opens it.
 #include "transport/cyclone/cyclone_domain.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ int socket_on(std::uint16_t port) {
   return -1;
 }
 
-TEST(CycloneSockets, OfTheDomainHearLoopbackAloneAndThoseOfTheProgramAreLeftAlone) {
+TEST(CycloneSockets, OfTheDomainReceiveFromLoopbackAloneAndThoseOfTheProgramAreLeftAlone) {
   const testing::TestDomain number;
   const auto first_port = static_cast<std::uint16_t>(7400 + 250 * number.number());
   // one anywhere, one among the ports of the domain
@@ -71,7 +71,7 @@ TEST(CycloneSockets, OfTheDomainHearLoopbackAloneAndThoseOfTheProgramAreLeftAlon
   }
 }
 
-TEST(CycloneMessages, OfWhoCannotBeMatchedYetNothingIsSaid) {
+TEST(CycloneMessages, AreSilentAboutAnEndpointThatCannotBeMatchedYet) {
   CycloneLog log;
   const auto write = [&](const std::string& line) { log.write(line.data(), line.size()); };
   ::testing::internal::CaptureStderr();

@@ -1,4 +1,4 @@
-// Programs that know only idl/slewring.idl and Cyclone, in a process of their own, against the transport.
+// Programs that depend only on idl/slewring.idl and Cyclone, in a process of their own, against the transport.
 #include <dds/dds.h>
 #include <gtest/gtest.h>
 
@@ -75,7 +75,7 @@ bool has_reader(dds_entity_t writer) {
   return dds_get_publication_matched_status(writer, &status) == DDS_RETCODE_OK && status.current_count > 0;
 }
 
-// other program: says ready, then reads typed messages and compares every field
+// other program: reports ready, then reads typed messages and compares every field
 bool read_typed_mechanism_messages(std::uint32_t domain) {
   const TypedProgram program(domain);
   const dds_entity_t reader = program.reader(slewring_MechanismMessage_desc, "slewring/mechanism");
@@ -117,7 +117,7 @@ TEST(CycloneInterop, ATypedReaderOfAnotherProgramReadsEveryFieldOfWhatWeSend) {
   EXPECT_EQ(program.wait(), 0);
 }
 
-// other program: writes typed messages once it knows the reader
+// other program: writes typed messages once it has discovered the reader
 bool write_typed_inputs(std::uint32_t domain) {
   const TypedProgram program(domain);
   const dds_entity_t writer = program.writer(slewring_ControllerInput_desc, "slewring/controller_input");
@@ -163,7 +163,7 @@ TEST(CycloneInterop, WeReadWhatATypedWriterOfAnotherProgramSends) {
   }
   EXPECT_EQ(transport->discovered_writers(Topic::controller_input),
             std::vector<std::string>{"a program that is not of Slewring, type slewring::ControllerInput"});
-  // that the other program knows this writer does not say that this one knows its reader
+  // the two sides discover each other independently
   ASSERT_TRUE(eventually([&] { return transport->matched_readers(Topic::tick) == 1; }));
   ByteBuffer bytes;
   ASSERT_TRUE(encode(wire::Tick{}, bytes));
@@ -203,14 +203,14 @@ bool take_part_wrongly(std::uint32_t domain) {
   TypedProgram program(domain);
   const dds_entity_t fits = program.writer(slewring_ActuatorMessage_desc, "slewring/actuators");
   static_cast<void>(program.writer(slewring_NodeStatus_desc, "slewring/tick"));
-  // reliable, but volatile where what was said is kept for late readers
+  // reliable, but volatile where the session keeps messages for late readers
   static_cast<void>(program.writer(slewring_SessionDescription_desc, "slewring/session"));
   dds_qset_durability(program.qos(), DDS_DURABILITY_TRANSIENT_LOCAL);
   static_cast<void>(program.reader(slewring_ControlRequest_desc, "slewring/control_request"));
   dds_qset_durability(program.qos(), DDS_DURABILITY_VOLATILE);
   dds_qset_reliability(program.qos(), DDS_RELIABILITY_BEST_EFFORT, 0);
   static_cast<void>(program.writer(slewring_MechanismMessage_desc, "slewring/mechanism"));
-  // one message is to come, and the other program may know this reader before this one knows its writer
+  // one message is to arrive, and the other program may discover this reader before this one discovers its writer
   dds_qset_reliability(program.qos(), DDS_RELIABILITY_RELIABLE, DDS_SECS(10));
   const dds_entity_t done = program.reader(slewring_Health_desc, "slewring/health");
   if (!eventually([&] { return has_reader(fits) && has_match(done); })) return false;
@@ -219,7 +219,7 @@ bool take_part_wrongly(std::uint32_t domain) {
   return eventually([&] { return dds_take(done, &sample, &about, 1, 1) == 1; });
 }
 
-TEST(CycloneInterop, WhoHasTheWrongTypeOrQosIsNamed) {
+TEST(CycloneInterop, AnEndpointWithTheWrongTypeOrQosIsNamed) {
   const testing::TestDomain domain;
   ChildProcess program([&] { return take_part_wrongly(domain.number()); });
   std::unique_ptr<CycloneTransport> transport;
@@ -235,18 +235,22 @@ TEST(CycloneInterop, WhoHasTheWrongTypeOrQosIsNamed) {
     misfits = transport->misfits();
     return misfits.size() >= 4;
   }));
-  const std::string who = "a program that is not of Slewring ";
+  const std::string program_name = "a program that is not of Slewring ";
   EXPECT_EQ(
       misfits,
       (std::vector<std::string>{
-          who + "reads topic 'slewring/control_request' with a durability above the one that is offered (volatile); "
-                "it hears nothing; see idl/README.md",
-          who + "writes topic 'slewring/mechanism' with reliability best effort, and reliable is asked for; it is "
-                "not heard; see idl/README.md",
-          who + "writes topic 'slewring/session' with a durability below the one that is asked for (transient "
-                "local); it is not heard; see idl/README.md",
-          who + "writes topic 'slewring/tick' with type slewring::NodeStatus, which is slewring::Tick here; it is "
-                "not heard; see idl/README.md"}));
+          program_name +
+              "reads topic 'slewring/control_request' with a durability above the one the writer offers (volatile); "
+              "it receives nothing; see idl/README.md",
+          program_name +
+              "writes topic 'slewring/mechanism' with reliability best effort, and the reader requests reliable; it is "
+              "ignored; see idl/README.md",
+          program_name +
+              "writes topic 'slewring/session' with a durability below the one the reader requests (transient "
+              "local); it is ignored; see idl/README.md",
+          program_name +
+              "writes topic 'slewring/tick' with type slewring::NodeStatus, which is slewring::Tick here; it is "
+              "ignored; see idl/README.md"}));
   ASSERT_TRUE(eventually([&] { return transport->matched_readers(Topic::health) > 0; }));
   ByteBuffer bytes;
   ASSERT_TRUE(encode(wire::Health{}, bytes));
@@ -254,7 +258,7 @@ TEST(CycloneInterop, WhoHasTheWrongTypeOrQosIsNamed) {
   EXPECT_EQ(program.wait(), 0);
 }
 
-// A reader that asks for more than our writers offer, or a writer that offers less than our readers ask for.
+// A reader that requests more than our writers offer, or a writer that offers less than our readers request.
 struct QosMisfit {
   const char* name;
   bool is_writer;
@@ -288,7 +292,7 @@ TEST_P(ForeignQos, ThatDoesNotFitIsNamed) {
   }));
   const std::string does =
       GetParam().is_writer ? "writes topic 'slewring/tick' with " : "reads topic 'slewring/control_request' with ";
-  const std::string so = GetParam().is_writer ? "; it is not heard" : "; it hears nothing";
+  const std::string so = GetParam().is_writer ? "; it is ignored" : "; it receives nothing";
   EXPECT_EQ(misfits, std::vector<std::string>{"a program that is not of Slewring " + does + GetParam().problem + so +
                                               "; see idl/README.md"});
   EXPECT_EQ(transport->matched_readers(Topic::control_request), 0u);
@@ -302,15 +306,15 @@ INSTANTIATE_TEST_SUITE_P(
     Of, ForeignQos,
     ::testing::Values(
         QosMisfit{"Deadline", false, [](dds_qos_t* qos) { dds_qset_deadline(qos, DDS_MSECS(100)); },
-                  "a deadline shorter than the one that is offered (none is expected)"},
+                  "a deadline shorter than the one the writer offers (none is expected)"},
         QosMisfit{"LatencyBudget", true, [](dds_qos_t* qos) { dds_qset_latency_budget(qos, DDS_MSECS(1)); },
-                  "a latency budget above the one that is asked for (0 is expected)"},
+                  "a latency budget above the one the reader requests (0 is expected)"},
         QosMisfit{"LivelinessKind", false,
                   [](dds_qos_t* qos) { dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_INFINITY); },
                   "another kind of liveliness (automatic is expected)"},
         QosMisfit{"LivelinessLease", false,
                   [](dds_qos_t* qos) { dds_qset_liveliness(qos, DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(500)); },
-                  "a lease of its liveliness shorter than the one that is offered (none is expected)"},
+                  "a lease of its liveliness shorter than the one the writer offers (none is expected)"},
         QosMisfit{"DestinationOrder", false,
                   [](dds_qos_t* qos) { dds_qset_destination_order(qos, DDS_DESTINATIONORDER_BY_SOURCE_TIMESTAMP); },
                   "another destination order (by reception timestamp is expected)"},

@@ -1,4 +1,4 @@
-// What happens to a stream when its reader, in another process, does not run for a while.
+// A stream whose reader, in another process, does not run for a while.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,17 +28,17 @@ bool report(CycloneTransport& transport) {
   return encode(wire::NodeStatus{}, bytes) && transport.publish(Topic::node_status, bytes).is_ok();
 }
 
-// Once the writer is known, what it sends from now on arrives: says so by a status.
-bool say_ready(CycloneTransport& transport) {
+// Publishes a status when the writer has been discovered: all its later messages arrive.
+bool publish_ready(CycloneTransport& transport) {
   return eventually([&] { return !transport.discovered_writers(Topic::tick).empty(); }) && report(transport);
 }
 
 // the recorder's place: every step of both topics, in order
-bool hear_every_step(std::uint32_t domain) {
+bool receive_every_step(std::uint32_t domain) {
   std::unique_ptr<CycloneTransport> transport;
   const Endpoint options{"loss", "recorder", {Topic::node_status}, {Topic::tick, Topic::variables}};
   if (!CycloneTransport::open(Network{domain, "lo", {}}, options, transport).is_ok()) return false;
-  if (!say_ready(*transport)) return false;
+  if (!publish_ready(*transport)) return false;
   StepIndex next_tick = 0;
   StepIndex next_block = 0;
   StepIndex reported = 0;
@@ -67,7 +67,7 @@ enum class Stream : std::uint8_t {
 
 void expect_no_step_lost(Stream stream) {
   const testing::TestDomain domain;
-  ChildProcess recorder([&] { return hear_every_step(domain.number()); });
+  ChildProcess recorder([&] { return receive_every_step(domain.number()); });
   std::unique_ptr<CycloneTransport> transport;
   const Status status =
       CycloneTransport::open(Network{domain.number(), "lo", {}},
@@ -108,11 +108,11 @@ TEST(CycloneLoss, NightlyAReaderStoppedFor200MillisecondsAtFourKilohertzLosesNot
   expect_no_step_lost(Stream::paced);
 }
 
-bool hear_ticks(std::uint32_t domain, StepIndex count) {
+bool receive_ticks(std::uint32_t domain, StepIndex count) {
   std::unique_ptr<CycloneTransport> transport;
   const Endpoint options{"loss", "recorder", {Topic::node_status}, {Topic::tick}};
   if (!CycloneTransport::open(Network{domain, "lo", {}}, options, transport).is_ok()) return false;
-  if (!say_ready(*transport)) return false;
+  if (!publish_ready(*transport)) return false;
   Received message;
   wire::Header header;
   for (StepIndex n = 0; n < count; ++n) {
@@ -124,7 +124,7 @@ bool hear_ticks(std::uint32_t domain, StepIndex count) {
 TEST(CycloneLoss, TheLastMessagesOfALeavingWriterArrive) {
   const testing::TestDomain domain;
   constexpr StepIndex kCount = 1000;
-  ChildProcess recorder([&] { return hear_ticks(domain.number(), kCount); });
+  ChildProcess recorder([&] { return receive_ticks(domain.number(), kCount); });
   std::unique_ptr<CycloneTransport> transport;
   const Status status = CycloneTransport::open(Network{domain.number(), "lo", {}},
                                                {"loss", "io", {Topic::tick}, {Topic::node_status}}, transport);
@@ -141,7 +141,7 @@ TEST(CycloneLoss, TheLastMessagesOfALeavingWriterArrive) {
   EXPECT_EQ(recorder.wait(), 0);
 }
 
-bool hear_the_session(std::uint32_t domain) {
+bool receive_the_session(std::uint32_t domain) {
   std::unique_ptr<CycloneTransport> transport;
   const Endpoint options{"loss", "mechanics", {}, {Topic::session}};
   if (!CycloneTransport::open(Network{domain, "lo", {}}, options, transport).is_ok()) return false;
@@ -153,10 +153,10 @@ bool hear_the_session(std::uint32_t domain) {
 
 TEST(CycloneLoss, TheLargestSceneReachesALateNode) {
   const testing::TestDomain domain;
-  // the late node starts when told so by a signal, before which nothing of DDS may exist in this process
+  // a signal starts the late node; before that, no part of DDS may exist in this process
   ChildProcess node([&] {
     raise(SIGSTOP);
-    return hear_the_session(domain.number());
+    return receive_the_session(domain.number());
   });
   ASSERT_TRUE(node.wait_until_stopped());
   std::unique_ptr<CycloneTransport> transport;

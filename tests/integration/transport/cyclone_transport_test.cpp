@@ -72,7 +72,7 @@ TEST_F(CycloneBus, CarriesMessagesInOrder) {
   }
 }
 
-TEST_F(CycloneBus, TellsTheWritersOfValuesApartAndWhoHasLeft) {
+TEST_F(CycloneBus, DistinguishesTheWritersOfValuesAndSeesThemLeave) {
   const auto io = connect("a", "io", {}, {Topic::controller_input});
   const auto a = connect("a", "controller", {Topic::controller_input}, {});
   auto b = connect("a", "controller", {Topic::controller_input}, {});
@@ -101,7 +101,7 @@ TEST_F(CycloneBus, TellsTheWritersOfValuesApartAndWhoHasLeft) {
   EXPECT_FALSE(io->see_writer(Topic::controller_input, of_a).has_left);
 }
 
-TEST_F(CycloneBus, AnEndpointDoesNotHearItself) {
+TEST_F(CycloneBus, AnEndpointDoesNotReceiveItsOwnMessages) {
   const auto a = connect("a", "io", TopicSet::all(), TopicSet::all());
   const auto b = connect("a", "mechanics", TopicSet::all(), TopicSet::all());
   ASSERT_TRUE(eventually([&] { return a->matched_readers(Topic::tick) == 1; }));
@@ -111,7 +111,7 @@ TEST_F(CycloneBus, AnEndpointDoesNotHearItself) {
   EXPECT_FALSE(next(*a, message, kSilence));
 }
 
-TEST_F(CycloneBus, SessionsDoNotHearEachOtherAndAnObserverHearsAll) {
+TEST_F(CycloneBus, SessionsAreSeparateAndAnObserverReceivesAll) {
   const auto a = connect("a", "io", {Topic::tick}, {});
   const auto b = connect("b", "io", {Topic::tick}, {});
   const auto node_a = connect("a", "mechanics", {}, {Topic::tick});
@@ -140,16 +140,16 @@ TEST_F(CycloneBus, ALateNodeGetsEachWritersLastStatus) {
     ASSERT_TRUE(hydraulics->publish(Topic::node_status, status_of(wire::Role::hydraulics, i)).is_ok());
   }
   const auto late = connect("a", "recorder", {}, {Topic::node_status});
-  std::uint32_t heard = 0;
+  std::uint32_t received_roles = 0;
   Received message;
   wire::NodeStatus status;
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(next(*late, message));
     ASSERT_TRUE(decode(message.bytes, status));
     EXPECT_EQ(status.exit_code, 9);
-    heard |= bit(status.header.role);
+    received_roles |= bit(status.header.role);
   }
-  EXPECT_EQ(heard, bit(wire::Role::io) | bit(wire::Role::mechanics) | bit(wire::Role::hydraulics));
+  EXPECT_EQ(received_roles, bit(wire::Role::io) | bit(wire::Role::mechanics) | bit(wire::Role::hydraulics));
   EXPECT_FALSE(next(*late, message, kSilence));
 }
 

@@ -1,4 +1,4 @@
-// The doorbell without the middleware: what the thread sanitizer cannot see behind libddsc.
+// The doorbell without the middleware: the thread sanitizer cannot see behind libddsc.
 #include "transport/doorbell.h"
 
 #include <gtest/gtest.h>

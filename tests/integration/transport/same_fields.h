@@ -1,4 +1,4 @@
-// Whether a generated C struct holds what one of our messages holds, field by field.
+// Compares a generated C struct with one of our messages, field by field.
 #pragma once
 
 #include <slewring.h>

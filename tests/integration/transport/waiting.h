@@ -8,7 +8,7 @@
 
 namespace slew::testing {
 
-inline constexpr std::int64_t kPatience = 30'000'000'000;  // ns; long beyond what any exchange takes
+inline constexpr std::int64_t kPatience = 30'000'000'000;  // ns; far longer than any exchange
 inline constexpr std::int64_t kPause = 2'000'000;          // ns between two looks at a condition
 
 // Waits for the next message; false when none came in time.

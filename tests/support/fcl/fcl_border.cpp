@@ -115,7 +115,7 @@ QueryResult collide(const Geometries& geometries, Scratch& scratch, std::size_t 
     const std::size_t found = scratch.result.numContacts();
     for (std::size_t i = 0; i < std::min(found, capacity); ++i) {
       const fcl::Contactd& contact = scratch.result.getContact(i);
-      // FCL swaps its two shapes when it knows the pair in the other order only; its normal points from o1 to o2
+      // FCL swaps its two shapes when it has the pair in the other order only; its normal points from o1 to o2
       const bool is_swapped = contact.o1 != first;
       const double sign = is_swapped ? 1.0 : -1.0;
       RawContact raw{};

@@ -50,8 +50,8 @@ SLEWRING_FCL_EXPORT std::size_t add_plane(Geometries& geometries);              
 SLEWRING_FCL_EXPORT std::size_t add_convex(Geometries& geometries, const double* vertices, std::size_t vertex_count,
                                            const std::uint32_t* triangles, std::size_t triangle_count);
 
-// Contacts of shape a against shape b, at most `capacity` of them; `count` says how many there are. FCL allocates
-// inside. failed: FCL gave up or found something that is not finite; count is 0 then.
+// Contacts of shape a against shape b, at most `capacity` of them; `count` is their number. FCL allocates inside.
+// failed: FCL gave up or found a value that is not finite; count is 0 then.
 SLEWRING_FCL_EXPORT QueryResult collide(const Geometries& geometries, Scratch& scratch, std::size_t a, Placement of_a,
                                         std::size_t b, Placement of_b, RawContact* out, std::size_t capacity,
                                         std::size_t& count) noexcept;

@@ -55,7 +55,7 @@ TEST(MachineDrawing, ShowsTheEdgesOfShapesWhereTheyAre) {
   box.position = {5, 0, 0};
   box.orientation = {M_PI / 2, 0, 0};
   box.size = {2, 4, 6};
-  multibody::ShapeDef square;  // of two triangles: their common edge is no edge of it
+  multibody::ShapeDef square;  // two triangles: their common edge is no edge of the shape
   square.type = contact::ShapeType::triangle_mesh;
   square.vertices = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   square.triangles = {0, 1, 2, 0, 2, 3};
@@ -106,7 +106,7 @@ TEST(MachineDrawing, ShowsTheCentreOfMassAndACrossWhereNothingElseIsSeen) {
 TEST(MachineDrawing, OfEverySceneShowsEveryBody) {
   int drawn = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(SLEWRING_SOURCE_DIR "/scenes")) {
-    // those of a flexible body alone are for 'slewring flex'
+    // problems of a flexible body alone are for 'slewring flex'
     const bool is_scene = entry.path().extension() == ".yaml" && entry.path().parent_path().filename() != "beams";
     if (!is_scene) continue;
     const scene::Scene scene = scene::load_file(entry.path().string());
@@ -166,8 +166,8 @@ TEST(Animation, IsAPageOfItsOwn) {
   EXPECT_FALSE(data["bodies"][0].contains("pose"));
   EXPECT_EQ(data["links"][0]["p1"], (nlohmann::json{0, -2, 0}));
   EXPECT_EQ(page.find("<arm>"), std::string::npos);
-  for (const char* asked : {"src=", "href=", "http:", "https:"})
-    EXPECT_EQ(page.find(asked), std::string::npos) << asked;
+  for (const char* resource : {"src=", "href=", "http:", "https:"})
+    EXPECT_EQ(page.find(resource), std::string::npos) << resource;
 }
 
 TEST(Animation, IsAPictureOfTheInstantsInBothViews) {
@@ -194,7 +194,7 @@ TEST(Animation, IsAPictureOfTheInstantsInBothViews) {
 
 // ---- the page's script, run
 
-// what is drawn, back from px to m in the plane of the view
+// drawn points, back from px to m in the plane of the view
 constexpr const char* kDriver = R"(
 const W=800,H=600,s=Math.min(W,H)/2/reach;
 const drawn=(id,right,up)=>page.elements[id].context.lines.map(l=>({colour:l.colour,alpha:l.alpha,points:l.points.map(
@@ -218,12 +218,12 @@ class AnimationPage : public ::testing::Test {
     motion_.gaps = {{0.03, 0.14}};
   }
   [[nodiscard]] nlohmann::json play(const std::string& drive) const {
-    const nlohmann::json said = testing::played_page(animation_html(draw_machine(arm()), motion_),
-                                                     std::string(kDriver) + "function drive(){" + drive + "}");
-    EXPECT_FALSE(said.is_null());
-    return said;
+    const nlohmann::json result = testing::played_page(animation_html(draw_machine(arm()), motion_),
+                                                       std::string(kDriver) + "function drive(){" + drive + "}");
+    EXPECT_FALSE(result.is_null());
+    return result;
   }
-  // of the arm's line from (-1, 0, 0) to (1, 0, 0), seen along an axis; turn: of the view about y [rad]
+  // the arm's line from (-1, 0, 0) to (1, 0, 0), seen along an axis; turn of the view about y [rad]
   void expect_drawn_at(const nlohmann::json& lines, std::size_t instant, bool is_top, double turn = 0) const {
     const Pose& pose = motion_.poses[0][instant];
     const math::Mat3 R = math::rotation_of(pose.orientation);
@@ -242,34 +242,34 @@ class AnimationPage : public ::testing::Test {
   Motion motion_{"arm", "test", {}, {}, {}};
 };
 
-TEST_F(AnimationPage, TheSliderShowsABodyWhereItsPoseSays) {
-  const nlohmann::json said = play(R"(
+TEST_F(AnimationPage, TheSliderShowsABodyAtItsPose) {
+  const nlohmann::json result = play(R"(
     const out=[];for(const n of [0,3,7,5]){slide(n);
      out.push({now:now(),side:drawn('side',[1,0,0],[0,1,0]),top:drawn('top',[1,0,0],[0,0,-1])})}
     page.elements.turn.value='90';page.elements.turn.oninput();out.push({side:drawn('side',[0,0,1],[0,1,0])});
     return {frames:out,most:page.elements.time.max})");
-  EXPECT_EQ(said["most"], 7);
+  EXPECT_EQ(result["most"], 7);
   const std::size_t instants[] = {0, 3, 7, 5};
   for (std::size_t i = 0; i < 4; ++i) {
-    expect_drawn_at(said["frames"][i]["side"], instants[i], false);
-    expect_drawn_at(said["frames"][i]["top"], instants[i], true);
+    expect_drawn_at(result["frames"][i]["side"], instants[i], false);
+    expect_drawn_at(result["frames"][i]["top"], instants[i], true);
   }
-  expect_drawn_at(said["frames"][4]["side"], 5, false, M_PI / 2);
-  EXPECT_EQ(said["frames"][1]["now"], "0.03 s");
-  EXPECT_EQ(said["frames"][2]["now"], "0.17 s");
+  expect_drawn_at(result["frames"][4]["side"], 5, false, M_PI / 2);
+  EXPECT_EQ(result["frames"][1]["now"], "0.03 s");
+  EXPECT_EQ(result["frames"][2]["now"], "0.17 s");
 }
 
-TEST_F(AnimationPage, PlaysInTimeAndSaysWhereNothingWasRecorded) {
-  const nlohmann::json said = play(R"(
+TEST_F(AnimationPage, PlaysInTimeAndMarksGapsOfTheRecording) {
+  const nlohmann::json result = play(R"(
     const out=[],go=ms=>{page.now=ms;page.frames.shift()(ms);
      out.push({now:now(),k:+page.elements.time.value,alpha:page.elements.side.context.lines[0].alpha})};
     page.elements.play.onclick();for(const ms of [15,60,145,171])go(ms);
     page.elements.play.onclick();page.frames.shift()(200);out.push(page.frames.length);return out)");
-  EXPECT_EQ(said[0], (nlohmann::json{{"now", "0.01 s"}, {"k", 1}, {"alpha", 1}}));
-  EXPECT_EQ(said[1], (nlohmann::json{{"now", "0.06 s: not recorded"}, {"k", 3}, {"alpha", 0.25}}));
-  EXPECT_EQ(said[2], (nlohmann::json{{"now", "0.14 s"}, {"k", 4}, {"alpha", 1}}));
-  EXPECT_EQ(said[3]["k"], 0);  // behind the end it begins again
-  EXPECT_EQ(said[4], 0);       // it stands
+  EXPECT_EQ(result[0], (nlohmann::json{{"now", "0.01 s"}, {"k", 1}, {"alpha", 1}}));
+  EXPECT_EQ(result[1], (nlohmann::json{{"now", "0.06 s: not recorded"}, {"k", 3}, {"alpha", 0.25}}));
+  EXPECT_EQ(result[2], (nlohmann::json{{"now", "0.14 s"}, {"k", 4}, {"alpha", 1}}));
+  EXPECT_EQ(result[3]["k"], 0);  // behind the end it begins again
+  EXPECT_EQ(result[4], 0);       // it stands
 }
 
 }  // namespace animation_test

@@ -40,18 +40,18 @@ class Compare : public ::testing::Test {
         std::filesystem::temp_directory_path() / ("slewring_compare_" + std::to_string(::getpid()) + "_" +
                                                   ::testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(folder_);
-    wish.repeats = 1;
+    options.repeats = 1;
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   void write(const std::string& text) {
-    wish.scene.file = (folder_ / "scene.yaml").string();
-    std::ofstream(wish.scene.file) << text;
+    options.scene.file = (folder_ / "scene.yaml").string();
+    std::ofstream(options.scene.file) << text;
   }
-  void use(const char* scene) { wish.scene.file = std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + scene; }
+  void use(const char* scene) { options.scene.file = std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + scene; }
 
   [[nodiscard]] Comparison run() const {
-    return compare(wish, [](std::string_view, double) { return true; });
+    return compare(options, [](std::string_view, double) { return true; });
   }
   [[nodiscard]] std::string failure() const {
     try {
@@ -63,7 +63,7 @@ class Compare : public ::testing::Test {
     return "";
   }
 
-  ComparisonWish wish;
+  ComparisonOptions options;
 
  private:
   std::filesystem::path folder_;
@@ -71,8 +71,8 @@ class Compare : public ::testing::Test {
 
 TEST_F(Compare, ErrorFallsBySixteenWhenTheStepIsHalved) {
   write(kDoublePendulum);
-  wish.formulations = {"recursive", "lagrange"};
-  wish.steps = {"2ms", "4ms", "8ms"};
+  options.formulations = {"recursive", "lagrange"};
+  options.steps = {"2ms", "4ms", "8ms"};
   const Comparison result = run();
   ASSERT_EQ(result.rows.size(), 6U);
   for (const std::size_t first : {0U, 3U}) {
@@ -87,7 +87,7 @@ TEST_F(Compare, ErrorFallsBySixteenWhenTheStepIsHalved) {
 
 TEST_F(Compare, JointsStayClosedAndEnergyIsKeptInEveryRow) {
   write(kDoublePendulum);
-  wish.steps = {"1ms"};
+  options.steps = {"1ms"};
   const Comparison result = run();
   EXPECT_EQ(result.energy_rule, EnergyRule::kept);
   std::size_t ran = 0;
@@ -121,9 +121,9 @@ forces:
 mechanics: {gravity: [0, 0, 1]}
 session: {duration: 2 s, step: 8 ms}
 )");
-  wish.formulations = {"recursive"};
-  wish.steps = {"8ms"};
-  wish.reference_step = "1ms";
+  options.formulations = {"recursive"};
+  options.steps = {"8ms"};
+  options.reference_step = "1ms";
   const Comparison result = run();
   ASSERT_EQ(result.rows.size(), 1U);
   EXPECT_FALSE(result.rows[0].is_stable());
@@ -131,12 +131,12 @@ session: {duration: 2 s, step: 8 ms}
   EXPECT_TRUE(result.rows[0].cost.is_repeatable);
 }
 
-// what this version knows is what the field tables list, and what cannot run says why
+// every formulation of the field table is compared, and a refused one has its reason
 TEST_F(Compare, EveryFormulationThatTheFieldTableListsHasARow) {
   write(kDoublePendulum);
-  wish.scene.duration = "0.08s";
-  wish.steps = {"2ms"};
-  wish.formulations = {"all"};
+  options.scene.duration = "0.08s";
+  options.steps = {"2ms"};
+  options.formulations = {"all"};
   const Comparison result = run();
   const std::vector<std::string> known = choices_of("formulation");
   ASSERT_EQ(result.rows.size(), known.size());
@@ -147,11 +147,11 @@ TEST_F(Compare, EveryFormulationThatTheFieldTableListsHasARow) {
   }
 }
 
-// a rule by the name that it has, not by that of the default; what a formulation does not have is no row of `all`
+// a rule has its own name, not the default's; `all` has no row for a rule that a formulation lacks
 TEST_F(Compare, EveryRowNamesTheRuleThatItRunsWith) {
   write(kDoublePendulum);
-  wish.scene.duration = "0.02s";
-  wish.steps = {"2ms"};
+  options.scene.duration = "0.02s";
+  options.steps = {"2ms"};
   const auto rules = [this] {
     std::vector<std::string> names;
     for (const ComparedRow& row : run().rows) {
@@ -162,10 +162,10 @@ TEST_F(Compare, EveryRowNamesTheRuleThatItRunsWith) {
   };
   EXPECT_EQ(rules(),
             (std::vector<std::string>{"recursive rk4", "lagrange rk4", "augmented index3_trapezoidal", "penalty rk4"}));
-  wish.formulations = {"augmented", "penalty"};
-  wish.integrators = {"all"};
+  options.formulations = {"augmented", "penalty"};
+  options.integrators = {"all"};
   EXPECT_EQ(rules(), (std::vector<std::string>{"augmented index3_trapezoidal", "penalty rk4"}));
-  wish.integrators = {"rk4"};
+  options.integrators = {"rk4"};
   const Comparison explicit_rule = run();
   EXPECT_TRUE(contains(explicit_rule.rows[0].refusal, "the formulation 'augmented' has no integrator 'rk4'"));
   EXPECT_TRUE(explicit_rule.rows[1].has_run());
@@ -173,9 +173,9 @@ TEST_F(Compare, EveryRowNamesTheRuleThatItRunsWith) {
 
 TEST_F(Compare, DampedMotionIsComparedWithTheEnergyOfTheReference) {
   use("first_steps.yaml");
-  wish.scene.duration = "1s";
-  wish.formulations = {"recursive"};
-  wish.steps = {"1ms"};
+  options.scene.duration = "1s";
+  options.formulations = {"recursive"};
+  options.steps = {"1ms"};
   const Comparison result = run();
   EXPECT_EQ(result.energy_rule, EnergyRule::compared);
   EXPECT_GT(result.reference_energy_drift, 1e-3);
@@ -185,9 +185,9 @@ TEST_F(Compare, DampedMotionIsComparedWithTheEnergyOfTheReference) {
 
 TEST_F(Compare, AStepAboveTheCommunicationStepReplacesIt) {
   use("first_steps.yaml");
-  wish.scene.duration = "0.5s";
-  wish.formulations = {"recursive"};
-  wish.steps = {"1ms", "5ms"};
+  options.scene.duration = "0.5s";
+  options.formulations = {"recursive"};
+  options.steps = {"1ms", "5ms"};
   const Comparison result = run();
   ASSERT_EQ(result.rows.size(), 2U);
   EXPECT_GT(result.rows[1].differences[0].largest, 0);
@@ -197,9 +197,9 @@ TEST_F(Compare, AStepAboveTheCommunicationStepReplacesIt) {
 
 TEST_F(Compare, VariablesOfSeveralDimensionsAreJudgedApart) {
   write(kDoublePendulum);
-  wish.formulations = {"recursive"};
-  wish.steps = {"4ms"};
-  wish.variables = {"Hinge.position", "Lower.position.?", "Elbow.position"};
+  options.formulations = {"recursive"};
+  options.steps = {"4ms"};
+  options.variables = {"Hinge.position", "Lower.position.?", "Elbow.position"};
   const Comparison result = run();
   ASSERT_EQ(result.classes.size(), 2U);
   EXPECT_EQ(result.classes[0].unit, "rad");
@@ -210,10 +210,10 @@ TEST_F(Compare, VariablesOfSeveralDimensionsAreJudgedApart) {
 
 TEST_F(Compare, TheHydraulicMachineIsPlayedWithItsScript) {
   use("tipper.yaml");
-  wish.scene.duration = "2s";
-  wish.formulations = {"recursive", "lagrange"};
-  wish.steps = {"0.5ms"};
-  wish.variables = {"Platform.center_of_mass.?", "Vol_A.pressure"};
+  options.scene.duration = "2s";
+  options.formulations = {"recursive", "lagrange"};
+  options.steps = {"0.5ms"};
+  options.variables = {"Platform.center_of_mass.?", "Vol_A.pressure"};
   const Comparison result = run();
   EXPECT_EQ(result.energy_rule, EnergyRule::compared);
   EXPECT_GT(result.classes[0].extent, 0.05) << "the script did not tip it";
@@ -227,45 +227,45 @@ TEST_F(Compare, TheHydraulicMachineIsPlayedWithItsScript) {
 
 TEST_F(Compare, WhatIsBelowTheErrorOfTheReferenceIsShownAsThat) {
   write(kDoublePendulum);
-  wish.formulations = {"recursive"};
-  wish.steps = {"1ms"};
-  wish.reference_step = "1ms";
+  options.formulations = {"recursive"};
+  options.steps = {"1ms"};
+  options.reference_step = "1ms";
   const Comparison result = run();
   EXPECT_EQ(result.rows[0].differences[0].largest, 0);  // the reference itself
   EXPECT_GT(result.classes[0].reference_error, 0);
   EXPECT_TRUE(contains(report_text(result), " <")) << report_text(result);
 }
 
-TEST_F(Compare, WishesThatCannotBeAreRefusedBeforeAnythingRuns) {
+TEST_F(Compare, ImpossibleOptionsAreRefusedBeforeAnythingRuns) {
   write(kDoublePendulum);
-  wish.formulations = {"recursiv"};
+  options.formulations = {"recursiv"};
   EXPECT_TRUE(contains(failure(),
                        "--formulations: there is no 'recursiv' in this version; expected all, or some of "
                        "recursive, lagrange"));
-  wish.formulations.clear();
-  wish.integrators = {"magic"};
+  options.formulations.clear();
+  options.integrators = {"magic"};
   EXPECT_TRUE(contains(failure(), "--integrators: there is no 'magic' in this version"));
-  wish.integrators.clear();
-  wish.steps = {"3ms"};
+  options.integrators.clear();
+  options.steps = {"3ms"};
   EXPECT_TRUE(contains(failure(), "--steps: 3 ms neither divides the communication step 8 ms nor is a multiple of it"));
-  wish.steps = {"3bar"};
+  options.steps = {"3bar"};
   EXPECT_TRUE(contains(failure(), "--steps: '3bar'"));
-  wish.steps = {"1s"};
+  options.steps = {"1s"};
   EXPECT_TRUE(contains(failure(), "--steps: 1000 ms is out of range; expected 0.001 ms to 20 ms"));
-  wish.steps.clear();
-  wish.variables = {"Nobody.position.x"};
-  EXPECT_TRUE(contains(failure(), "Nobody.position.x"));
-  wish.variables.clear();
-  wish.scene.duration = "0s";
+  options.steps.clear();
+  options.variables = {"Absent.position.x"};
+  EXPECT_TRUE(contains(failure(), "Absent.position.x"));
+  options.variables.clear();
+  options.scene.duration = "0s";
   EXPECT_TRUE(contains(failure(), "--until"));
 }
 
-TEST_F(Compare, EndsWithTheRowsThatAreDoneWhenToldTo) {
+TEST_F(Compare, EndsWithTheFinishedRowsOnRequest) {
   write(kDoublePendulum);
-  wish.formulations = {"recursive"};
-  wish.steps = {"2ms", "4ms"};
+  options.formulations = {"recursive"};
+  options.steps = {"2ms", "4ms"};
   const Comparison result =
-      compare(wish, [](std::string_view doing, double) { return !contains(std::string(doing), "4 ms"); });
+      compare(options, [](std::string_view doing, double) { return !contains(std::string(doing), "4 ms"); });
   ASSERT_EQ(result.rows.size(), 1U);
   EXPECT_EQ(result.wanted_rows, 2U);
   EXPECT_TRUE(contains(report_text(result), "interrupted: 1 of 2 rows"));
@@ -274,10 +274,10 @@ TEST_F(Compare, EndsWithTheRowsThatAreDoneWhenToldTo) {
 
 TEST_F(Compare, ProgressGoesFromNothingToAllWithoutStepsBack) {
   write(kDoublePendulum);
-  wish.steps = {"4ms"};
+  options.steps = {"4ms"};
   double last = 0;
   bool goes_up = true;
-  static_cast<void>(compare(wish, [&](std::string_view, double share) {
+  static_cast<void>(compare(options, [&](std::string_view, double share) {
     goes_up = goes_up && share >= last && share <= 1;
     last = share;
     return true;

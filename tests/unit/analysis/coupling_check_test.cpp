@@ -1,4 +1,4 @@
-// What is said about the step and the coupling levels before a run.
+// Warnings about the step and the coupling levels before a run.
 #include "analysis/coupling_check.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ std::vector<std::string> warnings(const std::string& file, const scene::Override
   return coupling_warnings(scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + file, overrides));
 }
 
-TEST(CouplingCheck, SaysNothingOfScenesAsTheyAre) {
+TEST(CouplingCheck, HasNoWarningForTheScenes) {
   for (const char* file :
        {"truck_crane.yaml", "single_cylinder.yaml", "tipper.yaml", "four_bar.yaml", "truck_crane_flexible.yaml"}) {
     EXPECT_EQ(warnings(file, {}), std::vector<std::string>()) << file;
@@ -27,7 +27,7 @@ TEST(CouplingCheck, NamesThePortAndAStepThatSuitsTheLevel) {
   const auto two = warnings("truck_crane.yaml", {"session.step=20 ms"});
   ASSERT_EQ(two.size(), 1u);
   EXPECT_NE(two[0].find("Cyl_Jib: omega_H"), std::string::npos) << two[0];
-  EXPECT_NE(two[0].find("level 'two' is right up to 1"), std::string::npos) << two[0];
+  EXPECT_NE(two[0].find("level 'two' is valid up to 1"), std::string::npos) << two[0];
   EXPECT_NE(two[0].find("use session.step"), std::string::npos) << two[0];
   EXPECT_EQ(warnings("truck_crane.yaml", {"session.step=5 ms"}).size(), 0u);
   EXPECT_EQ(warnings("truck_crane.yaml", {"session.step=10 ms", "session.coupling=linear"}).size(), 1u);
@@ -53,7 +53,7 @@ TEST(CouplingCheck, LooksAtEveryLevelForItself) {
   EXPECT_EQ(warnings("truck_crane.yaml", {"session.coupling=tlm", "session.step=0.2 ms"}).size(), 0u);
 }
 
-TEST(CouplingCheck, FreeRunningIsToldOfTheStepThatItsLateSamplesBear) {
+TEST(CouplingCheck, FreeRunningIsWarnedOfTheStepForItsLateSamples) {
   // omega_H of the flexible crane is 0.37 at its start in steps of 1 ms, of the rigid one 0.1
   EXPECT_EQ(warnings("truck_crane.yaml", {"session.mode=free_running"}).size(), 0u);
   const auto flexible =

@@ -59,7 +59,7 @@ TEST(Judge, EachBoundThatIsBrokenIsTheOneNamed) {
   compared.difference = 0.02;
   EXPECT_EQ(broken([](Measures& m) { m.difference = 0.021; }, compared), "force error");
   Bounds same;
-  same.asks_same = true;
+  same.requires_same = true;
   EXPECT_EQ(broken([](Measures& m) { m.is_same = false; }, same), "bits that differ");
 }
 
@@ -87,7 +87,7 @@ TEST(Judge, SessionThatItsAlarmEndedIsRefusedWhileItKeptItsBounds) {
   const Judgement refused = judge(ended, {});
   EXPECT_EQ(refused.verdict, Verdict::refused);
   EXPECT_NE(advice(ended, refused, {true, 5e-3}).find("5 ms"), std::string::npos);
-  ended.made = 0.5;  // before anybody said so
+  ended.made = 0.5;  // before the alarm
   EXPECT_EQ(judge(ended, {}).verdict, Verdict::exceeded);
   ended.failure = "Bag.position";
   EXPECT_EQ(judge(ended, {}).verdict, Verdict::diverged);

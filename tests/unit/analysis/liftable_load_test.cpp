@@ -41,7 +41,7 @@ double way(const std::string& scene_name, const LiftableLoad& found, double mass
   return port.force_per_kg > 0 ? after - before : before - after;
 }
 
-// a cylinder's first way is its oil's compression: what is lifted goes on
+// a cylinder first compresses its oil: a lifted load goes on
 constexpr double kLifted = 0.01, kNotLifted = 0.004;  // m
 
 TEST(LiftableLoad, OfTheCraneIsLiftedAndMoreIsNot) {
@@ -98,7 +98,7 @@ TEST(LiftableLoad, APoseChangesItAndTheSceneStaysAsItWas) {
       find_liftable(scene, {.at = 0, .joints = {"Pillar_LiftBoom=50 deg"}}, ListedSettings::left_out);
   ASSERT_TRUE(raised.has_answer());
   EXPECT_NE(raised.limit().load, at_start);
-  EXPECT_THROW(static_cast<void>(find_liftable(scene, {.at = 0, .joints = {"Nobody=1"}}, ListedSettings::left_out)),
+  EXPECT_THROW(static_cast<void>(find_liftable(scene, {.at = 0, .joints = {"Absent=1"}}, ListedSettings::left_out)),
                Failure);
   EXPECT_THROW(static_cast<void>(find_liftable(scene, {.at = 0, .joints = {"Hook_Bag=1"}}, ListedSettings::left_out)),
                Failure);

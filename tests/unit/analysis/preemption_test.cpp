@@ -31,7 +31,7 @@ class Preemption : public ::testing::Test {
   testing::TemporaryFolder folder_{"preemption"};
 };
 
-TEST_F(Preemption, IsUnknownWhereNothingSaysIt) {
+TEST_F(Preemption, IsUnknownWithoutASource) {
   EXPECT_EQ(model(), "unknown");
   write("proc/cmdline", "console=ttyS0 quiet\n");
   write("boot/config-6.1.0-x", "# CONFIG_PREEMPT_NONE is not set\n");

@@ -22,13 +22,13 @@ const Candidate* find(const std::vector<Candidate>& all, const std::string& sett
   return nullptr;
 }
 
-SimplifyWish wish(const std::string& scene, std::vector<std::string> errors, const std::string& until) {
-  SimplifyWish wish;
-  wish.scene.file = kScenes + scene;
-  wish.scene.duration = until;
-  wish.errors = std::move(errors);
-  wish.repeats = 1;
-  return wish;
+SimplifyOptions options_for(const std::string& scene, std::vector<std::string> errors, const std::string& until) {
+  SimplifyOptions options;
+  options.scene.file = kScenes + scene;
+  options.scene.duration = until;
+  options.errors = std::move(errors);
+  options.repeats = 1;
+  return options;
 }
 
 const SimplifyProgress kGoOn = [](std::string_view, double) { return true; };
@@ -68,7 +68,7 @@ TEST(Candidates, OfPairsAndModesLoad) {
 
 // that a pair is not searched cannot be seen in anything, down to the last bit
 TEST(Simplify, AnUntouchedPairChangesNothing) {
-  const Simplification result = simplify(wish("truck_crane.yaml", {"Bag.position 1mm"}, "1 s"), kGoOn);
+  const Simplification result = simplify(options_for("truck_crane.yaml", {"Bag.position 1mm"}, "1 s"), kGoOn);
   ASSERT_EQ(result.watched.size(), 3u);
   EXPECT_EQ(result.watched[0].name, "Bag.position.x");
   int pairs = 0;
@@ -86,12 +86,12 @@ TEST(Simplify, WhatItTakesHolds) {
   const SimplifyCost steps_per_ms = [](const scene::Scene&, StepIndex steps) {
     return static_cast<double>(steps) / 3000;
   };
-  const Simplification result =
-      simplify(wish("single_cylinder.yaml", {"Load.position 1mm", "Cyl_Lift.force 2%"}, "3 s"), kGoOn, steps_per_ms);
+  const Simplification result = simplify(
+      options_for("single_cylinder.yaml", {"Load.position 1mm", "Cyl_Lift.force 2%"}, "3 s"), kGoOn, steps_per_ms);
   ASSERT_TRUE(result.helps()) << "longer steps of one cylinder cost less and change nothing that matters";
   EXPECT_TRUE(holds(result.watched, result.combined));
   EXPECT_LT(result.combined.cost, result.base_cost);
-  // the settings are those of the trials that say so, none of a group twice
+  // the settings come from the trials that are taken, none of a group twice
   std::size_t settings = 0;
   std::vector<std::string> groups;
   for (const Trial& trial : result.trials) {
@@ -107,7 +107,7 @@ TEST(Simplify, WhatItTakesHolds) {
 }
 
 TEST(Simplify, NothingIsTakenWhenNothingMayChange) {
-  const Simplification result = simplify(wish("single_cylinder.yaml", {"Cyl_Lift.force 1e-9"}, "1 s"), kGoOn);
+  const Simplification result = simplify(options_for("single_cylinder.yaml", {"Cyl_Lift.force 1e-9"}, "1 s"), kGoOn);
   EXPECT_FALSE(result.helps());
   EXPECT_TRUE(result.settings.empty());
   EXPECT_FALSE(result.trials.empty());
@@ -117,7 +117,7 @@ TEST(Simplify, NothingIsTakenWhenNothingMayChange) {
 TEST(Simplify, RefusesWhatItCannotJudge) {
   const auto expect_refusal = [](const std::string& error, const std::string& part) {
     try {
-      static_cast<void>(simplify(wish("single_cylinder.yaml", {error}, "1 s"), kGoOn));
+      static_cast<void>(simplify(options_for("single_cylinder.yaml", {error}, "1 s"), kGoOn));
       ADD_FAILURE() << error;
     } catch (const Failure& failure) {
       EXPECT_EQ(failure.code(), ExitCode::bad_input);
@@ -130,20 +130,20 @@ TEST(Simplify, RefusesWhatItCannotJudge) {
   expect_refusal("Lode.position 1 mm", "Lode.position");
 }
 
-// wherever it ends: what was not judged has no verdict, and nothing is taken
+// at any interruption: a candidate that was not judged has no verdict, and none is taken
 TEST(Simplify, GivesNoVerdictOnWhatItWasInterruptedIn) {
   int all = 0;
   const Simplification whole =
-      simplify(wish("single_cylinder.yaml", {"Load.position 1mm"}, "1 s"), [&](std::string_view, double) {
+      simplify(options_for("single_cylinder.yaml", {"Load.position 1mm"}, "1 s"), [&](std::string_view, double) {
         ++all;
         return true;
       });
   int interrupted = 0;
   for (int last = 1; last < all; last += 1 + all / 12) {
-    int asked = 0;
-    const Simplification result = simplify(wish("single_cylinder.yaml", {"Load.position 1mm"}, "1 s"),
-                                           [&](std::string_view, double) { return ++asked < last; });
-    if (!result.is_interrupted) continue;  // what saves time by chance is not tried with others
+    int calls = 0;
+    const Simplification result = simplify(options_for("single_cylinder.yaml", {"Load.position 1mm"}, "1 s"),
+                                           [&](std::string_view, double) { return ++calls < last; });
+    if (!result.is_interrupted) continue;  // a candidate that saves time by chance is not combined with others
     ++interrupted;
     EXPECT_FALSE(result.helps());
     EXPECT_TRUE(result.settings.empty());

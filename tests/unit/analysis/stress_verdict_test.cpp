@@ -1,4 +1,4 @@
-// What a stress test says of a cell, against stated bounds and a yardstick.
+// Verdicts of a stress test on a cell, against stated bounds and a yardstick.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -8,7 +8,7 @@
 namespace slew::analysis {
 namespace stress_verdict_test {
 
-// of 10000 steps; misses come alone
+// health of 10000 steps; misses come alone
 wire::Health timing(double missed, double p99, std::uint64_t longest_row = 1) {
   wire::Health health;
   health.response.count = health.release_jitter.count = 10000;
@@ -18,12 +18,12 @@ wire::Health timing(double missed, double p99, std::uint64_t longest_row = 1) {
   return health;
 }
 
-struct Told {
+struct Reported {
   std::string verdict;
   int code;
 };
 
-Told tell(const wire::Health& session, const wire::Health& yardstick, StressBounds bounds = {0.01, 500e-6}) {
+Reported report_of(const wire::Health& session, const wire::Health& yardstick, StressBounds bounds = {0.01, 500e-6}) {
   Stress stress;
   stress.bounds = bounds;
   StressCell& cell = stress.cells.emplace_back();
@@ -33,36 +33,38 @@ Told tell(const wire::Health& session, const wire::Health& yardstick, StressBoun
   return {json.at("cells").at(0).at("verdict"), json.at("exit_code")};
 }
 
-TEST(StressVerdict, SaysWhichBoundsTheBareLoopsBreakToo) {
+TEST(StressVerdict, NamesTheBoundsThatTheBareLoopsBreakToo) {
   const wire::Health good = timing(0.005, 400e-6), late = timing(0.02, 400e-6), slow = timing(0.005, 600e-6),
                      bad = timing(0.02, 600e-6);
-  EXPECT_EQ(tell(good, bad).verdict, "within");
-  EXPECT_EQ(tell(good, bad).code, 0);
-  EXPECT_EQ(tell(bad, bad).verdict, "over, as the yardstick");
-  EXPECT_EQ(tell(bad, bad).code, 3);
-  EXPECT_EQ(tell(late, bad).verdict, "over, as the yardstick");
-  EXPECT_EQ(tell(bad, good).verdict, "over; the yardstick misses 0.500 %, p99 400 us");
-  EXPECT_EQ(tell(late, slow).verdict, "over; the yardstick misses 0.500 %, p99 600 us") << "each is over another bound";
-  EXPECT_EQ(tell(bad, {}).verdict, "over") << "nothing is told of a yardstick that did not run";
-  EXPECT_EQ(tell(bad, late).verdict, "over, as the yardstick in misses alone");
-  EXPECT_EQ(tell(bad, slow).verdict, "over, as the yardstick at p99 alone");
+  EXPECT_EQ(report_of(good, bad).verdict, "within");
+  EXPECT_EQ(report_of(good, bad).code, 0);
+  EXPECT_EQ(report_of(bad, bad).verdict, "over, as the yardstick");
+  EXPECT_EQ(report_of(bad, bad).code, 3);
+  EXPECT_EQ(report_of(late, bad).verdict, "over, as the yardstick");
+  EXPECT_EQ(report_of(bad, good).verdict, "over; the yardstick misses 0.500 %, p99 400 us");
+  EXPECT_EQ(report_of(late, slow).verdict, "over; the yardstick misses 0.500 %, p99 600 us")
+      << "each is over another bound";
+  EXPECT_EQ(report_of(bad, {}).verdict, "over") << "no text on a yardstick that did not run";
+  EXPECT_EQ(report_of(bad, late).verdict, "over, as the yardstick in misses alone");
+  EXPECT_EQ(report_of(bad, slow).verdict, "over, as the yardstick at p99 alone");
 }
 
 TEST(StressVerdict, AYardstickThatMissesLessIsNoExcuse) {
   // 2 % of 10000 beside as many: two standard errors are 0.4 % when misses come alone
-  EXPECT_EQ(tell(timing(0.0239, 0), timing(0.02, 0)).verdict, "over, as the yardstick");
-  EXPECT_EQ(tell(timing(0.0241, 0), timing(0.02, 0)).verdict, "over; the yardstick misses 2.000 %, p99 0 us");
-  EXPECT_EQ(tell(timing(0.0241, 0), timing(0.02, 0)).code, 3);
-  EXPECT_EQ(tell(timing(0.0239, 0), timing(0.02, 0)).code, 3);
+  EXPECT_EQ(report_of(timing(0.0239, 0), timing(0.02, 0)).verdict, "over, as the yardstick");
+  EXPECT_EQ(report_of(timing(0.0241, 0), timing(0.02, 0)).verdict, "over; the yardstick misses 2.000 %, p99 0 us");
+  EXPECT_EQ(report_of(timing(0.0241, 0), timing(0.02, 0)).code, 3);
+  EXPECT_EQ(report_of(timing(0.0239, 0), timing(0.02, 0)).code, 3);
   // 0.8 % when they come four in a row, and never more than half of the yardstick's
-  EXPECT_EQ(tell(timing(0.0279, 0, 100), timing(0.02, 0, 4)).verdict, "over, as the yardstick");
-  EXPECT_EQ(tell(timing(0.0281, 0, 100), timing(0.02, 0, 4)).verdict, "over; the yardstick misses 2.000 %, p99 0 us");
-  EXPECT_EQ(tell(timing(0.0299, 0), timing(0.02, 0, 200)).verdict, "over, as the yardstick");
-  EXPECT_EQ(tell(timing(0.0301, 0), timing(0.02, 0, 200)).verdict, "over; the yardstick misses 2.000 %, p99 0 us");
+  EXPECT_EQ(report_of(timing(0.0279, 0, 100), timing(0.02, 0, 4)).verdict, "over, as the yardstick");
+  EXPECT_EQ(report_of(timing(0.0281, 0, 100), timing(0.02, 0, 4)).verdict,
+            "over; the yardstick misses 2.000 %, p99 0 us");
+  EXPECT_EQ(report_of(timing(0.0299, 0), timing(0.02, 0, 200)).verdict, "over, as the yardstick");
+  EXPECT_EQ(report_of(timing(0.0301, 0), timing(0.02, 0, 200)).verdict, "over; the yardstick misses 2.000 %, p99 0 us");
   // a tenth at p99
-  EXPECT_EQ(tell(timing(0, 659e-6), timing(0, 600e-6)).verdict, "over, as the yardstick");
-  EXPECT_EQ(tell(timing(0, 661e-6), timing(0, 600e-6)).verdict, "over; the yardstick misses 0.000 %, p99 600 us");
-  EXPECT_EQ(tell(timing(0.5, 660e-6), timing(0.02, 600e-6)).verdict, "over, as the yardstick at p99 alone");
+  EXPECT_EQ(report_of(timing(0, 659e-6), timing(0, 600e-6)).verdict, "over, as the yardstick");
+  EXPECT_EQ(report_of(timing(0, 661e-6), timing(0, 600e-6)).verdict, "over; the yardstick misses 0.000 %, p99 600 us");
+  EXPECT_EQ(report_of(timing(0.5, 660e-6), timing(0.02, 600e-6)).verdict, "over, as the yardstick at p99 alone");
 }
 
 TEST(StressVerdict, StepsThatWereGivenUpAreMissesAndHaveAColumn) {
@@ -75,7 +77,7 @@ TEST(StressVerdict, StepsThatWereGivenUpAreMissesAndHaveAColumn) {
   cell.response.time = cell.response.values = {1, 2};
   wire::Health& io = cell.nodes[static_cast<std::size_t>(wire::Role::io)];
   io.response.count = 8000;
-  io.release_jitter.count = 5600;  // those that were done
+  io.release_jitter.count = 5600;  // finished steps
   io.overruns = 2408;
   const auto json = nlohmann::json::parse(report_json(stress)).at("cells").at(0);
   EXPECT_EQ(json.at("verdict"), "over");
@@ -88,14 +90,14 @@ TEST(StressVerdict, StepsThatWereGivenUpAreMissesAndHaveAColumn) {
 }
 
 TEST(StressVerdict, IsGivenOfWhatIsStatedAlone) {
-  EXPECT_EQ(tell(timing(1, 1), timing(1, 1), {}).verdict, "");
-  EXPECT_EQ(tell(timing(1, 1), timing(1, 1), {}).code, 0);
-  EXPECT_EQ(tell(timing(1, 400e-6), timing(1, 1), {-1, 500e-6}).verdict, "within");
+  EXPECT_EQ(report_of(timing(1, 1), timing(1, 1), {}).verdict, "");
+  EXPECT_EQ(report_of(timing(1, 1), timing(1, 1), {}).code, 0);
+  EXPECT_EQ(report_of(timing(1, 400e-6), timing(1, 1), {-1, 500e-6}).verdict, "within");
 }
 
 TEST(StressVerdict, NothingMeasuredKeepsNoBound) {
-  EXPECT_EQ(tell({}, {}).verdict, "over");
-  EXPECT_EQ(tell({}, {}).code, 3);
+  EXPECT_EQ(report_of({}, {}).verdict, "over");
+  EXPECT_EQ(report_of({}, {}).code, 3);
 }
 
 // a cell that ended with this code before its first step, and without a word
@@ -108,7 +110,7 @@ Stress not_begun(ExitCode code) {
   return stress;
 }
 
-TEST(StressVerdict, NothingIsToldOfACellThatDidNotBegin) {
+TEST(StressVerdict, ACellThatDidNotBeginHasNoResults) {
   const Stress stress = not_begun(ExitCode::failed);
   const std::string text = report_text(stress);
   EXPECT_NE(text.find("failed with code 1"), std::string::npos) << text;
@@ -121,14 +123,14 @@ TEST(StressVerdict, NothingIsToldOfACellThatDidNotBegin) {
   for (const char* measured : {"session", "yardstick", "books"}) EXPECT_FALSE(json.contains(measured)) << measured;
 }
 
-TEST(StressVerdict, WhatSomebodyEndedIsInterrupted) {
+TEST(StressVerdict, ACellEndedByASignalIsInterrupted) {
   for (const ExitCode code : {ExitCode::interrupted, ExitCode::terminated}) {
     Stress stress = not_begun(code);
     const std::string text = report_text(stress);
     EXPECT_NE(text.find("interrupted"), std::string::npos) << text;
     EXPECT_EQ(text.find("failed"), std::string::npos) << text;
     EXPECT_EQ(text.find("steps due"), std::string::npos) << text;
-    // of one that had begun there is something to tell
+    // a cell that had begun is reported
     stress.cells.front().steps = 100;
     EXPECT_NE(report_text(stress).find("steps due"), std::string::npos);
   }

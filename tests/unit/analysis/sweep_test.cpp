@@ -68,13 +68,13 @@ TEST_F(SweepTest, GoesOnWhereItWasEnded) {
   EXPECT_EQ(second[2].value.number(), 3);
   EXPECT_EQ(runs("a"), 1u);
   EXPECT_EQ(runs("b"), 1u);
-  options_.is_anew = true;
+  options_.is_fresh = true;
   const auto third = sweep(tasks);
   EXPECT_FALSE(third[0].was_kept);
   EXPECT_EQ(runs("a"), 2u);
 }
 
-TEST_F(SweepTest, TellsWhyATaskHasNoResultAndTriesItAgain) {
+TEST_F(SweepTest, ReportsTheFailureOfATaskAndTriesItAgain) {
   const std::vector<SweepTask> tasks = {task("a", "echo no oil; exit 3"), task("b", "kill -9 $$"), counting("c", "4"),
                                         task("d", "echo 'not json {' > \"$2\"")};
   for (int i = 0; i < 2; ++i) {

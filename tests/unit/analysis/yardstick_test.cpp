@@ -1,4 +1,4 @@
-// The bare loops of a stress test: what of them is judged. Nothing is claimed about how fast they are.
+// The bare loops of a stress test: which of their steps are judged. No claim about their speed.
 #include "analysis/stress/yardstick.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(Yardstick, TheFirstStepsOfASliceAreNotJudged) {
   YardstickRules with_grace = rules({1000});
   with_grace.overrun.grace = {2 * kStep.ns + 1};
   const wire::Health health = run(with_grace, 20);
-  EXPECT_EQ(health.steps_done, 23u) << "three more than were asked for";
+  EXPECT_EQ(health.steps_done, 23u) << "three more than were requested";
   EXPECT_EQ(health.response.count - given_up(health), 20u);
 }
 

@@ -1,4 +1,4 @@
-// What keys do to the levers.
+// Effects of keys on the levers.
 #include "cli/keyboard.h"
 
 #include <gtest/gtest.h>

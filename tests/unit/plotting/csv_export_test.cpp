@@ -53,7 +53,7 @@ TEST(CsvExport, NumbersComeBackWithTheSameBits) {
   }
 }
 
-TEST(CsvExport, AFullDiskIsTold) {
+TEST(CsvExport, AFullDiskIsReported) {
   if (::access("/dev/full", W_OK) != 0) GTEST_SKIP() << "/dev/full is missing here";
   const std::vector<Series> series = {{"a", "m", {0}, {1}}};
   const Status status = export_csv(series, "/dev/full");

@@ -10,7 +10,7 @@
 namespace slew::plotting {
 namespace html_plot_test {
 
-// what the page's script reads
+// data of the page's script
 nlohmann::json data_of(const std::string& page) {
   const std::string begin = "id=\"data\">";
   const std::size_t from = page.find(begin) + begin.size();
@@ -51,8 +51,8 @@ TEST(HtmlPlot, StandsAlone) {
   EXPECT_EQ(page.find("<b>"), page.find("<b>", page.find("application/json")));  // nowhere in the page's own text
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
   EXPECT_NE(page.find("a &amp; b"), std::string::npos);
-  for (const char* asked : {"src=", "href=", "http:", "https:", "import("}) {
-    EXPECT_EQ(page.find(asked), std::string::npos) << asked;
+  for (const char* resource : {"src=", "href=", "http:", "https:", "import("}) {
+    EXPECT_EQ(page.find(resource), std::string::npos) << resource;
   }
   EXPECT_EQ(data_of(page)["plots"][0]["title"], "</script><b>");
 }

@@ -112,7 +112,7 @@ TEST_F(MatExport, NamesAreValidInMatlabAndNoneComesTwice) {
                                       std::string(63, 'q'), std::string(61, 'q') + "_2", "x__"}));
 }
 
-TEST_F(MatExport, WhatCannotBeWrittenIsTold) {
+TEST_F(MatExport, AWriteErrorIsReported) {
   const std::vector<Series> series = {{"a", "m", {0}, {1}}};
   const Status nowhere = export_mat(series, kOrigin, file("none/a.mat"));
   EXPECT_EQ(nowhere.code, ExitCode::storage);

@@ -1,4 +1,4 @@
-// Marks over logarithmic axes: where they stand, and what is left out.
+// Marks over logarithmic axes: their positions, and omitted values.
 #include "plotting/scatter_svg.h"
 
 #include <gtest/gtest.h>

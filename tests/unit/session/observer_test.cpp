@@ -1,4 +1,4 @@
-// What becomes of a request that is lost on its way, or whose session ends.
+// Requests that are lost on their way, or whose session ends.
 #include "session/observer.h"
 
 #include <gtest/gtest.h>
@@ -27,42 +27,42 @@ wire::Header header() {
   return header;
 }
 
-// What an io node says: at first, and when it is asked.
+// Messages of an io node: at first, and as replies.
 class PlayedIo final : public transport::Transport {
  public:
   PlayedIo() {
     wire::SessionDescription session;
     session.header = header();
     session.name = "crane";
-    say(session, said_);
+    publish_to(session, messages_);
     wire::Health health;
     health.header = header();
-    say(health, said_);
+    publish_to(health, messages_);
   }
 
   template <typename Message>
-  void say_at_first(const Message& message) {
-    say(message, said_);
+  void publish_first(const Message& message) {
+    publish_to(message, messages_);
   }
   template <typename Message>
-  void say_when_asked(const Message& message) {
-    say(message, when_asked_);
+  void publish_as_reply(const Message& message) {
+    publish_to(message, replies_);
   }
 
-  // It does not know this program's writer yet.
+  // It has not discovered this program's writer yet.
   void lose_requests(int count) { lost_ = count; }
 
   Status publish(Topic topic, std::span<const std::byte>) noexcept override {
     EXPECT_EQ(topic, Topic::control_request);
     if (lost_-- > 0) return Status::ok();
-    said_.insert(said_.end(), when_asked_.begin(), when_asked_.end());
-    when_asked_.clear();
+    messages_.insert(messages_.end(), replies_.begin(), replies_.end());
+    replies_.clear();
     return Status::ok();
   }
   bool take(transport::Received& message) override {
-    if (said_.empty()) return false;
-    taken_ = std::move(said_.front());
-    said_.pop_front();
+    if (messages_.empty()) return false;
+    taken_ = std::move(messages_.front());
+    messages_.pop_front();
     message = {taken_.topic, taken_.bytes};
     return true;
   }
@@ -72,25 +72,25 @@ class PlayedIo final : public transport::Transport {
   std::size_t matched_readers(Topic) const override { return 1; }
 
  private:
-  struct Said {
+  struct PlayedMessage {
     Topic topic{};
     transport::ByteBuffer bytes;
   };
 
   template <typename Message>
-  static void say(const Message& message, std::deque<Said>& where) {
-    Said said{transport::kTopicOf<Message>, {}};
-    EXPECT_TRUE(transport::encode(message, said.bytes));
-    where.push_back(std::move(said));
+  static void publish_to(const Message& message, std::deque<PlayedMessage>& where) {
+    PlayedMessage played{transport::kTopicOf<Message>, {}};
+    EXPECT_TRUE(transport::encode(message, played.bytes));
+    where.push_back(std::move(played));
   }
 
-  std::deque<Said> said_;
-  std::deque<Said> when_asked_;
-  Said taken_;
+  std::deque<PlayedMessage> messages_;
+  std::deque<PlayedMessage> replies_;
+  PlayedMessage taken_;
   int lost_ = 0;
 };
 
-class Asking : public ::testing::Test {
+class ObserverRequest : public ::testing::Test {
  protected:
   static wire::NodeStatus end() {
     wire::NodeStatus status;
@@ -107,13 +107,13 @@ class Asking : public ::testing::Test {
     return reply;
   }
 
-  // "" when io has answered, else what the user is told
-  std::string ask(std::uint64_t number = kRequest, SimDuration at_most = milliseconds(10'000)) {
+  // "" when io has answered, else the message for the user
+  std::string failure_of_request(std::uint64_t number = kRequest, SimDuration at_most = milliseconds(10'000)) {
     Observer observer(std::move(io_), "crane");
     wire::ControlRequest request;
     request.request = number;
     try {
-      const wire::ControlReply reply = observer.ask(request, at_most, [this] {
+      const wire::ControlReply reply = observer.request_reply(request, at_most, [this] {
         ++sent_first_;
         node::stop_requested.store(signal_);
       });
@@ -126,7 +126,7 @@ class Asking : public ::testing::Test {
 
   int sent_first_ = 0;
   int signal_ = 0;                // that comes when the request is sent
-  ExitCode code_ = ExitCode::ok;  // of the failure
+  ExitCode code_ = ExitCode::ok;  // exit code of the failure
   std::unique_ptr<PlayedIo> io_ = std::make_unique<PlayedIo>();
 };
 
@@ -134,65 +134,66 @@ constexpr const char* kEnded =
     "session 'crane' ended before it answered: the session reached its end; there is nothing left to be changed; start "
     "it again";
 
-TEST_F(Asking, IsAnswered) {
-  io_->say_when_asked(accepted());
-  EXPECT_EQ(ask(), "");
+TEST_F(ObserverRequest, IsAnswered) {
+  io_->publish_as_reply(accepted());
+  EXPECT_EQ(failure_of_request(), "");
 }
 
-TEST_F(Asking, SendsALostRequestAgainWithWhatBelongsToIt) {
+TEST_F(ObserverRequest, SendsALostRequestAgainWithWhatBelongsToIt) {
   io_->lose_requests(1);
-  io_->say_when_asked(accepted());
-  EXPECT_EQ(ask(), "");
+  io_->publish_as_reply(accepted());
+  EXPECT_EQ(failure_of_request(), "");
   EXPECT_EQ(sent_first_, 2);
 }
 
-TEST_F(Asking, TakesNoEventForTheAnswerToARequestThatHasNoNumberYet) {
+TEST_F(ObserverRequest, TakesNoEventForTheAnswerToARequestThatHasNoNumberYet) {
   wire::ControlReply event = accepted();
   event.request = 0;
-  io_->say_at_first(event);
-  io_->say_when_asked(end());
-  EXPECT_EQ(ask(0), kEnded);
+  io_->publish_first(event);
+  io_->publish_as_reply(end());
+  EXPECT_EQ(failure_of_request(0), kEnded);
 }
 
-TEST_F(Asking, ASessionThatEndsInsteadOfAnsweringIsToldAtOnce) {
-  io_->say_when_asked(end());
-  EXPECT_EQ(ask(), kEnded);
+TEST_F(ObserverRequest, ASessionThatEndsInsteadOfReplyingFailsAtOnce) {
+  io_->publish_as_reply(end());
+  EXPECT_EQ(failure_of_request(), kEnded);
   EXPECT_EQ(code_, ExitCode::failed);
 }
 
-TEST_F(Asking, ASessionThatDoesNotAnswerIsTold) {
+TEST_F(ObserverRequest, ASessionWithoutAReplyFails) {
   io_->lose_requests(1000);
-  EXPECT_EQ(ask(kRequest, milliseconds(1000)),
+  EXPECT_EQ(failure_of_request(kRequest, milliseconds(1000)),
             "session 'crane' has not answered within 1 s; the request may have had an effect; look with 'slewring "
             "sessions' whether it still runs");
   EXPECT_EQ(code_, ExitCode::failed);
 }
 
-TEST_F(Asking, ASignalEndsIt) {
+TEST_F(ObserverRequest, ASignalEndsIt) {
   signal_ = static_cast<int>(ExitCode::interrupted);
-  EXPECT_EQ(ask(), "interrupted; the request may have had an effect");
+  EXPECT_EQ(failure_of_request(), "interrupted; the request may have had an effect");
   node::stop_requested.store(0);
   EXPECT_EQ(code_, ExitCode::interrupted);
 }
 
-TEST_F(Asking, ASessionThatHasEndedIsToldAtOnce) {
-  io_->say_at_first(end());
-  EXPECT_EQ(ask(), kEnded);
+TEST_F(ObserverRequest, ASessionThatHasEndedFailsAtOnce) {
+  io_->publish_first(end());
+  EXPECT_EQ(failure_of_request(), kEnded);
 }
 
-TEST_F(Asking, TakesAnAnswerThatComesBehindTheEnd) {
-  io_->say_when_asked(end());
-  io_->say_when_asked(accepted());
-  EXPECT_EQ(ask(), "");
+TEST_F(ObserverRequest, TakesAnAnswerThatComesBehindTheEnd) {
+  io_->publish_as_reply(end());
+  io_->publish_as_reply(accepted());
+  EXPECT_EQ(failure_of_request(), "");
 }
 
-TEST_F(Asking, ASessionThatIsWithdrawnIsToldAtOnce) {
+TEST_F(ObserverRequest, AWithdrawnSessionFailsAtOnce) {
   wire::SessionDescription withdrawn;
   withdrawn.header = header();
   withdrawn.header.phase = wire::Phase::ended;
   withdrawn.name = "crane";
-  io_->say_when_asked(withdrawn);
-  EXPECT_EQ(ask(), "session 'crane' ended before it answered; there is nothing left to be changed; start it again");
+  io_->publish_as_reply(withdrawn);
+  EXPECT_EQ(failure_of_request(),
+            "session 'crane' ended before it answered; there is nothing left to be changed; start it again");
 }
 
 }  // namespace observer_test

@@ -1,4 +1,4 @@
-// What `info --events` tells of requests, answers and leases in a recording.
+// Output of `info --events` for requests, answers and leases in a recording.
 #include "session/recorded_events.h"
 
 #include <gtest/gtest.h>
@@ -26,12 +26,12 @@ wire::ControlRequest param_set() {
 }
 
 // io's answer in words, or without, as in recordings of protocol version 3
-wire::ControlReply accepted(const std::string& asked) {
+wire::ControlReply accepted(const std::string& text) {
   wire::ControlReply reply;
   reply.header.step = kStep;
   reply.request = kRequest;
   reply.is_accepted = true;
-  reply.asked = asked;
+  reply.asked = text;
   return reply;
 }
 
@@ -49,13 +49,13 @@ class Events : public ::testing::Test {
   }
 
   template <typename Message>
-  void say(const Message& message) {
+  void write_message(const Message& message) {
     std::vector<std::byte> bytes;
     ASSERT_TRUE(transport::encode(message, bytes));
     ASSERT_EQ(writer_->write(channels_[transport::kTopicOf<Message>], {0, kStep, 0, 0}, bytes).text, "");
   }
 
-  std::vector<std::string> told() {
+  std::vector<std::string> event_texts() {
     EXPECT_EQ(writer_->close({}).text, "");
     std::unique_ptr<recording::Reader> reader;
     EXPECT_EQ(recording::Reader::open(path_, reader).text, "");
@@ -74,41 +74,42 @@ class Events : public ::testing::Test {
   std::map<Topic, recording::ChannelId> channels_;
 };
 
-TEST_F(Events, SayWhatWasAskedWhereTheRequestItselfWasNotRecorded) {
-  say(accepted(node::to_text(param_set())));
-  EXPECT_EQ(told(), std::vector{node::to_text(param_set()) + " accepted"});
+TEST_F(Events, HaveTheTextOfARequestThatWasNotRecorded) {
+  write_message(accepted(node::to_text(param_set())));
+  EXPECT_EQ(event_texts(), std::vector{node::to_text(param_set()) + " accepted"});
 }
 
 TEST_F(Events, OfAnEarlierRecordingSayItByTheRequest) {
-  say(param_set());
-  say(accepted(""));
-  EXPECT_EQ(told(), std::vector{node::to_text(param_set()) + " accepted"});
+  write_message(param_set());
+  write_message(accepted(""));
+  EXPECT_EQ(event_texts(), std::vector{node::to_text(param_set()) + " accepted"});
 }
 
-TEST_F(Events, TellAnAnswerThatWasSaidAgainOnce) {
-  say(accepted(node::to_text(param_set())));
-  say(accepted(node::to_text(param_set())));
-  EXPECT_EQ(told().size(), 1u);
+TEST_F(Events, ListAResentReplyOnce) {
+  write_message(accepted(node::to_text(param_set())));
+  write_message(accepted(node::to_text(param_set())));
+  EXPECT_EQ(event_texts().size(), 1u);
 }
 
 TEST_F(Events, WithoutEitherAreARequest) {
-  say(accepted(""));
-  EXPECT_EQ(told(), std::vector<std::string>{"request accepted"});
+  write_message(accepted(""));
+  EXPECT_EQ(event_texts(), std::vector<std::string>{"request accepted"});
 }
 
-TEST_F(Events, NobodyAskedForAreToldInTheirOwnWords) {
-  wire::ControlReply told_by_io = accepted("");
-  told_by_io.request = 0;
-  told_by_io.reason = "session.overrun: slip: at step 40";
-  say(told_by_io);
+TEST_F(Events, WithoutARequestHaveTheirOwnText) {
+  wire::ControlReply event_of_io = accepted("");
+  event_of_io.request = 0;
+  event_of_io.reason = "session.overrun: slip: at step 40";
+  write_message(event_of_io);
   wire::ControllerLease lease;
   lease.header.step = kStep;
   lease.controller = "pid";
   lease.channel = "Input_Lift";
   lease.reason = "no value came";
-  say(lease);
-  EXPECT_EQ(told(), (std::vector<std::string>{"session.overrun: slip: at step 40",
-                                              "controller pid does not have channel Input_Lift: no value came"}));
+  write_message(lease);
+  EXPECT_EQ(event_texts(),
+            (std::vector<std::string>{"session.overrun: slip: at step 40",
+                                      "controller pid does not have channel Input_Lift: no value came"}));
 }
 
 }  // namespace recorded_events_test

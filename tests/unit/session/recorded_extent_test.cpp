@@ -1,4 +1,4 @@
-// How far a recording goes without a gap, and what is missing in it.
+// Extent of a recording without a gap, and its missing messages.
 #include "session/recorded_extent.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-// A recording that is said message by message.
+// A recording that is written message by message.
 class Extent : public ::testing::Test {
  protected:
   Extent() {
@@ -36,7 +36,7 @@ class Extent : public ::testing::Test {
     }
   }
 
-  void say(Topic topic, StepIndex step, Phase phase = Phase::running) {
+  void write_message(Topic topic, StepIndex step, Phase phase = Phase::running) {
     wire::Header header;
     header.epoch = epoch_;
     header.phase = phase;
@@ -57,7 +57,7 @@ class Extent : public ::testing::Test {
   // ticks and samples of steps first .. last
   void run(StepIndex first, StepIndex last) {
     for (StepIndex step = first; step <= last; ++step) {
-      for (const Topic topic : {Topic::tick, Topic::mechanism, Topic::actuators}) say(topic, step);
+      for (const Topic topic : {Topic::tick, Topic::mechanism, Topic::actuators}) write_message(topic, step);
     }
   }
 
@@ -79,7 +79,7 @@ class Extent : public ::testing::Test {
 };
 
 TEST_F(Extent, OfAWholeSessionReachesFromItsFirstStepToItsLast) {
-  say(Topic::mechanism, kJoinStep, Phase::init);
+  write_message(Topic::mechanism, kJoinStep, Phase::init);
   run(0, 300);
   const RecordedExtent whole = extent();
   EXPECT_EQ(whole.first_step, 0);
@@ -89,7 +89,7 @@ TEST_F(Extent, OfAWholeSessionReachesFromItsFirstStepToItsLast) {
 }
 
 TEST_F(Extent, OfARecordingThatBeginsWithStatesBeginsWithTheirStep) {
-  say(Topic::state, 700);
+  write_message(Topic::state, 700);
   run(700, 1600);
   const RecordedExtent late = extent();
   EXPECT_EQ(late.first_step, 700);
@@ -98,7 +98,7 @@ TEST_F(Extent, OfARecordingThatBeginsWithStatesBeginsWithTheirStep) {
 }
 
 TEST_F(Extent, EndsInFrontOfTheFirstGapHoweverLongItIs) {
-  say(Topic::state, 700);
+  write_message(Topic::state, 700);
   run(700, 720);
   run(722, 730);
   run(20'000, 20'010);
@@ -121,7 +121,7 @@ TEST_F(Extent, BeginsNotWithTheStatesThatFollowAGap) {
 }
 
 TEST_F(Extent, CountsTheFirstStepsThatAreMissingBehindTheStates) {
-  say(Topic::state, 700);
+  write_message(Topic::state, 700);
   run(702, 710);
   const RecordedExtent torn = extent();
   EXPECT_EQ(torn.first_step, 700);
@@ -130,14 +130,14 @@ TEST_F(Extent, CountsTheFirstStepsThatAreMissingBehindTheStates) {
 }
 
 TEST_F(Extent, OfEpochsIsThatOfTheNewestAndTheLossesOfAll) {
-  say(Topic::mechanism, kJoinStep, Phase::init);
+  write_message(Topic::mechanism, kJoinStep, Phase::init);
   run(0, 10);
   run(12, 20);
   epoch_ = 1;  // a reset
-  say(Topic::tick, kJoinStep, Phase::init);
+  write_message(Topic::tick, kJoinStep, Phase::init);
   run(0, 5);
   epoch_ = 2;  // `control load`
-  say(Topic::tick, 400, Phase::init);
+  write_message(Topic::tick, 400, Phase::init);
   run(400, 450);
   const RecordedExtent third = extent();
   EXPECT_EQ(third.epoch, 2u);
@@ -155,7 +155,7 @@ TEST_F(Extent, CountsTheStepsOfAllEpochsAlsoWhereATickWasLost) {
   EXPECT_EQ(tick_span(*recorded()).steps, 21 + 51);
 }
 
-TEST_F(Extent, WithoutWhatTellsItsBeginIsCountedFromStepZero) {
+TEST_F(Extent, WithoutARecordedBeginIsCountedFromStepZero) {
   run(5, 10);
   const RecordedExtent headless = extent();
   EXPECT_FALSE(headless.first_step.has_value());
@@ -164,17 +164,17 @@ TEST_F(Extent, WithoutWhatTellsItsBeginIsCountedFromStepZero) {
 }
 
 TEST_F(Extent, OfOneNodeBeginsWithItsFirstTick) {
-  for (StepIndex step = 0; step < 10; ++step) say(Topic::tick, step);
+  for (StepIndex step = 0; step < 10; ++step) write_message(Topic::tick, step);
   const RecordedExtent alone = extent();
   EXPECT_EQ(alone.first_step, 0);
   EXPECT_EQ(alone.complete_to, 9);
 }
 
 TEST_F(Extent, HoldsTheSamplesOfFlexibleBodiesInTheirRhythm) {
-  say(Topic::state, 820);
+  write_message(Topic::state, 820);
   run(820, 899);
-  for (const StepIndex step : {820, 830, 840, 860, 890}) say(Topic::elastic, step);
-  for (const StepIndex step : {820, 830, 840, 850, 860, 880}) say(Topic::flexible, step);
+  for (const StepIndex step : {820, 830, 840, 860, 890}) write_message(Topic::elastic, step);
+  for (const StepIndex step : {820, 830, 840, 850, 860, 880}) write_message(Topic::flexible, step);
   const RecordedExtent slow = extent();
   EXPECT_EQ(slow.lost, 3u + 1u);
   EXPECT_EQ(slow.complete_to, 849);
@@ -182,10 +182,10 @@ TEST_F(Extent, HoldsTheSamplesOfFlexibleBodiesInTheirRhythm) {
 }
 
 TEST_F(Extent, HoldsTheSamplesOfFlexibleBodiesOfEveryStep) {
-  say(Topic::elastic, kJoinStep, Phase::init);
+  write_message(Topic::elastic, kJoinStep, Phase::init);
   run(0, 20);
   for (StepIndex step = 0; step <= 20; ++step) {
-    if (step != 7) say(Topic::elastic, step);
+    if (step != 7) write_message(Topic::elastic, step);
   }
   const RecordedExtent fast = extent();
   EXPECT_EQ(fast.lost, 1u);

@@ -8,18 +8,18 @@ namespace run_outcome_test {
 
 using Messages = std::vector<std::string>;
 
-TEST(Messages, AReasonThatWasPassedOnIsToldOnceByItsSource) {
+TEST(Messages, AForwardedReasonIsReportedOnceByItsSource) {
   const Messages all = {"io_node: recorder (process 7 on vm): runs: the disk is full; nothing is kept",
                         "recorder_node: runs: the disk is full; nothing is kept"};
   EXPECT_EQ(without_echoes(all), Messages{"recorder_node: runs: the disk is full; nothing is kept"});
 }
 
-TEST(Messages, EqualOnesAreToldOnce) {
+TEST(Messages, EqualOnesAreReportedOnce) {
   const Messages all = {"a_node: lost", "a_node: lost"};
   EXPECT_EQ(without_echoes(all), Messages{"a_node: lost"});
 }
 
-TEST(Messages, DifferentReasonsAreAllTold) {
+TEST(Messages, DifferentReasonsAreAllReported) {
   const Messages all = {"io_node: mechanics is gone", "recorder_node: the disk is full"};
   EXPECT_EQ(without_echoes(all), all);
 }

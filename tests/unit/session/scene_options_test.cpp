@@ -68,7 +68,7 @@ TEST_F(SceneOptionsTest, AYamlFileTakesThePlaceOfTheScript) {
   EXPECT_EQ(scene.script.changes[0].value, 1500);
 }
 
-TEST_F(SceneOptionsTest, AMistakeInAnInputFileIsToldWithItsPlace) {
+TEST_F(SceneOptionsTest, AMistakeInAnInputFileIsReportedWithItsPlace) {
   options_.input = write("input.csv", "time,Input_Lft\n0,0\n1,0.5\n");
   try {
     static_cast<void>(scene::load_scene(options_));
@@ -89,7 +89,7 @@ TEST_F(SceneOptionsTest, NoneAndKeyboardLeaveNoScript) {
   }
 }
 
-TEST_F(SceneOptionsTest, WhoMovesAnInputMayBeAnotherWhereASessionGoesOn) {
+TEST_F(SceneOptionsTest, AContinuedSessionMayHaveAnotherControllerOfAnInput) {
   options_.overrides = {"Input_Lift.controller=lockstep", "Input_Lift.controller_delay=3"};
   const scene::Scene saved = scene::load_scene(options_);
   scene::SceneOptions on;
@@ -106,7 +106,7 @@ TEST_F(SceneOptionsTest, WhoMovesAnInputMayBeAnotherWhereASessionGoesOn) {
   }
   ASSERT_EQ(continued.changes.size(), 1u);
   EXPECT_EQ(continued.changes[0].path, "Bag.mass");
-  // of the same field a wrong value, and another one of the same input
+  // a wrong value for the same field, and another one for the same input
   on.overrides = {"Input_Lift.controller=somehow"};
   EXPECT_THROW(static_cast<void>(scene::continue_scene(on, saved.expanded_text, saved.name)), scene::LoadError);
   on.overrides = {"Input_Lift.ramp=1 s"};

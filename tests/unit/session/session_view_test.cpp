@@ -1,4 +1,4 @@
-// What an observer makes of a session's messages.
+// An observer's view from a session's messages.
 #include "session/session_view.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class SessionViewTest : public ::testing::Test {
   }
 
   template <typename Message>
-  static void tell(SessionView& view, const Message& message) {
+  static void take_message(SessionView& view, const Message& message) {
     transport::ByteBuffer bytes;
     ASSERT_TRUE(transport::encode(message, bytes));
     view.take(transport::kTopicOf<Message>, bytes);
@@ -58,27 +58,27 @@ class SessionViewTest : public ::testing::Test {
 
 TEST_F(SessionViewTest, IsPausedWhenIoHoldsWithoutAReason) {
   SessionView view("crane");
-  tell(view, session_);
+  take_message(view, session_);
   wire::NodeStatus status;
   status.header = header(Role::io);
   status.state = wire::NodeState::running;
-  tell(view, status);
+  take_message(view, status);
   EXPECT_FALSE(view.is_paused());
   status.state = wire::NodeState::holding;
-  tell(view, status);
+  take_message(view, status);
   EXPECT_TRUE(view.is_paused());
   status.reason = "mechanics is silent";
-  tell(view, status);
+  take_message(view, status);
   EXPECT_FALSE(view.is_paused());
 }
 
 TEST_F(SessionViewTest, KeepsValueAndExtremesOfEveryVariable) {
   SessionView view("crane");
-  tell(view, session_);
-  tell(view, directory(Role::mechanics, 2, 0, {"A.force", "B.force"}));
-  tell(view, block(Role::mechanics, 1, {1, -5}));
-  tell(view, block(Role::mechanics, 2, {3, -7}));
-  tell(view, block(Role::mechanics, 3, {2, -6}));
+  take_message(view, session_);
+  take_message(view, directory(Role::mechanics, 2, 0, {"A.force", "B.force"}));
+  take_message(view, block(Role::mechanics, 1, {1, -5}));
+  take_message(view, block(Role::mechanics, 2, {3, -7}));
+  take_message(view, block(Role::mechanics, 3, {2, -6}));
   ASSERT_NE(view.find("A.force"), nullptr);
   EXPECT_EQ(view.find("A.force")->value, 2);
   EXPECT_EQ(view.find("A.force")->max, 3);
@@ -87,20 +87,20 @@ TEST_F(SessionViewTest, KeepsValueAndExtremesOfEveryVariable) {
   EXPECT_EQ(view.find("C.force"), nullptr);
 }
 
-TEST_F(SessionViewTest, KnowsWhatIsLeftOut) {
+TEST_F(SessionViewTest, SeesVariablesThatAreLeftOut) {
   SessionView view("crane");
-  tell(view, session_);
-  tell(view, directory(Role::mechanics, 1, 0, {"Cyl.force"}));
-  tell(view, directory(Role::io, 1, 0, {"session.lag"}));
-  tell(view, block(Role::mechanics, 1, {3}));
+  take_message(view, session_);
+  take_message(view, directory(Role::mechanics, 1, 0, {"Cyl.force"}));
+  take_message(view, directory(Role::io, 1, 0, {"session.lag"}));
+  take_message(view, block(Role::mechanics, 1, {3}));
   EXPECT_FALSE(view.is_left_out("Cyl.force"));
-  tell(view, block(Role::mechanics, 2, {}));
-  tell(view, block(Role::mechanics, 3, {}));
-  tell(view, block(Role::io, 3, {0}));
+  take_message(view, block(Role::mechanics, 2, {}));
+  take_message(view, block(Role::mechanics, 3, {}));
+  take_message(view, block(Role::io, 3, {0}));
   EXPECT_TRUE(view.is_left_out("Cyl.force"));
   EXPECT_FALSE(view.is_left_out("session.lag"));
   EXPECT_EQ(view.node(Role::mechanics).left_out_since, 2);
-  tell(view, block(Role::mechanics, 4, {5}));
+  take_message(view, block(Role::mechanics, 4, {5}));
   EXPECT_FALSE(view.is_left_out("Cyl.force"));
   EXPECT_EQ(view.node(Role::mechanics).blocks_left_out, 2u);
   EXPECT_EQ(view.node(Role::mechanics).blocks, 4u);
@@ -108,55 +108,55 @@ TEST_F(SessionViewTest, KnowsWhatIsLeftOut) {
 
 TEST_F(SessionViewTest, NamesThatComeBeforeTheSessionAreKept) {
   SessionView view("crane");
-  tell(view, directory(Role::mechanics, 1, 0, {"A.force"}));
-  tell(view, directory(Role::io, 1, 0, {"Input.raw"}));
+  take_message(view, directory(Role::mechanics, 1, 0, {"A.force"}));
+  take_message(view, directory(Role::io, 1, 0, {"Input.raw"}));
   EXPECT_FALSE(view.has_whole_directory());
-  tell(view, session_);
+  take_message(view, session_);
   EXPECT_TRUE(view.has_whole_directory());
 }
 
 TEST_F(SessionViewTest, TheDirectoryIsWholeOnlyWhenEveryMessageHasCome) {
   SessionView view("crane");
-  tell(view, session_);
-  tell(view, directory(Role::io, 1, 0, {"Input.raw"}));
-  tell(view, directory(Role::mechanics, 3, 0, {"A.force", "B.force"}));
+  take_message(view, session_);
+  take_message(view, directory(Role::io, 1, 0, {"Input.raw"}));
+  take_message(view, directory(Role::mechanics, 3, 0, {"A.force", "B.force"}));
   EXPECT_FALSE(view.has_whole_directory());
-  tell(view, directory(Role::mechanics, 3, 2, {"C.force"}));
+  take_message(view, directory(Role::mechanics, 3, 2, {"C.force"}));
   EXPECT_TRUE(view.has_whole_directory());
 }
 
 TEST_F(SessionViewTest, TheDirectoryIsWholeWithANodeThatHasNoVariables) {
   SessionView view("crane");
-  tell(view, session_);
-  tell(view, directory(Role::io, 1, 0, {"Input.raw"}));
+  take_message(view, session_);
+  take_message(view, directory(Role::io, 1, 0, {"Input.raw"}));
   EXPECT_FALSE(view.has_whole_directory());
-  tell(view, directory(Role::mechanics, 0, 0, {}));
+  take_message(view, directory(Role::mechanics, 0, 0, {}));
   EXPECT_TRUE(view.has_whole_directory());
 }
 
 TEST_F(SessionViewTest, PassesOverOtherSessions) {
   SessionView view("crane");
-  tell(view, session_);
+  take_message(view, session_);
   wire::SessionDescription other = session_;
   other.name = "other";
   other.header.session = {9};
-  tell(view, other);
+  take_message(view, other);
   EXPECT_EQ(view.session().header.session, session_.header.session);
   wire::NodeStatus status;
   status.header = header(Role::mechanics);
   status.header.session = {9};
-  tell(view, status);
+  take_message(view, status);
   EXPECT_FALSE(view.node(Role::mechanics).is_known);
 }
 
 TEST_F(SessionViewTest, ALaterSessionOfTheNameTakesThePlaceOfTheFirst) {
   SessionView view("crane");
-  tell(view, session_);
-  tell(view, directory(Role::mechanics, 1, 0, {"A.force"}));
+  take_message(view, session_);
+  take_message(view, directory(Role::mechanics, 1, 0, {"A.force"}));
   wire::SessionDescription later = session_;
   later.header.session = {7};
   later.started_ns = session_.started_ns + 1;
-  tell(view, later);
+  take_message(view, later);
   EXPECT_EQ(view.session().header.session, later.header.session);
   EXPECT_EQ(view.find("A.force"), nullptr);
 }
@@ -170,10 +170,10 @@ TEST_F(SessionViewTest, ASessionThatIsWithdrawnGivesThePlaceBackToItsRival) {
   // whichever came first
   for (const bool is_later_first : {false, true}) {
     SessionView view("crane");
-    tell(view, is_later_first ? later : session_);
-    tell(view, is_later_first ? session_ : later);
+    take_message(view, is_later_first ? later : session_);
+    take_message(view, is_later_first ? session_ : later);
     EXPECT_EQ(view.session().header.session, later.header.session);
-    tell(view, withdrawn);
+    take_message(view, withdrawn);
     ASSERT_TRUE(view.has_session());
     EXPECT_EQ(view.session().header.session, session_.header.session);
   }
@@ -181,11 +181,11 @@ TEST_F(SessionViewTest, ASessionThatIsWithdrawnGivesThePlaceBackToItsRival) {
 
 TEST_F(SessionViewTest, NothingIsLeftOfAWithdrawnSessionWithoutARival) {
   SessionView view("crane");
-  tell(view, session_);
-  tell(view, directory(Role::mechanics, 1, 0, {"A.force"}));
+  take_message(view, session_);
+  take_message(view, directory(Role::mechanics, 1, 0, {"A.force"}));
   wire::SessionDescription withdrawn = session_;
   withdrawn.header.phase = wire::Phase::ended;
-  tell(view, withdrawn);
+  take_message(view, withdrawn);
   EXPECT_FALSE(view.has_session());
   EXPECT_EQ(view.find("A.force"), nullptr);
 }
@@ -196,32 +196,32 @@ TEST_F(SessionViewTest, OneThatOnlyClaimsTheNameTakesNoPlace) {
   claim.header.session = {7};
   claim.header.phase = wire::Phase::join;
   claim.started_ns = session_.started_ns + 1;
-  tell(view, claim);
+  take_message(view, claim);
   EXPECT_FALSE(view.has_session());
-  tell(view, session_);
+  take_message(view, session_);
   EXPECT_EQ(view.session().header.session, session_.header.session);
 }
 
 TEST_F(SessionViewTest, StepTimesAreWeightedByTheStepsTheyWereMeasuredOver) {
   SessionView view("crane");
-  tell(view, session_);
+  take_message(view, session_);
   wire::Health health;
   health.header = header(Role::mechanics);
   health.steps_done = 100;
   health.step_time_mean = 10e-6;
   health.step_time_max = 50e-6;
-  tell(view, health);
+  take_message(view, health);
   health.steps_done = 400;
   health.step_time_mean = 20e-6;
   health.step_time_max = 30e-6;
-  tell(view, health);
+  take_message(view, health);
   EXPECT_NEAR(view.node(Role::mechanics).times.mean(), 17.5e-6, 1e-12);
   EXPECT_EQ(view.node(Role::mechanics).times.max, 50e-6);
 }
 
 TEST_F(SessionViewTest, RubbishIsPassedOver) {
   SessionView view("crane");
-  tell(view, session_);
+  take_message(view, session_);
   const std::vector<std::byte> rubbish(17, std::byte{0xAB});
   for (std::size_t topic = 0; topic < wire::kTopics; ++topic) view.take(static_cast<wire::Topic>(topic), rubbish);
   EXPECT_TRUE(view.variables().empty());

@@ -43,7 +43,7 @@ TYPED_TEST(EveryMessage, CutAnywhereIsRefused) {
   ASSERT_TRUE(encode(random_message<TypeParam>(random, 7), buffer));
   const std::size_t padding = static_cast<std::size_t>(buffer[3]);
   TypeParam received;
-  // what versions before ended without, and the gap in front of it, has a test of its own
+  // fields that earlier versions ended without, and the gap in front of them, have a test of their own
   constexpr bool kHasAppended =
       std::is_same_v<TypeParam, wire::ControllerLease> || std::is_same_v<TypeParam, wire::ControlReply>;
   const std::size_t appended = kHasAppended ? 16 : 0;
@@ -54,7 +54,7 @@ TYPED_TEST(EveryMessage, CutAnywhereIsRefused) {
   }
 }
 
-// What earlier versions ended without is read as nothing, and no other cut is taken for such an end.
+// Fields that earlier versions ended without are read as empty, and no other cut is taken for such an end.
 template <typename M, typename Field>
 void expect_may_be_missing(M sent, Field M::*appended, std::size_t whole_before) {
   ByteBuffer buffer;
@@ -71,7 +71,7 @@ void expect_may_be_missing(M sent, Field M::*appended, std::size_t whole_before)
   }
 }
 
-TEST(OfARecordingOfVersion3, ALeaseSaysNotWhatItAnswers) {
+TEST(OfARecordingOfVersion3, ALeaseLacksTheNumberThatItAnswers) {
   std::mt19937_64 random(2);
   wire::ControllerLease lease = random_message<wire::ControllerLease>(random, 0);
   lease.reason = "abc";
@@ -80,7 +80,7 @@ TEST(OfARecordingOfVersion3, ALeaseSaysNotWhatItAnswers) {
   expect_may_be_missing(lease, &wire::ControllerLease::answers, 4 + 40 + 2 * 8 + 8 + 8);
 }
 
-TEST(OfARecordingOfVersion3, AReplySaysNotWhatWasAsked) {
+TEST(OfARecordingOfVersion3, AReplyLacksTheTextOfTheRequest) {
   std::mt19937_64 random(2);
   wire::ControlReply reply = random_message<wire::ControlReply>(random, 0);
   reply.reason = "abc";
@@ -198,7 +198,7 @@ ByteBuffer with_number(ByteBuffer bytes, std::size_t at, N number) {
 }
 
 TEST(Codec, RefusesStepsAndNumbersOfVariablesOutOfRange) {
-  constexpr std::size_t kStepAt = 4 + 32;  // of every header
+  constexpr std::size_t kStepAt = 4 + 32;  // offset in every header
   ByteBuffer buffer;
   wire::Tick tick;
   tick.header.step = wire::kMaxStep;

@@ -46,13 +46,13 @@ TEST(InProcessBus, DeliversInTheOrderOfPublishingWhoeverPublishes) {
                                       : b.publish(Topic::mechanism, NumberedBytes(i).bytes));
     ASSERT_TRUE(status.is_ok());
   }
-  const Numbers heard = take_all(c);
-  ASSERT_EQ(heard.size(), 200u);
-  for (std::uint64_t i = 0; i < 200; ++i) EXPECT_EQ(heard[i], i);
+  const Numbers numbers = take_all(c);
+  ASSERT_EQ(numbers.size(), 200u);
+  for (std::uint64_t i = 0; i < 200; ++i) EXPECT_EQ(numbers[i], i);
   EXPECT_EQ(take_all(b).size(), 67u);
 }
 
-TEST(InProcessBus, TellsTheWritersOfValuesApartAndWhoHasLeft) {
+TEST(InProcessBus, DistinguishesTheWritersOfValuesAndSeesThemLeave) {
   InProcessBus bus;
   InProcessEndpoint io(bus, {"io", {}, {Topic::controller_input, Topic::tick}});
   InProcessEndpoint a(bus, {"a", {Topic::controller_input, Topic::tick}, {}});
@@ -67,14 +67,14 @@ TEST(InProcessBus, TellsTheWritersOfValuesApartAndWhoHasLeft) {
   EXPECT_NE(of_a, 0u);
   EXPECT_NE(of_a, of_b);
   EXPECT_EQ(writer(a, Topic::controller_input), of_a);
-  EXPECT_EQ(writer(a, Topic::tick), 0u) << "nobody asks";
+  EXPECT_EQ(writer(a, Topic::tick), 0u) << "it has no reader";
   b.reset();
   EXPECT_FALSE(io.see_writer(Topic::controller_input, of_a).has_left);
   EXPECT_TRUE(io.see_writer(Topic::controller_input, of_b).has_left);
   EXPECT_FALSE(io.see_writer(Topic::controller_input, 0).has_left) << "not known";
 }
 
-TEST(InProcessBus, AnEndpointDoesNotHearItselfNorUnwantedTopics) {
+TEST(InProcessBus, AnEndpointReceivesNeitherItsOwnMessagesNorUnwantedTopics) {
   InProcessBus bus;
   InProcessEndpoint a(bus, {"a", TopicSet::all(), TopicSet::all()});
   InProcessEndpoint b(bus, {"b", {}, {Topic::health}});
@@ -130,10 +130,10 @@ TEST(InProcessBus, AboveItsLimitTheOldestIsDroppedAndCounted) {
   const std::uint64_t count = InProcessBus::kInboxLimit + 5;
   for (std::uint64_t i = 0; i < count; ++i) ASSERT_TRUE(a.publish(Topic::tick, NumberedBytes(i).bytes).is_ok());
   EXPECT_EQ(b.dropped(), 5u);
-  const Numbers heard = take_all(b);
-  ASSERT_EQ(heard.size(), InProcessBus::kInboxLimit);
-  EXPECT_EQ(heard.front(), 5u);
-  EXPECT_EQ(heard.back(), count - 1);
+  const Numbers numbers = take_all(b);
+  ASSERT_EQ(numbers.size(), InProcessBus::kInboxLimit);
+  EXPECT_EQ(numbers.front(), 5u);
+  EXPECT_EQ(numbers.back(), count - 1);
 }
 
 TEST(InProcessBus, AllocatesNothingAfterWarmUp) {

@@ -1,4 +1,4 @@
-// The table of roles against what a session needs of it: one writer of each sample, a partner for each reader.
+// The table of roles against the needs of a session: one writer of each sample, a partner for each reader.
 #include "transport/roles.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST(Roles, HaveNamesOfTheirOwnByWhichTheyAreFound) {
     EXPECT_TRUE(names.insert(role.name).second) << role.name;
     EXPECT_EQ(role_of(role.name), role.role);
   }
-  EXPECT_EQ(role_of("nobody"), std::nullopt);
+  EXPECT_EQ(role_of("absent"), std::nullopt);
   for (const Role role : wire::kNodeRoles) {
     EXPECT_EQ(traits(role).name, kNodeNames[static_cast<std::size_t>(role)]);
     EXPECT_NE(traits(role).needed, Needed::never) << traits(role).name;
@@ -38,7 +38,7 @@ TEST(Roles, EverySampleHasOneWriterAndAReader) {
   }
 }
 
-// io asks a physics node for its samples, and looks for them
+// io reads the samples of a physics node, for which it waits
 TEST(Roles, IoReadsTheSamplesThatItWaitsFor) {
   for (const Role role : wire::kPhysicsRoles) {
     EXPECT_TRUE(is_physics(role));
@@ -52,8 +52,8 @@ TEST(Roles, IoReadsTheSamplesThatItWaitsFor) {
   EXPECT_FALSE(is_physics(Role::recorder));
 }
 
-// whoever joins must be seen, and its messages must be found again
-TEST(Roles, EveryNodeSaysHowItIsAndAsksForWhatItMisses) {
+// a joining node must be seen, and its messages must be available again
+TEST(Roles, EveryNodePublishesItsStatusAndRequestsMissingMessages) {
   for (const Role role : wire::kNodeRoles) {
     for (const Topic topic : {Topic::node_status, Topic::health, Topic::resend}) {
       EXPECT_TRUE(traits(role).writes.contains(topic)) << traits(role).name;
@@ -63,7 +63,7 @@ TEST(Roles, EveryNodeSaysHowItIsAndAsksForWhatItMisses) {
   }
 }
 
-TEST(Roles, NobodyFromOutsideWritesWhatAStepNeeds) {
+TEST(Roles, NoRoleFromOutsideWritesInputsOfAStep) {
   for (const Role role : {Role::observer, Role::controller}) {
     for (const Topic topic : {Topic::session, Topic::tick, Topic::node_status, Topic::health, Topic::checkpoint}) {
       EXPECT_FALSE(traits(role).writes.contains(topic)) << traits(role).name << " " << traits(topic).name;

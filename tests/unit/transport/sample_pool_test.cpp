@@ -33,7 +33,7 @@ class Pool : public ::testing::Test {
   SamplePool* pool_ = SamplePool::create(kRoom);
 };
 
-TEST_F(Pool, AsksTheHeapOnceForAsManyAsAreKept) {
+TEST_F(Pool, AllocatesOnceForTheKeptSamples) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "a sanitizer is in front of malloc";
   std::vector<void*> taken;
   taken.reserve(kRoom);
