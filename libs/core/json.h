@@ -24,7 +24,7 @@ namespace slew {
 class Json {
  public:
   struct Member;
-  enum class Order { by_name, as_put };  // of the members of every object that is written
+  enum class Order { by_name, as_put };  // order of the members in every written object
 
   Json() noexcept;                    // null
   template <std::same_as<bool> Bool>  // and no pointer
