@@ -61,7 +61,7 @@ class Sweeper {
     return middle(a_) - middle(b_);
   }
 
-  // the bounding spheres come together somewhere on the way
+  // the bounding spheres meet somewhere along the path
   [[nodiscard]] bool may_meet(Vec3 start, Vec3 way) const noexcept {
     const double reach = a_.geometry.bounding_radius + b_.geometry.bounding_radius;
     if (std::isinf(reach)) return true;
