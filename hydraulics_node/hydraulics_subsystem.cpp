@@ -78,7 +78,7 @@ HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
       ends_on_alarm_(scene.session.coupling_alarm == scene::CouplingAlarm::stop),
       exchange_every_(scene.session.exchange_every),
       past_(m_),
-      said_(is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
+      history_(is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
       reduced_(laws_of(scene)),
       indicator_(m_, {H_.ns * exchange_every_}) {
   reset();
@@ -103,7 +103,7 @@ void HydraulicsSubsystem::reset() {
   failure_ = StepReport{};
   failure_text_length_ = 0;
   past_.clear();
-  std::fill(said_.begin(), said_.end(), Said{});
+  std::fill(history_.begin(), history_.end(), SentSample{});
   used_step_ = -1;
   partner_age_ = 0;
   coupling::resize(published_, m_);
@@ -147,7 +147,7 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
   return check_stability(partners.mechanism);
 }
 
-// A load that the circuit cannot hold at rest is refused: its pressures would not be those of this machine.
+// Refuses a load that the circuit cannot hold at rest: the start pressures would be impossible for this machine.
 Status HydraulicsSubsystem::check_pressures(std::span<const double> F) const {
   const std::optional<hydraulics::StartDemand> demand = circuit_->demand_beyond_limits(F);
   if (!demand) return Status::ok();
@@ -157,19 +157,19 @@ Status HydraulicsSubsystem::check_pressures(std::span<const double> F) const {
   if (demand->pressure >= 0) {
     limit = demand->valve.empty()
                 ? fmt::format("a chamber without a relief valve is taken to hold {:.0f} bar", demand->limit / kBar)
-                : fmt::format("{} lets its oil out from {:.4g} bar on", demand->valve, demand->limit / kBar);
+                : fmt::format("{} opens fully at {:.4g} bar", demand->valve, demand->limit / kBar);
   }
   const std::string contacts = scene::deep_starts(scene_);
   return Status::error(
       ExitCode::failed,
-      fmt::format("hydraulics.start: equilibrium asks for {:.4g} bar in {} to hold {:.4g} kN on {}, but {}. {}",
+      fmt::format("hydraulics.start: equilibrium requires {:.4g} bar in {} to hold {:.4g} kN on {}, but {}. {}",
                   demand->pressure / kBar, circuit_->volume_name(demand->volume), F[actuator] / kKilo,
                   port_names_[actuator], limit,
                   contacts.empty() ? "Lighten the load or begin in another pose, or set hydraulics.start: table13"
                                    : contacts + ". Move these bodies apart, or set hydraulics.start: table13"));
 }
 
-// An explicit solver beyond its limit at the very start is refused; later it is flagged.
+// Refuses an explicit solver beyond its limit at the start; later steps are flagged.
 Status HydraulicsSubsystem::check_stability(const coupling::MechanismSample* mechanism) {
   if (mechanism != nullptr && m_ > 0) reduced_.set_sample(*mechanism);
   const hydraulics::ExplicitStability stability = integrator_->explicit_stability(H_.seconds(), reduced_);
@@ -183,8 +183,8 @@ Status HydraulicsSubsystem::check_stability(const coupling::MechanismSample* mec
           1e3 * stability.substep / stability.ratio));
 }
 
-// A machine that swings on its oil further than any exchange can follow is refused, and earlier with samples that are
-// late by a step at least.
+// Refuses a coupling whose oil-spring frequency exceeds the Nyquist limit of the exchange (omega H > pi), or the lower
+// limit of samples that are at least a step late.
 Status HydraulicsSubsystem::check_coupling(const coupling::MechanismSample& mechanism) const {
   const double H = H_.seconds() * static_cast<double>(exchange_every_);
   coupling::PortArray K = published_.K;
@@ -194,15 +194,15 @@ Status HydraulicsSubsystem::check_coupling(const coupling::MechanismSample& mech
   const double omega_H = coupling::coupling_frequency(mechanism.W, K, H);
   const double limit = is_free_running_ ? coupling::kMostLate : coupling::kMostSampled;
   if (!(omega_H > limit)) return Status::ok();
-  const char* const why = is_free_running_ ? "which samples that are a step late, as those of free_running, do not bear"
-                                           : "so that there are less than two exchanges to a swing";
+  const char* const bound = is_free_running_
+                                ? "above the limit for samples that are a step late (session.mode: free_running)"
+                                : "above the Nyquist limit of the exchange";
   return Status::error(
       ExitCode::failed,
       fmt::format(
-          "session.coupling: the machine swings on its oil by omega_H = {:.2g} from one exchange to the next in "
-          "{:.3g} ms, {}: at most {:.2g}. Nothing was run. Set {} below {:.2g} ms{}, or session.coupling_alarm: "
-          "warn to run it all the same",
-          omega_H, 1e3 * H, why, limit, exchange_every_ > 1 ? "the time between two exchanges" : "session.step",
+          "session.coupling: the oil-spring oscillation has omega_H = {:.2g} at one exchange in {:.3g} ms, {}: at most "
+          "{:.2g}. Nothing was run. Set {} below {:.2g} ms{}, or session.coupling_alarm: warn to run it nevertheless",
+          omega_H, 1e3 * H, bound, limit, exchange_every_ > 1 ? "the time between two exchanges" : "session.step",
           1e3 * H * limit / omega_H, is_free_running_ ? ", or session.mode: lockstep" : ""));
 }
 
@@ -215,21 +215,22 @@ void HydraulicsSubsystem::apply_levels() noexcept {
   }
 }
 
-// The pistons take the positions of this step's sample. Without news they go on by their own copy of the mechanics.
+// The pistons take the positions of this step's sample. Without a new sample they continue with the copy of the
+// mechanics.
 void HydraulicsSubsystem::take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
                                          StepReport& report) noexcept {
   partner_age_ = age;
-  const bool has_news = n - age != used_step_;
+  const bool has_new_sample = n - age != used_step_;
   used_step_ = n - age;
-  if (has_news && age == 0) {
+  if (has_new_sample && age == 0) {
     indicator_.update(mechanism, published_, stiffness_, levels_);
     integrator_->align(mechanism.x.span(), mechanism.v.span());
-  } else if (has_news) {
-    take_late(used_step_, mechanism);
+  } else if (has_new_sample) {
+    take_late_sample(used_step_, mechanism);
   }
-  // the exchange was that of the levels of the finished step; those of the coming one hold now
+  // the exchange used the levels of the finished step; those of the next step hold now
   apply_levels();
-  if (has_news) {
+  if (has_new_sample) {
     for (std::size_t i = 0; i < m_; ++i) {
       reduced_.set_thrust(i, published_.F[i] - published_.D[i] * (mechanism.v[i] - published_.v_ref[i]));
     }
@@ -243,9 +244,9 @@ void HydraulicsSubsystem::take_mechanism(StepIndex n, const coupling::MechanismS
   }
 }
 
-// A sample of an earlier step: the pistons move by what it says of that step (coupling/own_past.h), and the indicator
-// compares the ways of both sides in that step, since the circuit's own position then lacks what it learned later.
-void HydraulicsSubsystem::take_late(StepIndex step, const coupling::MechanismSample& mechanism) noexcept {
+// A late sample corrects the pistons by its deviation at the step it belongs to (coupling/own_past.h). The indicator
+// compares the displacements of both sides in that step, since the circuit's own position then lacks later corrections.
+void HydraulicsSubsystem::take_late_sample(StepIndex step, const coupling::MechanismSample& mechanism) noexcept {
   if (!past_.has(step)) return;
   std::array<double, kMaxPorts> x{}, v{};
   for (std::size_t i = 0; i < m_; ++i) {
@@ -256,11 +257,11 @@ void HydraulicsSubsystem::take_late(StepIndex step, const coupling::MechanismSam
     v[i] = integrator_->actuators()[i].v + dv;
   }
   integrator_->align({x.data(), m_}, {v.data(), m_});
-  const Said& said = said_[static_cast<std::size_t>(step) % said_.size()];
-  if (said.step != step) return;
-  coupling::ActuatorSample own = said.sample;
+  const SentSample& sent = history_[static_cast<std::size_t>(step) % history_.size()];
+  if (sent.step != step) return;
+  coupling::ActuatorSample own = sent.sample;
   for (std::size_t i = 0; i < m_; ++i) {
-    own.x_ref[i] = mechanism.x[i] - (mechanism.v_mean[i] * H_.seconds() - said.way[i]);
+    own.x_ref[i] = mechanism.x[i] - (mechanism.v_mean[i] * H_.seconds() - sent.displacement[i]);
   }
   indicator_.update(mechanism, own, stiffness_, levels_);
 }
@@ -276,11 +277,11 @@ void HydraulicsSubsystem::keep_begin(StepIndex n) noexcept {
 }
 
 void HydraulicsSubsystem::keep_end(StepIndex n) noexcept {
-  Said& said = said_[static_cast<std::size_t>(n) % said_.size()];
-  said.step = n;
-  said.sample = published_;
-  said.way.resize(m_);
-  for (std::size_t i = 0; i < m_; ++i) said.way[i] = published_.x_ref[i] - past_.first(n - 1, i);
+  SentSample& sent = history_[static_cast<std::size_t>(n) % history_.size()];
+  sent.step = n;
+  sent.sample = published_;
+  sent.displacement.resize(m_);
+  for (std::size_t i = 0; i < m_; ++i) sent.displacement[i] = published_.x_ref[i] - past_.first(n - 1, i);
 }
 
 StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples& partners,
@@ -294,11 +295,11 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   if (partners.mechanism != nullptr && m_ > 0) take_mechanism(n, *partners.mechanism, partners.mechanism_age, taken);
   StepReport report = integrator_->step(H_.seconds(), reduced_);
   report.flags |= taken.flags;
-  if (const std::optional<std::size_t> port = first_alarm()) {
+  if (const std::optional<std::size_t> port = first_energy_alarm()) {
     report.raise(StepFlag::coupling_creates_energy);
     if (ends_on_alarm_ && coupling::is_balanced(levels_[*port])) {
       report.raise(StepFlag::ended);
-      end_at(*port);
+      format_alarm_text(*port);
     }
   }
   if (report.has_failed()) {
@@ -311,9 +312,9 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   return report;
 }
 
-// Levels whose two sides foresee each other: hold makes energy on any machine that swings, and a line of level tlm has
-// A port that ends the session comes before one that is only flagged.
-std::optional<std::size_t> HydraulicsSubsystem::first_alarm() const noexcept {
+// The first port with the energy alarm. Levels linear and two end the session, the others are only flagged. A port that
+// ends the session takes precedence over one that is only flagged.
+std::optional<std::size_t> HydraulicsSubsystem::first_energy_alarm() const noexcept {
   std::optional<std::size_t> flagged;
   for (std::size_t i = 0; i < m_; ++i) {
     if (coupling::is_balanced(levels_[i])) {
@@ -325,20 +326,22 @@ std::optional<std::size_t> HydraulicsSubsystem::first_alarm() const noexcept {
   return flagged;
 }
 
-void HydraulicsSubsystem::end_at(std::size_t port) noexcept {
+void HydraulicsSubsystem::format_alarm_text(std::size_t port) noexcept {
   const char* const remedy = levels_[port] != coupling::Level::two ? "a shorter session.step or coupling: two"
                              : is_free_running_                    ? "a shorter session.step or session.mode: lockstep"
                                                                    : "a shorter session.step";
-  const auto written = fmt::format_to_n(
-      failure_text_.data(), failure_text_.size(),
-      "{}: the coupling diverges: over the last second the works of both sides have differed by {:.2g} % of the work "
-      "done, not by one jump alone, and the machine swings on its oil by {:.2g} from one exchange to the next; use {}, "
-      "or session.coupling_alarm: warn to go on with red lamps",
-      port_names_[port], 1e2 * indicator_.own_residual(port), indicator_.omega_H(), remedy);
+  const auto written =
+      fmt::format_to_n(failure_text_.data(), failure_text_.size(),
+                       "{}: the coupling diverges: over the last second the works of both sides differed by {:.2g} % "
+                       "of the work done, in "
+                       "several exchanges, at omega_H = {:.2g} of the oil-spring oscillation; use {}, or "
+                       "session.coupling_alarm: warn to "
+                       "continue with red lamps",
+                       port_names_[port], 1e2 * indicator_.own_residual(port), indicator_.omega_H(), remedy);
   failure_text_length_ = std::min(written.size, failure_text_.size());
 }
 
-// parameters on their way, and the controls of the step
+// parameter ramps, and the controls of the step
 void HydraulicsSubsystem::take_tick(StepIndex n, std::span<const double> controls) noexcept {
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     const auto control = static_cast<std::size_t>(circuit_->flow_controls()[k]);
@@ -353,9 +356,9 @@ void HydraulicsSubsystem::take_tick(StepIndex n, std::span<const double> control
   }
 }
 
-// F_dot is for the coming step, whose signals are not there yet: they go on changing as they did, by the limiter of
-// trends.h, so that a jump is not continued.
-void HydraulicsSubsystem::foresee_signals() noexcept {
+// F_dot holds for the next step, whose signals have not arrived: their trend is continued with the limiter of trends.h,
+// which drops a jump.
+void HydraulicsSubsystem::extrapolate_signals() noexcept {
   bool is_any_moving = false;
   const std::span<const int> controls = circuit_->flow_controls();
   for (std::size_t k = 0; k < signals_.size(); ++k) {
@@ -389,10 +392,10 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
   return report;
 }
 
-// adds_up: work and impulse go on from the sample before, since there was no exchange in between
+// adds_up: work and impulse continue from the previous sample, since no exchange took place between
 void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up) noexcept {
   if (sample.F.size() != m_) coupling::resize(sample, m_);
-  foresee_signals();
+  extrapolate_signals();
   const std::span<const hydraulics::ActuatorLinearisation> actuators = integrator_->actuators();
   for (std::size_t i = 0; i < m_; ++i) {
     const hydraulics::ActuatorLinearisation& a = actuators[i];
@@ -432,7 +435,7 @@ std::uint64_t HydraulicsSubsystem::state_hash() const noexcept {
   StateHash hash;
   integrator_->add_to(hash);
   ramps_.add_to(hash);
-  if (exchange_every_ > 1) reduced_.add_to(hash);  // otherwise every step brings another
+  if (exchange_every_ > 1) reduced_.add_to(hash);  // otherwise every step replaces it
   levels_.add_to(hash);
   signal_trends_.add_to(hash);
   for (const int control : circuit_->flow_controls()) {

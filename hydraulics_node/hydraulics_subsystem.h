@@ -3,11 +3,11 @@
 //
 //   v_i^h' = (a_free + W F_line)_i  of a port of level two,   v_i^h' = 0  of any other                (1)
 //
-// F_line_j is that of F, x^h, v^h of port j whatever its level, since a held port's force moves the others too; of
-// level tlm F is what the lines do to the piston (hydraulics/line_chambers.h), as in the mechanics.
+// F_line_j is evaluated at F, x^h, v^h of port j at any level, since a held port's force moves the others too. At level
+// tlm F is the force of the lines on the piston (hydraulics/line_chambers.h), as in the mechanics.
 //
-// Also follows the coupling's error per port (coupling/indicator.h), since it is where both samples of a step meet, and
-// ends a session whose coupling diverges (session.coupling_alarm).
+// Also computes the coupling error per port (coupling/indicator.h), since it has both samples of a step, and ends a
+// session whose coupling diverges (session.coupling_alarm).
 #pragma once
 
 #include <array>
@@ -45,7 +45,7 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
   void save(StateWriter& bytes) const { visit(*this, bytes); }
   void load(StateReader& bytes) noexcept { visit(*this, bytes); }
   void set_level(std::size_t port, coupling::Level level) noexcept { ports_[port].level = level; }
-  // Of a port of level tlm, for the coming step [N].
+  // Sets the force of a port of level tlm for the next step [N].
   void set_thrust(std::size_t port, double F) noexcept { ports_[port].thrust = F; }
   void accelerations(const double* F, const double* x, const double* v, double* a) const noexcept override;
   void slopes(const double* F, const double* x, const double* v, double* da_dF, double* da_dx,
@@ -75,8 +75,8 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
   coupling::PortArray a_free_;
 };
 
-// The end of a step that somebody else computed: all states of the circuit, pistons included, and what belongs to them
-// of volumes that cavitate (Circuit::vapour_capacities()); work and impulse of the ports over the step [J, N s].
+// The end of a step computed outside: all states of the circuit, pistons included, the capacities of cavitating volumes
+// (Circuit::vapour_capacities()), and work and impulse of the ports over the step [J, N s].
 struct FollowedCircuit {
   std::span<const double> state, vapour, work, impulse;
 };
@@ -90,7 +90,8 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   Status start(const coupling::PartnerSamples& partners, coupling::OwnSample& sample) override;
   StepReport step(StepIndex n, const coupling::PartnerSamples& partners, std::span<const double> controls,
                   coupling::OwnSample& sample) noexcept override;
-  // In the place of step(): parameters and controls of this step, then what is published at its end.
+  // Replaces step(): applies parameters and controls of this step, takes the external state and publishes the end
+  // sample.
   StepReport follow(StepIndex n, const FollowedCircuit& step, const coupling::PartnerSamples& partners,
                     std::span<const double> controls, coupling::OwnSample& sample) noexcept;
   bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;
@@ -113,11 +114,11 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] hydraulics::CircuitIntegrator& integrator() noexcept { return *integrator_; }  // for tests and tools
 
  private:
-  // What was published at a step and how the pistons came there, for samples of the mechanics that come late.
-  struct Said {
+  // Sample published at a step and the piston displacement before it, for late samples of the mechanics.
+  struct SentSample {
     StepIndex step = -1;
     coupling::ActuatorSample sample;
-    coupling::PortArray way;  // by port, of the circuit's own piston in the step [m]
+    coupling::PortArray displacement;  // by port, the circuit's own piston in the step [m]
   };
 
   template <typename Self, typename Bytes>
@@ -126,13 +127,13 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] Status check_pressures(std::span<const double> F) const;
   [[nodiscard]] Status check_stability(const coupling::MechanismSample* mechanism);
   [[nodiscard]] Status check_coupling(const coupling::MechanismSample& mechanism) const;
-  [[nodiscard]] std::optional<std::size_t> first_alarm() const noexcept;
-  void end_at(std::size_t port) noexcept;
+  [[nodiscard]] std::optional<std::size_t> first_energy_alarm() const noexcept;
+  void format_alarm_text(std::size_t port) noexcept;
   void take_tick(StepIndex n, std::span<const double> controls) noexcept;
-  void foresee_signals() noexcept;
+  void extrapolate_signals() noexcept;
   void take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
                       StepReport& report) noexcept;
-  void take_late(StepIndex step, const coupling::MechanismSample& mechanism) noexcept;
+  void take_late_sample(StepIndex step, const coupling::MechanismSample& mechanism) noexcept;
   void keep_begin(StepIndex n) noexcept;
   void keep_end(StepIndex n) noexcept;
   void publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up) noexcept;
@@ -145,26 +146,26 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   coupling::PortLevels levels_;
   SimDuration H_;
   bool is_free_running_;
-  bool ends_on_alarm_;  // when the coupling makes energy
+  bool ends_on_alarm_;  // ends the session when the coupling diverges
   StepIndex exchange_every_;
-  coupling::OwnPast past_;     // free-running: position and speed by port
-  std::vector<Said> said_;     // free-running: the last steps
-  StepIndex used_step_ = -1;   // of the mechanics' sample in use
-  StepIndex partner_age_ = 0;  // of that sample in the last step
+  coupling::OwnPast past_;           // free-running: position and speed by port
+  std::vector<SentSample> history_;  // free-running: samples of the last steps
+  StepIndex used_step_ = -1;         // step of the mechanics' sample in use
+  StepIndex partner_age_ = 0;        // age of that sample in the last step
   std::vector<std::string> port_names_;
-  std::vector<int> control_of_channel_;  // -1: the channel is not for this circuit
-  coupling::Trends signal_trends_{0};    // of Circuit::flow_controls(), from tick to tick
-  std::vector<double> signals_;          // the same, while others are in their place
+  std::vector<int> control_of_channel_;  // -1: the channel does not belong to this circuit
+  coupling::Trends signal_trends_{0};    // trends of Circuit::flow_controls(), from tick to tick
+  std::vector<double> signals_;          // saved signals while extrapolated ones replace them
   ReducedMechanics reduced_;
   coupling::Indicator indicator_;
   coupling::ParameterRamps ramps_{0};  // sized with the circuit
   std::vector<ElementVariable> variables_;
   coupling::ActuatorSample published_;
-  coupling::PortArray stiffness_;  // N/m, of the oil columns, also of ports that publish none
+  coupling::PortArray stiffness_;  // N/m, oil columns, also for ports that publish none
   StepReport failure_;
-  std::array<char, 512> failure_text_{};  // of a session that ends by its alarm; no allocation in a step
+  std::array<char, 512> failure_text_{};  // text of an alarm that ends the session; no allocation in a step
   std::size_t failure_text_length_ = 0;
-  std::uint64_t saved_model_ = 0;  // what a saved state belongs to
+  std::uint64_t saved_model_ = 0;  // digest of the model of saved states
 };
 
 [[nodiscard]] std::unique_ptr<coupling::Subsystem> make_hydraulics_subsystem(const scene::Scene& scene);

@@ -38,11 +38,11 @@ void HydraulicsSubsystem::visit(Self& self, Bytes& bytes) {
     self.indicator_.save(bytes);
     if (self.is_free_running_) self.past_.save(bytes);
   }
-  for (auto& said : self.said_) {
-    bytes.number(said.step);
-    if (said.step < 0) continue;
-    visit_sample(said.sample, self.m_, bytes);
-    visit_sized(bytes, said.way, self.m_);
+  for (auto& sent : self.history_) {
+    bytes.number(sent.step);
+    if (sent.step < 0) continue;
+    visit_sample(sent.sample, self.m_, bytes);
+    visit_sized(bytes, sent.displacement, self.m_);
   }
   bytes.number(self.used_step_);
   bytes.number(self.partner_age_);
@@ -55,9 +55,10 @@ void HydraulicsSubsystem::visit(Self& self, Bytes& bytes) {
 
 Status HydraulicsSubsystem::can_save() const {
   if (integrator_->can_save()) return Status::ok();
-  return Status::error(ExitCode::bad_input,
-                       "hydraulics.solver: cvode keeps a past that cannot be put back, so that its state is not saved. "
-                       "Set hydraulics.solver: rodas3, implicit_euler or rk4 for a session that is to go on later");
+  return Status::error(
+      ExitCode::bad_input,
+      "hydraulics.solver: cvode keeps a history that cannot be restored, so that its state is not saved. "
+      "Set hydraulics.solver: rodas3, implicit_euler or rk4 for a session that is to be continued later");
 }
 
 void HydraulicsSubsystem::save(std::vector<std::byte>& state) const {

@@ -67,7 +67,7 @@ double difference(const Mat3& a, const Mat3& b) noexcept {
 }
 
 // (1)
-double way(const Pose& from, const Pose& to, double extent) noexcept {
+double largest_motion(const Pose& from, const Pose& to, double extent) noexcept {
   const double turn = difference(from.R_WF, to.R_WF);
   return norm(to.p_WF - from.p_WF) + (turn > 0 ? turn * extent : 0.0);
 }
@@ -79,8 +79,8 @@ bool ContactModel::is_clear(std::size_t pair, const Pose& frame_a, const Pose& f
   constexpr double kRounding = 0.999;  // share of the distance: sums of (1) and poses are rounded
   const ContactSet::Clearance& known = set.clearances_[pair];
   if (!(known.distance > 0)) return false;
-  const double moved = way(known.frame_a, frame_a, shapes_[pairs_[pair].shape_a].extent) +
-                       way(known.frame_b, frame_b, shapes_[pairs_[pair].shape_b].extent);
+  const double moved = largest_motion(known.frame_a, frame_a, shapes_[pairs_[pair].shape_a].extent) +
+                       largest_motion(known.frame_b, frame_b, shapes_[pairs_[pair].shape_b].extent);
   return moved < kRounding * known.distance;
 }
 

@@ -137,8 +137,8 @@ void convex_on_triangles(const Solid& a, const Solid& b, Manifold& out) noexcept
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 edge = t.at[(k + 1) % 3] - t.at[k];
       const Vec3 inward = cross(t.normal, edge) * (1 / norm(edge));
-      const bool is_way_out = (b.geometry->ways_out[triangle] >> k & 1U) != 0;
-      if (is_way_out && reach(a, inward) - dot(t.at[k], inward) < depth) return;
+      const bool is_open_edge = (b.geometry->open_edges[triangle] >> k & 1U) != 0;
+      if (is_open_edge && reach(a, inward) - dot(t.at[k], inward) < depth) return;
       face.vertices.push_back(t.at[k]);
     }
     face.normal = t.normal;

@@ -85,7 +85,7 @@ void triangulate(const HeightFieldDef& field, Geometry& g) {
 }
 
 // An edge is open if it has no neighbour, or if the neighbour falls away by more than 30 degrees.
-void find_ways_out(Geometry& g) {
+void find_open_edges(Geometry& g) {
   constexpr double kSharp = 0.866;  // cosine
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> owner;
   for (std::size_t i = 0; i < g.triangles.size(); ++i) {
@@ -105,7 +105,7 @@ void find_ways_out(Geometry& g) {
       }
       if (falls_away) ways = static_cast<std::uint8_t>(ways | (1U << k));
     }
-    g.ways_out.push_back(ways);
+    g.open_edges.push_back(ways);
   }
 }
 
@@ -208,7 +208,7 @@ Geometry make_geometry(const ShapeDef& def) {
   }
   if (def.type == ShapeType::triangle_mesh || def.type == ShapeType::height_field) {
     for (const Triangle& triangle : g.triangles) g.triangle_normals.push_back(normal_of(g, triangle));
-    find_ways_out(g);
+    find_open_edges(g);
     g.tree = TriangleTree(g.vertices, g.triangles);
   }
   return g;

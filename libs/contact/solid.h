@@ -33,8 +33,8 @@ struct Geometry {
 
   // triangle mesh, height field
   std::vector<math::Vec3> triangle_normals;
-  std::vector<std::uint8_t> ways_out;  // by triangle, bit k: the ground ends or falls away sharply over the edge from
-                                       // corner k to the next
+  std::vector<std::uint8_t> open_edges;  // by triangle, bit k: the ground ends or falls away sharply over the edge from
+                                         // corner k to the next
   TriangleTree tree;
 };
 

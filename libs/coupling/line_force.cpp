@@ -40,11 +40,11 @@ double LineForceLaw::time_to_rest(double v, double a, double j) const noexcept {
   }
   if (edge == 0) return kNever;
   const double margin = kMargin * speed;
-  const double way = speed - edge > 2 * margin ? speed - edge - margin : speed - kInside * edge;
+  const double change = speed - edge > 2 * margin ? speed - edge - margin : speed - kInside * edge;
   // b t - c t^2/2 = change of speed, the earlier time
   const double b = std::fabs(a), c = a > 0 ? -j : j;
-  const double root = b * b - 2 * c * way;
-  return root >= 0 ? 2 * way / (b + std::sqrt(root)) : kNever;
+  const double root = b * b - 2 * c * change;
+  return root >= 0 ? 2 * change / (b + std::sqrt(root)) : kNever;
 }
 
 double LineForceLaw::friction(double F, double v) const noexcept {

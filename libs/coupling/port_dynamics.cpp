@@ -239,7 +239,7 @@ void PortDynamics::add(double share, const Instant& at, std::span<const double> 
                        std::span<const double> pressure_force, std::span<const double> v) noexcept {
   for (std::size_t i = 0; i < rows_; ++i) {
     const bool has_partner = partner_[i].K != 0 || partner_[i].F_dot != 0;
-    const double time = at.is_at_stop ? at.of_way : has_partner ? at.of_stage : at.of_line;
+    const double time = at.is_at_stop ? at.of_displacement : has_partner ? at.of_stage : at.of_line;
     f_mean_[i] += share * f[i];
     f_slope_[i] += share * (time - 0.5 * h_) * f[i];
     work_[i] += share * pressure_force[i] * v[i];
@@ -294,8 +294,8 @@ bool PortDynamics::try_stages(const Span& span, const RowLaws& laws, PortStep& r
   move(report);
   report.meets_stop = report.meets_stop || is_at_stop;
   const bool all = is_at_stop || is_at_stop_;
-  const auto instant = [&](double of_stage, double of_line, double of_way) {
-    return Instant{of_stage, span.begin + of_line * span.length, span.begin + of_way * span.length, all};
+  const auto instant = [&](double of_stage, double of_line, double of_displacement) {
+    return Instant{of_stage, span.begin + of_line * span.length, span.begin + of_displacement * span.length, all};
   };
   add((1 - kGamma) * span.length, instant(span.first, kFirstOfLine, 1 - 2 * kGamma), f_first_, pressure_first_,
       v_first_);

@@ -126,10 +126,10 @@ class PortDynamics {
   void set_weight(double weight, const RowLaws& laws) noexcept;
   void keep_first() noexcept;
   // Time at which the force of a stage acts. of_stage: at the stage itself, for rows with a partner. of_line: makes
-  // mean and slope of a force linear in time exact, for friction that holds against a growing load. of_way: reproduces
-  // the displacement of the stages (x_1 has h^2 (2 gamma (1 - gamma) f_first + gamma^2 f_end)), at a stop.
+  // mean and slope of a force linear in time exact, for friction that holds against a growing load. of_displacement:
+  // reproduces the displacement of the stages (x_1 has h^2 (2 gamma (1 - gamma) f_first + gamma^2 f_end)), at a stop.
   struct Instant {
-    double of_stage, of_line, of_way;  // s
+    double of_stage, of_line, of_displacement;  // s
     bool is_at_stop;
   };
   void add(double share, const Instant& at, std::span<const double> f, std::span<const double> pressure_force,

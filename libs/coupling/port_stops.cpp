@@ -11,7 +11,7 @@ namespace {
 // kTouch is a thousandth.
 constexpr double kPart = 8;
 constexpr double kTouch = 0.05;
-constexpr double kLeast = 1.0 / 8192, kMost = 1.0 / 64;  // shortest and longest part, in micro-steps
+constexpr double kLeast = 1.0 / 8192, kMost = 1.0 / 64;  // bounds of the shortest part, in micro-steps
 // longest part in an oscillation, times omega: 1e-4 of the amplitude per part
 constexpr double kInSwing = 0.3;
 // damping ratio above which a stop throws back less than 3 % of the speed

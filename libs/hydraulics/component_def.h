@@ -1,4 +1,4 @@
-// What a scene says about one hydraulic component, and the table that lists every component type there is.
+// Definition of one hydraulic component, and the table of all component types.
 //
 // The set is open: a new type is a final Def with its field table, a ComponentType row, and a HydraulicComponent. The
 // row is entered by hand in component_types.cpp; nothing registers itself.
@@ -31,13 +31,13 @@ struct ComponentDef {
 
   // Key of the type in component_types().
   [[nodiscard]] virtual std::string_view type_name() const noexcept = 0;
-  // Address of the final Def: what Field::member expects.
+  // Address of the final Def, for Field::member.
   [[nodiscard]] virtual void* address() noexcept = 0;
 };
 
 struct ComponentType {
   std::string_view name;          // value of `type:` in the scene
-  std::span<const Field> fields;  // of the final Def
+  std::span<const Field> fields;  // fields of the final Def
   std::string_view doc;
   std::unique_ptr<ComponentDef> (*make_def)() = nullptr;
   // Rules between fields and between elements; ranges and references are checked from the table. May be null.
@@ -45,14 +45,14 @@ struct ComponentType {
                    Problems& warnings) = nullptr;
   std::unique_ptr<HydraulicComponent> (*build)(const ComponentDef& def, CircuitBuilder& builder) = nullptr;
   bool has_control_signal = false;  // takes an input (`inputs: ... primitive: NAME`)
-  bool has_ls_port = false;         // may be named where a load-sensing pressure is wanted (reference "ls_source")
+  bool has_ls_port = false;         // may be the source of a load-sensing pressure (reference "ls_source")
   bool is_actuator = false;         // drives a force element through a power port
 };
 
 // All component types of this version, in the order of the documentation.
 [[nodiscard]] std::span<const ComponentType> component_types();
 
-// Null when there is no such type.
+// Null if the type does not exist.
 [[nodiscard]] const ComponentType* find_component_type(std::string_view name);
 
 }  // namespace slew::hydraulics

@@ -26,15 +26,15 @@ namespace {
 constexpr double kBar = 1e5;
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// flow: the most that passes below the end of the oil's law [m3/s]
+// flow: the largest flow below the end of the oil law [m3/s]
 struct Connection {
   std::string a, b;
   double flow = kUnbounded;
 };
 
 struct Network {
-  std::vector<Connection> open;    // volumes that are connected whatever the signals
-  std::set<std::string> relieved;  // by a valve on them, or held at a pressure
+  std::vector<Connection> open;    // volumes that are connected at any signal
+  std::set<std::string> relieved;  // volumes with a relieving valve, or held at a pressure
 };
 
 void add_restriction(const ComponentDef& component, double density, Network& network) {
@@ -84,7 +84,7 @@ Network network_of(const HydraulicsDef& def) {
   return network;
 }
 
-// by what passes the pump's flow
+// through connections that pass the pump's flow
 bool is_relieved(const Network& network, const std::string& outlet, double flow) {
   std::set<std::string> line = {outlet};
   std::vector<std::string> unvisited = {outlet};
@@ -92,9 +92,9 @@ bool is_relieved(const Network& network, const std::string& outlet, double flow)
     const std::string volume = std::move(unvisited.back());
     unvisited.pop_back();
     if (network.relieved.contains(volume)) return true;
-    for (const Connection& way : network.open) {
-      const std::string* const next = way.a == volume ? &way.b : way.b == volume ? &way.a : nullptr;
-      if (way.flow < flow) continue;
+    for (const Connection& link : network.open) {
+      const std::string* const next = link.a == volume ? &link.b : link.b == volume ? &link.a : nullptr;
+      if (link.flow < flow) continue;
       if (next != nullptr && line.insert(*next).second) unvisited.push_back(*next);
     }
   }

@@ -94,12 +94,12 @@ Status integrate_mechanics(const multibody::MechanicsDef& mechanics, std::span<c
   for (const double time : times) {
     SLEW_CHECK(time >= solver.time());
     bool is_closed = equations.take(solver.time(), solver.y().data());
-    const double begin = solver.time(), way = time - begin;
-    const int windows = !(way > 0)                         ? 0
+    const double begin = solver.time(), span = time - begin;
+    const int windows = !(span > 0)                        ? 0
                         : !result.model.has_closing_rows() ? 1
-                                                           : static_cast<int>(std::ceil(way / kClosingWindow));
+                                                           : static_cast<int>(std::ceil(span / kClosingWindow));
     for (int k = 1; k <= windows; ++k) {
-      const double next = k == windows ? time : begin + way * k / windows;
+      const double next = k == windows ? time : begin + span * k / windows;
       const std::string failure = solver.advance(next);
       result.statistics = solver.statistics();
       if (!failure.empty()) return give_up(failure);

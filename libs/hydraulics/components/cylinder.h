@@ -13,7 +13,7 @@ namespace slew::hydraulics {
 
 enum class Motion { linear, rotary };
 
-// What sets a cylinder type apart.
+// Geometry of a cylinder type.
 struct CylinderGeometry {
   double area_a = 0, area_b = 0;  // m2, on the sides of ports A and B
   PortCoordinate coordinate = {};
@@ -23,7 +23,7 @@ struct CylinderGeometry {
 
 class Cylinder final : public HydraulicComponent {
  public:
-  // def: the component's own copy of its Def; common: the part of it that all cylinders have.
+  // def: the component's own copy of its Def; common: its part common to all cylinders.
   Cylinder(std::unique_ptr<ComponentDef> def, const CylinderParameters& common, const CylinderGeometry& geometry,
            CircuitBuilder& builder);
 

@@ -1,4 +1,4 @@
-// What every cylinder has, whatever it drives: its parameters, and what the two sides of the power port need of them.
+// Parameters common to all cylinders, and the parameters for both sides of the power port.
 #pragma once
 
 #include "hydraulics/component_def.h"
@@ -20,8 +20,8 @@ struct LineForceParameters {
   double maximum_stroke = 0;        // m
 };
 
-// How closely the cylinder's power port couples its circuit to the mechanism: a level of its own or the session's. The
-// coupling knows what they mean (coupling/level.h).
+// Coupling level of the cylinder's power port: a level of its own or the session's. coupling/level.h defines the
+// levels.
 enum class PortCoupling : int { session, hold, linear, two, tlm };
 
 // x = offset + ratio * (coordinate of the force element): distance of its points [m] or angle [rad].
@@ -30,7 +30,7 @@ struct PortCoordinate {
   double ratio = 1;   // 1, or m/rad
 };
 
-// Part of every cylinder's Def.
+// Common part of every cylinder's Def.
 struct CylinderParameters {
   std::string force;                  // force element it drives
   std::string friction_curve;         // curve; empty: no friction proportional to the force
@@ -52,8 +52,8 @@ struct CylinderParameters {
   double dead_volume = 0;             // m3 in each chamber
   PortCoupling coupling = PortCoupling::session;
 
-  // L_chamber - L_piston, the piston's free way [m].
-  [[nodiscard]] double free_way() const noexcept { return chamber_length - piston_length; }
+  // L_chamber - L_piston, the piston's free travel [m].
+  [[nodiscard]] double piston_travel() const noexcept { return chamber_length - piston_length; }
 };
 
 }  // namespace slew::hydraulics

@@ -180,10 +180,11 @@ double impact_rate(const Model& model, const Workspace& ws, std::size_t pair, co
   Vec3 apart;
   for (std::size_t i = 0; i < 2; ++i) {
     // where they have come to
-    const Vec3 way = (ws.contact->ahead[frames[i]].p_WF - ws.contact->start_poses[frames[i]].p_WF) * meeting.share;
-    as_free[i].c_W = as_free[i].c_W + way;
+    const Vec3 displacement =
+        (ws.contact->ahead[frames[i]].p_WF - ws.contact->start_poses[frames[i]].p_WF) * meeting.share;
+    as_free[i].c_W = as_free[i].c_W + displacement;
     const LinkMotion& link = ws.motion[at(pushed.links[i])];
-    const Vec3 v_W = link.v + cross(link.w, meeting.p_W - way - link.p);
+    const Vec3 v_W = link.v + cross(link.w, meeting.p_W - displacement - link.p);
     apart = i == 0 ? v_W : apart - v_W;
   }
   const double approach = std::max(meeting.travel / h, -dot(meeting.n_W, apart));

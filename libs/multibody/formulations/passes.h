@@ -61,8 +61,8 @@ struct Displacement {
   std::span<const double> base;      // by u [rad or m]
   std::span<const math::Vec3> turn;  // rad
 };
-void move_from(const Model& model, std::span<const double> start, const Displacement& way, std::span<const double> u,
-               std::span<double> q, Workspace& ws) noexcept;
+void move_from(const Model& model, std::span<const double> start, const Displacement& displacement,
+               std::span<const double> u, std::span<double> q, Workspace& ws) noexcept;
 
 // Unit quaternions, whatever their length was.
 void normalize_quaternions(const Model& model, std::span<double> q) noexcept;
