@@ -16,10 +16,10 @@
 namespace slew::scene {
 namespace {
 
-// a start at the end of the stroke, by numbers with six digits and more
+// tolerance for a start at the end of the stroke, with numbers of six digits
 constexpr double kStrokeTolerance = 1e-6;  // m
 
-// the hydraulics' choices are the coupling's
+// the hydraulics' choices equal the coupling's
 static_assert(static_cast<int>(hydraulics::PortCoupling::session) == static_cast<int>(coupling::PortLevel::session));
 static_assert(static_cast<int>(hydraulics::PortCoupling::tlm) == static_cast<int>(coupling::PortLevel::tlm));
 
@@ -28,7 +28,7 @@ bool has_element(const std::vector<Def>& defs, std::string_view name) {
   return std::any_of(defs.begin(), defs.end(), [&](const Def& def) { return def.name == name; });
 }
 
-// What all kinds of cylinder say about the line force.
+// Line force parameters common to all cylinders.
 PortDef port_of(const std::string& name, const hydraulics::CylinderParameters& cylinder) {
   PortDef port;
   port.name = name;
@@ -46,7 +46,7 @@ PortDef port_of(const std::string& name, const hydraulics::CylinderParameters& c
 
 void take_curve(PortDef& port, const std::string& name, const Scene& scene, Problems& problems) {
   const hydraulics::CurveDef* curve = hydraulics::find_curve(scene.hydraulics, name);
-  // empty where the file that holds it was not read
+  // empty if the file of the curve was not read
   if (curve == nullptr || curve->points.empty()) return;
   port.line_force.friction_curve = hydraulics::straight_lines(*curve);
   if (curve->points.front()[0] < 0) {
@@ -62,7 +62,7 @@ void check_force(const PortDef& port, std::string_view wanted, bool fits, Proble
                       fmt::format("a force of type {}", wanted), ""});
 }
 
-// Of a cylinder between two points; its stroke is their distance less what is no stroke.
+// Port of a cylinder between two points; its stroke is their distance less the fixed lengths.
 template <typename Def>
 PortDef linear_port(const Def& cylinder, const Scene& scene, Problems& problems) {
   PortDef port = port_of(cylinder.name, cylinder.common);

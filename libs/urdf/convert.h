@@ -36,7 +36,7 @@ struct Conversion {
   std::vector<Note> changes{};                               // made on request before the conversion
 };
 
-// Pre-condition: find_starts() and settle_mass_properties() found nothing to complain about.
+// Pre-condition: find_starts() and settle_mass_properties() found no problem.
 [[nodiscard]] Conversion convert(const Robot& robot, RootMount mount, const Folders& folders);
 
 }  // namespace slew::urdf

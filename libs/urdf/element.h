@@ -27,17 +27,17 @@ class ElementValues {
 
   // "link 'arm'": stands before what is wrong.
   void set_owner(std::string owner) { owner_ = std::move(owner); }
-  void complain(const XMLElement& element, std::string what, std::string expected = "") {
+  void report_problem(const XMLElement& element, std::string what, std::string expected = "") {
     report_.add({source_, element.GetLineNum(), 0}, owner_, {std::move(what), std::move(expected), ""});
   }
   void note(const XMLElement& element, const std::string& text) {
     notes_.push_back({element.GetLineNum(), owner_.empty() ? text : owner_ + ": " + text});
   }
 
-  // Text of an attribute; a complaint when it is missing or empty.
+  // Text of an attribute; reports a problem if it is missing or empty.
   [[nodiscard]] std::optional<std::string> name(const XMLElement& element, const char* attribute);
 
-  // A finite decimal number; `missing` for an attribute that is not there, a complaint when that is nothing.
+  // A finite decimal number; `missing` for an attribute that is not there, reports a problem if that is empty.
   [[nodiscard]] double number(const XMLElement& element, const char* attribute, std::optional<double> missing);
   [[nodiscard]] double number_not_negative(const XMLElement& element, const char* attribute,
                                            std::optional<double> missing);

@@ -64,8 +64,8 @@ void write_element(std::string& text, const ElementRef& element, const Conversio
   const auto defaults = defaults_of(element);
   for (const Field& field : element.fields) {
     const std::string value = scene::value_text(field, element.def);
-    const bool is_said = field.presence == Presence::required || value != defaults.at(field.key);
-    if (!value.empty() && is_said) text += fmt::format("    {}: {}\n", field.key, value);
+    const bool is_written = field.presence == Presence::required || value != defaults.at(field.key);
+    if (!value.empty() && is_written) text += fmt::format("    {}: {}\n", field.key, value);
   }
 }
 

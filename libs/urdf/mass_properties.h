@@ -26,6 +26,6 @@ struct Repairs {
 // After find_starts(). Changes go to `changes`, what has no effect to the robot's notes. Complains about links that
 // are not repaired, with the option that would.
 void settle_mass_properties(Robot& robot, RootMount mount, const Repairs& repairs, std::vector<Note>& changes,
-                            const Complain& complain);
+                            const ReportProblem& report_problem);
 
 }  // namespace slew::urdf

@@ -283,27 +283,27 @@ class Validator {
   void check_axis(const JointDef& joint, int number) {
     const JointAxisDef axis = axis_of(joint, number);
     const std::string_view suffix = suffix_of(joint.type, number);
-    const auto complain = [&](std::string_view key, std::string what, std::string expected) {
+    const auto report_problem = [&](std::string_view key, std::string what, std::string expected) {
       add(fmt::format("{}.{}{}", joint.name, key, suffix), std::move(what), std::move(expected));
     };
     if (axis.limit_min >= axis.limit_max) {
-      complain("limit_min",
-               fmt::format("lower limit {} is not below the upper limit {}", axis.limit_min, axis.limit_max),
-               "limit_min < limit_max");
+      report_problem("limit_min",
+                     fmt::format("lower limit {} is not below the upper limit {}", axis.limit_min, axis.limit_max),
+                     "limit_min < limit_max");
     }
     if (axis.bristle_stiffness > 0 && axis.coulomb_friction == 0) {
-      complain("bristle_stiffness", "the bristles have no dry friction to hold with", "coulomb_friction > 0");
+      report_problem("bristle_stiffness", "the bristles have no dry friction to hold with", "coulomb_friction > 0");
     }
     if (axis.bristle_stiffness == 0 && (axis.bristle_damping > 0 || axis.breakaway_ratio > 1)) {
       add(joint.name, "bristle_damping or breakaway_ratio without bristles", "bristle_stiffness > 0");
     }
     if (!has_limits(axis) && (axis.limit_stiffness > 0 || axis.limit_damping > 0)) {
-      complain(axis.limit_stiffness > 0 ? "limit_stiffness" : "limit_damping",
-               "nothing reads this key: the joint has no limits", "limit_min or limit_max, or no such key");
+      report_problem(axis.limit_stiffness > 0 ? "limit_stiffness" : "limit_damping",
+                     "nothing reads this key: the joint has no limits", "limit_min or limit_max, or no such key");
     }
     if (has_limits(axis) && axis.limit_stiffness == 0) {
-      complain("limit_stiffness", "the joint has limits but they have no stiffness",
-               "limit_stiffness > 0, or no limits");
+      report_problem("limit_stiffness", "the joint has limits but they have no stiffness",
+                     "limit_stiffness > 0, or no limits");
     }
   }
 

@@ -58,7 +58,7 @@ TEST_F(Extremes, RefusalsNameWhatIsWrongAndAreGood) {
   const nlohmann::json& start = row(report, "start_in_penetration").at("result");
   EXPECT_EQ(start.at("verdict"), "refused");
   const std::string why = start.at("refusal");
-  for (const char* part : {"hydraulics.start: equilibrium asks for", "Vol_LiftCyl", "Cyl_Lift", "L90Lift", "Ground_Bag",
+  for (const char* part : {"hydraulics.start: equilibrium requires", "Vol_LiftCyl", "Cyl_Lift", "L90Lift", "Ground_Bag",
                            "deep", "hydraulics.start: table13"}) {
     EXPECT_NE(why.find(part), std::string::npos) << part << " in " << why;
   }

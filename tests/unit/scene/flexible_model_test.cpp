@@ -327,7 +327,7 @@ TEST(FlexibleModel, ABeamBesideMatricesIsRefused) {
     ADD_FAILURE();
   } catch (const LoadError& error) {
     const std::string text = error.what();
-    for (const char* part : {":3:1: materials: says nothing beside matrices", ":4:1: sections: ", ":5:1: line: "})
+    for (const char* part : {":3:1: materials: has no effect beside matrices", ":4:1: sections: ", ":5:1: line: "})
       EXPECT_NE(text.find(part), std::string::npos) << text;
   }
 }

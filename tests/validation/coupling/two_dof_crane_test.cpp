@@ -317,7 +317,7 @@ SplitError level_error(Level level, double H) {
   scene::Scene scene = load({"hydraulics.relative_tolerance=1e-6"});
   scene.session.step = H;
   scene.session.coupling = level;
-  scene.session.coupling_alarm = scene::CouplingAlarm::warn;  // less than two exchanges to a swing at 20 ms
+  scene.session.coupling_alarm = scene::CouplingAlarm::warn;  // above the Nyquist limit of the exchange at 20 ms
   CoupledRun run(scene);
   EXPECT_TRUE(run.start().is_ok());
   SplitError error;
