@@ -14,7 +14,7 @@
 namespace slew::monolith {
 namespace {
 
-// loops are closed in the solver's values so often [s]: what it violates grows with the square of the time
+// interval [s] for closing loops in the solver's values: the violation grows with the square of the time
 constexpr double kClosingWindow = 0.05;
 
 // (1)
@@ -41,12 +41,12 @@ class MechanicsEquations final : public DifferentialEquation {
     for (std::size_t k = 0; k < state_.bristles.size(); ++k) {
       f[coordinates + speeds + k] = multibody::joint_bristle_rate(model_, k, ws_.row_v, state_.bristles[k]);
     }
-    // with the solver's own quaternions, whose length the rates keep
+    // use the solver's own quaternions, whose length the rates keep
     multibody::coordinate_rates(model_, ws_, {y, coordinates}, state_.u, {f, coordinates});
     multibody::accelerations(model_, ws_, forces_, {f + coordinates, speeds});
   }
 
-  // the state that the solver's values stand for; whether its loops are closed
+  // the state of the solver's values; true if its loops are closed
   bool take(double t, const double* y) noexcept {
     state_.time = t;
     std::copy_n(y, state_.q.size(), state_.q.begin());

@@ -27,7 +27,7 @@ namespace slew::monolith {
 
 struct MonolithOptions {
   double relative_tolerance = 1e-9;
-  double absolute_tolerance = 1e-9;  // of each state's scale
+  double absolute_tolerance = 1e-9;  // tolerance in units of each state's scale
 };
 
 class Monolith final : private DifferentialEquation {
@@ -39,15 +39,15 @@ class Monolith final : private DifferentialEquation {
   Status start();
 
   // Continues to t > time(). controls: held; controls_begin, controls_end: linear in between. One value per channel.
-  // Error (diverged): CVODE gave up, with the time and the state that it could not follow; the state is the one there.
+  // Error (diverged): CVODE gave up, with the time and the failing state; the state stays at that time.
   Status advance_to(SimTime t, std::span<const double> controls);
   Status advance_to(SimTime t, std::span<const double> controls_begin, std::span<const double> controls_end);
 
-  // A live parameter jumps to its new SI value now.
+  // Sets a live parameter to its new SI value at once.
   Status set_parameter(std::string_view path, double value);
   [[nodiscard]] std::optional<double> parameter(std::string_view path) const { return equations_.parameter(path); }
 
-  // At time(), after start() or advance_to()
+  // Values at time(), after start() or advance_to()
   [[nodiscard]] SimTime time() const noexcept { return time_; }
   [[nodiscard]] std::span<const PortState> ports() const noexcept { return equations_.ports(); }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept { return equations_.variables(); }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kSpace = " \t\r\n";
 
-// The number at the start of the text, which it takes away; nothing when there is none, or none that is finite.
+// Removes and returns the number at the start of the text; nothing if there is no finite number.
 std::optional<double> take_number(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
   std::string_view digits = text;

@@ -17,7 +17,7 @@ namespace slew::urdf {
 
 using tinyxml2::XMLElement;
 
-// kg, kg m2: less than a grain of dust has; exporters print -5e-20 where they mean 0.
+// kg, kg m2: below a grain of dust; exporters print -5e-20 for 0.
 inline constexpr double kRoundOff = 1e-15;
 
 class ElementValues {
@@ -25,7 +25,7 @@ class ElementValues {
   ElementValues(int source, scene::Report& report, std::vector<Note>& notes)
       : source_(source), report_(report), notes_(notes) {}
 
-  // "link 'arm'": stands before what is wrong.
+  // "link 'arm'": prefix of a problem.
   void set_owner(std::string owner) { owner_ = std::move(owner); }
   void report_problem(const XMLElement& element, std::string what, std::string expected = "") {
     report_.add({source_, element.GetLineNum(), 0}, owner_, {std::move(what), std::move(expected), ""});

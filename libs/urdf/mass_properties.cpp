@@ -42,7 +42,7 @@ void put_tensor(const Mat3& I, Inertial& inertial) {
   inertial.products = {I(0, 1), I(0, 2), I(1, 2)};
 }
 
-// direction of the largest moment: what (I - p1)(I - p2) leaves of any vector
+// direction of the largest moment: (I - p1)(I - p2) times any vector
 Vec3 axis_of_largest(const Mat3& I, const Principal& p) {
   const Mat3 left = (I - Mat3::diagonal(p.p1, p.p1, p.p1)) * (I - Mat3::diagonal(p.p2, p.p2, p.p2));
   Vec3 longest = left.c[0];
@@ -176,7 +176,7 @@ class Settling {
                        100 * p.missed_share());
   }
 
-  // groups without mass, from the tips inwards, so that what hangs on a fixed joint is known
+  // groups without mass, from the tips inwards, so that the load of a fixed joint is known
   void fix_what_weighs_nothing() {
     const std::vector<Group> groups = find_groups(robot_);
     std::vector<char> has_mass(robot_.links.size(), 0), carries_mass(robot_.links.size(), 0);
@@ -253,7 +253,7 @@ class Settling {
     });
   }
 
-  // where the joint that others follow is fixed, the first of them leads
+  // if the leader of others is fixed, the first of them leads
   void rebind_followers() {
     std::vector<std::pair<int, Mimic>> leaders(robot_.joints.size(), {-1, {}});
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) {

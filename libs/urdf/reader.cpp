@@ -54,7 +54,7 @@ class Reader {
       return;
     }
     read_robot_name(root);
-    // joints name links that may stand behind them
+    // joints may name later links
     for_each_child(root, [&](const XMLElement& child, std::string_view tag) {
       if (tag == "link") read_link(child);
     });
@@ -102,7 +102,7 @@ class Reader {
     if (material_line_ == 0 || element.GetLineNum() < material_line_) material_line_ = element.GetLineNum();
   }
 
-  // what every joint or link of most files has, in a line for all
+  // contents of most joints or links: one line for all
   void note_once() {
     if (material_line_ > 0) robot_.notes.push_back({material_line_, "materials and colours are not taken over"});
     if (bounds_line_ > 0) {
@@ -146,7 +146,7 @@ class Reader {
     robot_.links.push_back(std::move(link));
   }
 
-  // such a link is a frame
+  // a link without mass is a frame
   static bool is_nothing(const Inertial& inertial) {
     double largest = inertial.mass;
     for (const Triple& triple : {inertial.moments, inertial.products}) {
@@ -214,7 +214,7 @@ class Reader {
     link.geometries.push_back(std::move(shape));
   }
 
-  // placeholders of other programs have a size of 0
+  // size 0: a placeholder of another program
   static bool has_extent(const Geometry& shape) {
     switch (shape.kind) {
       case Geometry::Kind::box:

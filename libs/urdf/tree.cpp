@@ -55,7 +55,7 @@ void find_tree(Robot& robot, const ReportProblem& report_problem) {
               "one root");
     }
   }
-  if (robot.root < 0) counted(robot.links[0].line, "every link has a parent", "one link that is nobody's child");
+  if (robot.root < 0) counted(robot.links[0].line, "every link has a parent", "one link without a parent");
   if (problem_count > 0) return;
   find_order(robot);
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
