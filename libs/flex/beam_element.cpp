@@ -21,7 +21,7 @@ double bubble_slope(double xi) noexcept {
 // freedoms of one plane: displacement and turn of node 1, of node 2
 using PlaneTerms = std::array<double, 4>;
 
-// where the planes' freedoms are among the element's twelve, and the sign of the turn (-ry in the x-z plane)
+// places of the planes' freedoms among the element's twelve, and the sign of the turn (-ry in the x-z plane)
 constexpr std::array<int, 4> kPlaneY = {1, 5, 7, 11}, kPlaneZ = {2, 4, 8, 10};
 constexpr std::array<double, 4> kTurnY = {1, 1, 1, 1}, kTurnZ = {1, -1, 1, -1};
 
@@ -123,7 +123,7 @@ double shear_number(double bending, double shear_factor, double shear_modulus, d
 
 std::array<bool, 6> internal_freedoms(const BeamElement& element, RotaryInertia rotary) noexcept {
   const bool is_with = rotary == RotaryInertia::with, y = element.phi_y > 0, z = element.phi_z > 0;
-  // turns without inertia stay zero: nothing drives them
+  // turns without inertia stay zero: no load drives them
   return {true, y, z, true, z && is_with, y && is_with};
 }
 

@@ -33,9 +33,9 @@ namespace {
 using math::Mat3;
 using math::Vec3;
 
-// no machine has a part of this radius of gyration; beyond it masses and moments lose each other in double precision
+// no machine has a part with this radius of gyration; beyond it double precision loses masses beside moments
 constexpr double kLargestRadius = 1e6;  // m
-// directions f1 and g1 are exact in practice; more than this is a wrong number
+// directions f1 and g1 are exact in practice; a larger angle means a wrong number
 constexpr double kRightAngleTolerance = 1e-3;
 // transverse moments of a cylinder as CAD prints them
 constexpr double kTransverseTolerance = 1e-2;
@@ -119,7 +119,7 @@ class Validator {
         fmt::format("{} or own", fmt::join(names, ", ")));
   }
 
-  // ranges of the field tables, for Defs that no scene reader has seen
+  // ranges of the field tables, for Defs made in code
   void check_ranges() {
     check_fields("mechanics", mechanics_fields(), const_cast<MechanicsDef*>(&m_));
     const auto check_all = [this](const auto& defs, std::size_t section, auto type_of) {
@@ -151,7 +151,7 @@ class Validator {
       if (row.type == FieldType::choice) continue;
       if (row.type == FieldType::number) {
         const double value = *static_cast<double*>(row.member(def));
-        // a limit that is not set is infinite, which no scene can write
+        // an unset limit is infinite, which no scene can write
         if (!row.range.contains(value) && !std::isinf(value)) report_range(owner, row, value);
         if (std::isinf(value) && !is_open_ended(row.key)) report_range(owner, row, value);
       } else if (row.type == FieldType::integer) {
@@ -356,12 +356,12 @@ class Validator {
     }
     if (dummy.center_of_mass[1] != 0 || dummy.center_of_mass[2] != 0) {
       add(dummy.name + ".center_of_mass", "the centre of mass is off the line of force",
-          "y = z = 0: two points do not say where y and z point");
+          "y = z = 0: two points do not define the directions of y and z");
     }
     const auto [xx, yy, zz] = dummy.inertia;
     if (std::abs(yy - zz) > kTransverseTolerance * std::max(yy, zz)) {
       add(dummy.name + ".inertia", fmt::format("Iyy {} and Izz {} kg m2 differ by more than 1 %", yy, zz),
-          "Iyy = Izz: two points do not say where y and z point");
+          "Iyy = Izz: two points do not define the directions of y and z");
     }
     if (xx > yy + zz + kInertiaTolerance * std::max({xx, yy, zz})) {
       add(dummy.name + ".inertia", fmt::format("moments {}, {}, {} kg m2 break the triangle rule", xx, yy, zz),
@@ -384,7 +384,7 @@ class Validator {
     const Model model = build_model(given_, {}, report);
     if (!report.is_settled) {
       add(model.segmented.empty() ? model.parts.front().name : model.segmented.front().name,
-          "no rest is found for the flexible bodies under the load of the start",
+          "the flexible bodies have no static equilibrium under the load of the start",
           "a load below the buckling load, or a start of its own");
     }
     for (const AssemblyReport::Row& row : report.held_twice) {

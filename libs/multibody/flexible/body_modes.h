@@ -40,7 +40,7 @@ struct ModalBlock {
 // Parts and nodes' places of the motion in ws, whose links have theirs; q, u: of all modes.
 void see_parts(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept;
 
-// What accelerations of all modes add to the wrenches and biases of update_inertia().
+// Adds the accelerations of all modes to the wrenches and biases of update_inertia().
 void add_modal_accelerations(const Model& model, std::span<const double> rate, Workspace& ws) noexcept;
 
 // Scratch for a block of the matrix.

@@ -1,4 +1,4 @@
-// How far flexible bodies bend.
+// Deflection of flexible bodies.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@ namespace slew::multibody {
 
 // Beyond it small-deflection theory is off by more than a percent.
 inline constexpr double kSmallDeflection = 0.1;  // of the body's length
-// Twice its length is as far as a node can get from where it was on the undeformed body, and half as much again is left
-// to a theory that lengthens what bends.
+// A node can move by twice the body's length from its undeformed place; half as much again allows for a theory that
+// lengthens bent bodies.
 inline constexpr double kLostDeflection = 3;  // of the body's length
 
-// Nodes that move most in one of the modes, and the last node: so few that their number is the modes', not the nodes'.
+// Nodes that move most in one of the modes, and the last node: their number grows with the modes, not the nodes.
 [[nodiscard]] std::vector<std::size_t> widest_nodes(const ModalBody& body);
 
 // Largest distance between two nodes [m].

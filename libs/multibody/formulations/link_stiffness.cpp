@@ -68,7 +68,7 @@ class Adding {
   }
 
   void add_angle(const AngleElement& element, const AngleMotion& m) noexcept {
-    // without a spring the angle is not evaluated, nor needed
+    // without a spring the angle is neither evaluated nor needed
     const bool is_sprung = has_spring(element.law);
     const ElementSlopes slopes =
         slopes_of(element.law, is_sprung ? m.angle : 0, is_sprung ? m.rate : 0, damper_speed(element, ws_));

@@ -103,7 +103,7 @@ void move_floating(const LinkMotion& ground, std::span<const double> q, std::spa
   m.a = ground.a;
 }
 
-// what the laws say of a joint's accelerations
+// prescribed accelerations of a joint
 void add_prescribed(const Link& link, const Workspace& ws, LinkMotion& m) noexcept {
   const auto acceleration = [&](std::size_t k) {
     return link.drive[k] < 0 ? 0.0 : ws.drives[static_cast<std::size_t>(link.drive[k])].acceleration;
@@ -173,7 +173,7 @@ void move_link(const Model& model, std::size_t i, std::span<const double> q, std
 void update_motion(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   ws.loops.is_shown = false;
   ws.motion[0].a = -model.gravity;
-  // what is rigid does not pay for modes
+  // rigid mechanisms skip the modes
   if (model.parts.empty()) {
     for (std::size_t i = 1; i < model.links.size(); ++i) move_link(model, i, q, u, ws);
     return;

@@ -19,7 +19,7 @@ using math::Vec3;
 
 namespace {
 
-// Gathers, body by body, the wrench that only the joints can supply: inertia forces less known forces.
+// Sums, body by body, the wrench required from the joints: inertia forces less known forces.
 class ReactionSum {
  public:
   ReactionSum(const Model& model, Workspace& ws) : model_(model), ws_(ws) {
@@ -120,7 +120,7 @@ class ReactionSum {
     }
   }
 
-  // what the rows of cut joints do to their bodies, which is what these joints transmit
+  // forces of the rows of cut joints on their bodies, which are the reactions of these joints
   void subtract_cuts(std::span<const double> forces, std::span<JointReaction> reactions) noexcept {
     for (const Cut& cut : model_.cuts) {
       RowGradient sum;

@@ -11,7 +11,7 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;  // rad
 
 MotionValue harmonic_motion(const MotionLaw& law, double time) noexcept {
-  // whole turns are taken out before they cost digits
+  // whole turns are removed before they cost digits
   const double turns = law.frequency * time;
   const auto [s, c] = math::sin_cos(kTurn * (turns - std::floor(turns)) + law.phase);
   const double omega = kTurn * law.frequency;
