@@ -1,4 +1,4 @@
-// Cases that peers are asked about, and differences between their answer and ours, each relative to a stated scale.
+// Cases for peers, and differences between their results and ours, each relative to a stated scale.
 //
 // A peer is a class with
 //   Peer(const MechanicsDef&)
@@ -104,7 +104,7 @@ void record(const std::string& name, double residual);
 [[nodiscard]] RowDifference compare_rows(const Sample& sample, const Mechanism& ours, const Motions& free,
                                          const std::vector<double>& mobility);
 
-// Everything a partner of the coupling is told. The peer's W: accelerations of the rows by unit forces on the bare
+// All values for a partner of the coupling. The peer's W: accelerations of the rows by unit forces on the bare
 // mechanism at rest.
 template <typename Peer>
 RowDifference rows_differ_by(const Sample& sample) {

@@ -1,5 +1,4 @@
-// Bristle friction stays in its cone, dissipates, looks the same from every frame and knows its slopes, at any
-// sub-step.
+// Bristle friction stays in its cone, dissipates, is the same in every frame and has exact slopes, at any sub-step.
 #include <gtest/gtest.h>
 
 #include <algorithm>

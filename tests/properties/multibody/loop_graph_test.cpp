@@ -1,6 +1,6 @@
-// Graphs of loops: trees of links that closing rows connect at random, beside each other, in rows, rings and nets. What
-// the sparse closing system leaves out is zero, its bits are those of the dense one, and body coordinates, which know
-// no tree, find the same motion and the same rows.
+// Graphs of loops: trees of links that closing rows connect at random, beside each other, in rows, rings and nets. The
+// entries that the sparse closing system omits are zero, its bits are those of the dense one, and body coordinates,
+// which use no tree, find the same motion and the same rows.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -292,7 +292,7 @@ TEST(LoopGraph, OfManyLoopsDoesNotLeadThroughAllOfThemWhateverTheFilesOrder) {
   }
 }
 
-// a few loops are cut where the file says
+// a few loops are cut by the order of the file
 TEST(LoopGraph, OfFewLoopsHasTheTreeOfTheFile) {
   Problems problems;
   const MechanicsDef def = listed_by_loops(4);

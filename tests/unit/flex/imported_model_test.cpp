@@ -271,7 +271,7 @@ TEST_F(Units, ThatAreStatedWronglyAreRefused) {
   const std::string error =
       error_of([&] { (void)model_of_matrices("Boom", line_.nodes, line_.M, line_.K, ModelUnits::mm_t_s); });
   EXPECT_NE(error.find("in mm_t_s this is no solid"), std::string::npos) << error;
-  EXPECT_NE(error.find("say units: m_kg_s (235.5 kg, 3 m long"), std::string::npos) << error;
+  EXPECT_NE(error.find("set units: m_kg_s (235.5 kg, 3 m long"), std::string::npos) << error;
 }
 
 // a mass in grams or milligrams leaves the wave speed of its own stiffness unit

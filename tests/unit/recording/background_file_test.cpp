@@ -11,7 +11,7 @@
 namespace slew::recording {
 namespace background_file_test {
 
-// A disk that waits to be told how many writes it may do, and fails one of them.
+// A disk that waits for a permitted number of writes, and fails one of them.
 class SteppedDisk final : public FileCalls {
  public:
   std::int64_t write(int descriptor, ByteSpan bytes, std::uint64_t offset) override {

@@ -135,7 +135,7 @@ TEST_F(RecoveredRecording, LosesNoMoreThanTheChunkInWhichABitChanged) {
   }
 }
 
-// The next place to go on at is behind hundreds of kilobytes of bytes that say nothing.
+// The next place to continue is behind hundreds of kilobytes of meaningless bytes.
 TEST_F(RecoveredRecording, GoesOnBehindALargeChunk) {
   std::unique_ptr<Writer> writer;
   ASSERT_EQ(Writer::create(scratch_ / "large.mcap", sample_identity(), WriterLimits{}, writer).text, "");

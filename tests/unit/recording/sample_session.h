@@ -46,7 +46,7 @@ inline constexpr const char* kAttachmentText = "scene: {name: sample}\nbodies: {
 // Payload whose bytes depend on the arguments and hardly compress.
 [[nodiscard]] std::string sample_payload(std::uint64_t seed, std::size_t size);
 
-// Writes attachment, two channels and the given number of steps, and closes unless told otherwise.
+// Writes attachment, two channels and the given number of steps, and closes by default.
 enum class Ending { closed, open };
 [[nodiscard]] std::unique_ptr<Writer> write_sample(const std::filesystem::path& path, StepIndex steps, Ending ending,
                                                    const WriterLimits& limits = small_limits());

@@ -27,7 +27,7 @@ TEST(Load, TheCanonicalTextOfASceneReadsBackToTheSameText) {
 }
 
 TEST(Load, TextsSurviveTheRoundTrip) {
-  const std::string title = "say \"hi\" \\ to\tit: # [x] \xC3\xA4, and 'so'";
+  const std::string title = "the \"hi\" \\ to\tit: # [x] \xC3\xA4, and 'so'";
   std::string scene = kPendulum + "plots:\n  Swing: {title: " + yaml_text(title) + ", variables: [Rod.position.x]}\n";
   const Scene once = load_text(scene, "test");
   EXPECT_EQ(once.plots.at(0).title, title);

@@ -124,7 +124,7 @@ TEST(UrdfReader, RefusesWhatIsNoTree) {
             "r.urdf:5: link 'a' is the child of joint 'j' already; expected a tree: loops are closed in the scene "
             "afterwards");
   EXPECT_EQ(problems_of(robot(fixed("j", "base", "a") + fixed("k", "a", "base"))),
-            "r.urdf:2: every link has a parent; expected one link that is nobody's child");
+            "r.urdf:2: every link has a parent; expected one link without a parent");
   const std::string doubled = problems_of(robot(fixed("j", "base", "a") + fixed("j", "a", "base")));
   EXPECT_TRUE(doubled.starts_with("r.urdf:5: joint 'j': is there twice (first in line 4)")) << doubled;
   const std::string circle = "<link name=\"c\"/>\n<link name=\"d\"/>\n" + fixed("j", "base", "a") +

@@ -160,8 +160,8 @@ TEST(SplitFlexibleBody, HasTheModesOfTheStudy) {
   EXPECT_NEAR(1500 * (j.t[1] * j.t[1] + j.t[2] * j.t[2]), 94, 0.1);
 }
 
-// Nobody should come back to it: smaller steps do not help, the loop gain is a ratio of masses. N2 is the study's to
-// its digits; its N1 grows by 1.3 an exchange at 1500 kg, this one by the loop gain itself.
+// A scheme to avoid: smaller steps do not help, the loop gain is a ratio of masses. N2 equals the study's to its
+// digits; its N1 grows by 1.3 an exchange at 1500 kg, this one by the loop gain itself.
 TEST(SplitFlexibleBody, HeldAccelerationsAreUnstableAtEveryStep) {
   for (const double load : kLoads) {
     show("N1", load, [](double m, double H) { return naive(m, H, false); });

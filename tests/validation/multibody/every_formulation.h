@@ -14,7 +14,7 @@
 
 namespace slew::multibody::testing {
 
-// `stated`: tolerance of the case; `bound`: what is asserted, looser only where the card says why.
+// `stated`: tolerance of the case; `bound`: asserted bound, looser only with a reason in the card.
 struct Figure {
   std::string what;  // with its unit
   double reached = 0, stated = 0;

@@ -1,5 +1,5 @@
-// Contact of bodies that move freely: momentum stays, energy does not grow, both formulations say the same, whatever
-// falls how.
+// Contact of bodies that move freely: momentum stays, energy does not grow, both formulations agree, for all shapes and
+// motions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
