@@ -70,7 +70,7 @@ void prefer_faces(const Solid& a, const Solid& b, Overlap& overlap) noexcept {
   for (const Vec3& n_W : {of_b, of_a}) {
     const double depth = overlap_along(a, b, n_W);
     if (depth >= least) continue;
-    least = depth * (1 - 1e-9);  // of two equal overlaps always B's
+    least = depth * (1 - 1e-9);  // take B's of two equal overlaps
     overlap.n_W = n_W;
     overlap.depth = depth;
   }

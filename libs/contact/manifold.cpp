@@ -77,7 +77,7 @@ void clip_faces(const Face& a, const Face& b, Vec3 n_W, Manifold& out) noexcept 
   // the reference: the polygon that faces the other shape more squarely; A faces -n, B faces n
   const double of_a = is_polygon(a) ? -dot(a.normal, n_W) : 0.0;
   const double of_b = is_polygon(b) ? dot(b.normal, n_W) : 0.0;
-  // of nearly equal polygons always B's, so that rounding does not swap them
+  // take B's of nearly equal polygons, so that rounding does not swap them
   constexpr double kPreference = 1e-6;
   const bool b_is_reference = of_b >= of_a - kPreference && of_b > 0;
   const double squareness = b_is_reference ? of_b : of_a;

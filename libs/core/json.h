@@ -66,7 +66,7 @@ class Json {
   [[nodiscard]] const Json& at(std::string_view name) const;
   [[nodiscard]] const Json* find(std::string_view name) const noexcept;  // null: not there, or no object
   [[nodiscard]] std::string text_or(std::string_view name, std::string_view otherwise) const;  // member or otherwise
-  [[nodiscard]] const std::vector<Json>& items() const;  // of an array; null has none
+  [[nodiscard]] const std::vector<Json>& items() const;  // elements of an array; null has none
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] double number() const;
   [[nodiscard]] std::int64_t integer() const;

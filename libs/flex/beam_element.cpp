@@ -169,7 +169,7 @@ ElementStrain strain_at(const BeamElement& element, double xi) {
   stretch(0) = twist(3) = -1 / l;
   stretch(6) = twist(9) = 1 / l;
   put(bend_z, curvature(xi, l, element.phi_y), kPlaneY, kTurnY);
-  put(bend_y, curvature(xi, l, element.phi_z), kPlaneZ, kTurnZ, -1);  // of ry, not -ry
+  put(bend_y, curvature(xi, l, element.phi_z), kPlaneZ, kTurnZ, -1);  // curvature of ry, not -ry
   stretch(kMiddle + kUx) = twist(kMiddle + kRx) = bend_y(kMiddle + kRy) = bend_z(kMiddle + kRz) = bubble_slope(xi) / l;
   return {per_body_freedom<1>(stretch, element.axes), per_body_freedom<1>(twist, element.axes),
           per_body_freedom<1>(bend_y, element.axes), per_body_freedom<1>(bend_z, element.axes)};

@@ -216,7 +216,7 @@ void check_section(const std::string& owner, const SectionDef& def, Problems& pr
     check.positive("wall", def.wall, "m");
     check.positive("flange", flange, "m");
     const double room = def.shape == SectionShape::i_section ? def.width : def.width / 2;
-    check.below("wall", def.wall, room, "half of the free width");
+    check.below("wall", def.wall, room, "the free width");
     check.below("flange", flange, def.height / 2, "half of the height");
   }
   check.factor("shear_factor_y", def.shear_factor_y);

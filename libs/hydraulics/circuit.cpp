@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPositionScale = 1e-3;  // m: at rtol 1e-4 an error of 0.1 um, a few newtons of oil spring
 constexpr double kSpeedScale = 0.1;      // m/s
-constexpr double kNearFloor = 2;         // of the pressure scale: where air makes oil soft
+constexpr double kNearFloor = 2;         // in pressure scales: range where air makes oil soft
 
 }  // namespace
 

@@ -112,7 +112,7 @@ class BlockLdl {
   std::vector<double> inverse_;    // inverses of the diagonal blocks, by first_value_; definite nodes: Cholesky's
                                    // factor
   std::vector<double> scaled_;     // L of the current column
-  std::vector<double> reference_;  // of each closing row's pivot
+  std::vector<double> reference_;  // lower bound of each closing row's scale
   std::vector<double> scale_;      // scale of each closing row's pivot, reference included
   double smallest_pivot_ = 1;
   std::vector<std::uint8_t> is_redundant_;

@@ -15,7 +15,7 @@ namespace slew::math {
 namespace {
 
 constexpr std::uint32_t kMostSteps = 100'000;  // within one interval
-constexpr double kJump = 1e-3;                 // of a state's size: beyond, a move of y is an event
+constexpr double kJump = 1e-3;                 // share of a state's size above which a move of y is an event
 
 void ignore_message(int, const char*, const char*, char*, void*) {}
 

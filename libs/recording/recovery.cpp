@@ -73,7 +73,7 @@ class Copy {
     if (!decode_metadata(content, record) || record.name == kSummaryName || record.name == kRecoveryName) {
       return Status::ok();
     }
-    // of several records the first is the one read
+    // the first of several records is the one read
     if (record.name == kIdentityName && std::exchange(has_identity_, true)) return Status::ok();
     index_.metadata.push_back({to_.size(), buffer_.size(), record.name});
     return to_.append_marked(buffer_);

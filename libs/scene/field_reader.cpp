@@ -314,7 +314,7 @@ void check_unread(const Node& map, std::span<const Field> fields, void* def, con
 
 bool may_follow(const Table& table, double argument, const Field& field) {
   if (table.empty() || argument > table.back()[0]) return true;
-  // of three points with one argument the middle one has no effect
+  // the middle one of three points with one argument has no effect
   const bool is_second = table.size() < 2 || table[table.size() - 2][0] < argument;
   return field.has_jumps && argument == table.back()[0] && is_second;
 }

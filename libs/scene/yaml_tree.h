@@ -21,7 +21,7 @@ struct Node {
   struct Entry;
   struct Duplicate {
     std::string key;
-    Mark mark;  // of the later key, whose value is dropped
+    Mark mark;  // mark of the later key, whose value is dropped
     Mark first;
   };
 

@@ -28,7 +28,7 @@ struct ShapeDef {
   std::string file_up{};            // "y" or "z": the axis of the file that becomes y of the shape
   std::vector<double> vertices{};   // m, x y z of one vertex after the other
   std::vector<double> triangles{};  // indices of vertices, three a triangle, counter-clockwise seen from outside
-  std::int64_t columns = 0;         // of a height field, along x, >= 2
+  std::int64_t columns = 0;         // points of a height field along x, >= 2
   std::int64_t rows = 0;            // along y, >= 2
   double spacing_x = 0;             // m, > 0
   double spacing_y = 0;             // m, > 0

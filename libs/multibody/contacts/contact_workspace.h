@@ -50,7 +50,7 @@ struct ContactWorkspace {
   std::vector<contact::Pose> poses, start_poses, ahead;  // by frame: now, at the start, where the start's speeds lead
   std::vector<FrameSpeed> start_speeds;                  // by frame
   std::vector<unsigned char> was_touching;               // by pair, at the start: 0 or 1
-  std::vector<ContactForce> forces;                      // of the last search
+  std::vector<ContactForce> forces;                      // forces of the last search
   std::size_t force_count = 0;
   std::vector<ContactRates> rates;  // by link, up to the last one with a shape
   double time = 0;                  // s, since the start of the sub-step

@@ -22,7 +22,7 @@ struct ModalBlock {
   int node = 0;
   std::size_t part = 0;              // Model::parts
   std::size_t first = 0, count = 0;  // modes
-  std::size_t place = 0;             // of the first among all modes
+  std::size_t place = 0;             // place of the first among all modes
 };
 
 // Appends nodes for the modes of all parts to a pattern, coupled to their frames' links and to the nodes' links, whose

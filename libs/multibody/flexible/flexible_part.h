@@ -39,7 +39,7 @@ namespace slew::multibody {
 
 // Pairs k, l at k * modes + l; vectors and matrices in the axes of the link, moments about its origin.
 struct FlexiblePart {
-  std::string name{};  // of the body
+  std::string name{};  // name of the body
   int body = 0;        // Model::bodies
   int link = 0;        // its frame
   int q = 0, u = 0;    // first modal coordinate in State::q and State::u

@@ -50,7 +50,7 @@ enum class SegmentStart : int { at_rest, straight };
 // "Boom.Segment2", counted from the beam's end, each with its frame at its station. Attachment points of the body ride
 // on the nearest lump, nodes ("Boom.Node20") on the lump that holds them.
 struct SegmentedBodyDef {
-  std::string body{};                           // of the scene
+  std::string body{};                           // name of the scene's body
   std::shared_ptr<const SegmentChain> chain{};  // from its files
   double relative_damping = 0;                  // zeta of the first mode: beta = 2 zeta/omega_1
   SegmentStart start = SegmentStart::at_rest;

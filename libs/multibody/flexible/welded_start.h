@@ -15,7 +15,7 @@ struct WeldedStart {
   std::vector<Pose> poses;          // by body; Ground's is the first
   std::vector<math::Vec3> v_WB;     // m/s, of the body's origin
   std::vector<math::Vec3> w_WB;     // rad/s
-  std::vector<double> modal_speed;  // of all flexible parts, in the order of the parts
+  std::vector<double> modal_speed;  // modal speeds of all flexible parts, in the order of the parts
   AssemblyReport report;            // report of the rigid mechanism
 };
 

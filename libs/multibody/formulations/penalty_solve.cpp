@@ -40,7 +40,7 @@ const double* link_at(std::span<const double> x, int link) noexcept {
   return x.data() + kLinkSpeeds * (at(link) - 1);
 }
 
-// of the modes of a part, with each other and with their frame
+// inertia of a part's modes, with each other and with their frame
 void subtract_modal_mass(const Model& model, const Workspace& ws, std::size_t index, std::span<const double> x,
                          std::span<double> y) noexcept {
   const FlexiblePart& part = model.parts[index];

@@ -198,7 +198,7 @@ struct Cut : Constraint {
   int first_row = 0;      // among the rows of all cuts
   int first_support = 0;  // entries of Model::supports: all links between its bodies and Ground, outermost first
   int support_end = 0;
-  std::vector<int> kept;                 // of the joint's rows in the order of rows_of(), by entry of `rows`
+  std::vector<int> kept;                 // places of the kept rows in the order of rows_of(), by entry of `rows`
   std::vector<ConstraintRow> redundant;  // rows that the others imply in every position
   std::vector<int> left_out;             // their places in the order of rows_of()
 };

@@ -199,7 +199,7 @@ void find_unit_reactions(const Model& model, const Cut& cut, const ConstraintRow
   sum.pass_on(reactions);
 }
 
-// Of all reactions that cause this motion those with the smallest sum of squares of forces [N] and moments [N m].
+// The reactions to this motion with the smallest sum of squares of forces [N] and moments [N m].
 void take_smallest(const Model& model, Workspace& ws, std::span<JointReaction> reactions) noexcept {
   const std::size_t joints = model.joints.size(), units = ws.unit_shares.size();
   std::copy(reactions.begin(), reactions.end(), ws.found_reactions.begin());

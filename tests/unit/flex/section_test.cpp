@@ -142,7 +142,7 @@ TEST(Section, WrongDimensionsAreNamed) {
   EXPECT_EQ(problems_of(box(0.1, 0.2, 0.01)), "");
   EXPECT_EQ(problems_of(box(-0.1, 0.2, 0.01)), "Beam.section.width: -0.1 m is out of range; expected a number > 0 m\n");
   EXPECT_EQ(problems_of(box(0.1, 0.2, 0.06)),
-            "Beam.section.wall: 0.06 m fills the inside; expected less than 0.05 m, half of the free width\n");
+            "Beam.section.wall: 0.06 m fills the inside; expected less than 0.05 m, the free width\n");
   EXPECT_EQ(problems_of(box(0.1, 0.2, 0.01, 0.1)),
             "Beam.section.flange: 0.1 m fills the inside; expected less than 0.1 m, half of the height\n");
   EXPECT_EQ(problems_of({.shape = SectionShape::tube, .wall = 0.06, .diameter = 0.1}),
