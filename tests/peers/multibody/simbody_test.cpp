@@ -106,7 +106,7 @@ TEST(ComparisonWithSimbody, SeesAMassThatIsAMillionthOff) {
 
 struct MotionDifference {
   double pose = 0;    // rad and m
-  double energy = 0;  // of the change of either kind of energy, relative to the peak kinetic energy
+  double energy = 0;  // error of the change of either kind of energy, relative to the peak kinetic energy
 };
 
 // Ours in steps of h beside Simbody's for a time of 20 looks.

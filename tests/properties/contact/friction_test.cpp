@@ -72,7 +72,7 @@ TEST_F(FrictionProperty, NeverLeavesTheConeByMoreThanTheViscousForce) {
   }
 }
 
-// power of the force is never less than what the bristles store, at one instant ...
+// power of the force is never less than the rate of the bristles' energy, at one instant ...
 TEST_F(FrictionProperty, NeverCreatesEnergyAtAnInstant) {
   for (int i = 0; i < kDraws; ++i) {
     Draw d = draw();

@@ -259,7 +259,7 @@ MechanicsDef light_links(int links, double tip) {
 
 class LightLinks : public ::testing::TestWithParam<Choice> {
  protected:
-  // what a swing leaves of the energy, of m g l, and how it went
+  // remaining energy of a swing, in m g l, and its reports
   struct Swing {
     double energy = 0;
     int unsettled = 0;

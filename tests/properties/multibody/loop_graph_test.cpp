@@ -115,7 +115,7 @@ double difference(std::span<const double> a, std::span<const double> b) {
   return largest / scale;
 }
 
-// what is not stored is zero, and the solution is the dense one, bit by bit
+// entries not stored are zero, and the solution is the dense one, bit by bit
 void expect_only_zeros_left_out(const Mechanism& mechanism) {
   const LoopWorkspace& loops = mechanism.ws.loops;
   const std::size_t rows = loops.rows.size(), speeds = mechanism.state.u.size();
@@ -140,7 +140,7 @@ void expect_only_zeros_left_out(const Mechanism& mechanism) {
   EXPECT_EQ(x, y);
 }
 
-// what a port's unit force makes of the closed mechanism, with all rows and speeds
+// response of the closed mechanism to a port's unit force, with all rows and speeds
 void expect_ports_reduced_by_all_rows(const Mechanism& mechanism) {
   const Model& model = mechanism.model;
   Workspace ws(mechanism.model);

@@ -1,4 +1,4 @@
-// Matrices from files: what is read, and what is refused with which words.
+// Matrices from files: accepted files, and refused ones with their messages.
 #include "flex/imported_model.h"
 
 #include <gtest/gtest.h>
@@ -206,7 +206,8 @@ TEST_F(Import, TwoLoosePiecesAreRefused) {
 
 // ---- units ----------------------------------------------------------------------------------------------------------
 
-// what a code without units makes of a cantilever of 3 m, 100 x 100 mm, when lengths, masses and times have these units
+// matrices of a cantilever of 3 m, 100 x 100 mm, from a code without units, with lengths, masses and times in these
+// units
 struct Exported {
   SparseMatrix M, K;
   std::vector<FeNode> nodes;

@@ -449,7 +449,7 @@ TEST(CircuitIntegrator, a_saved_state_whose_flags_cannot_be_is_refused) {
   StateWriter writer(saved, {});
   integrator.save(writer);
   writer.finish();
-  constexpr std::size_t kHeader = 32, kCheck = 24;  // of the layout in core/state_bytes.h
+  constexpr std::size_t kHeader = 32, kCheck = 24;  // offsets in the layout of core/state_bytes.h
   int refused = 0;
   for (std::size_t i = kHeader; i < saved.size(); ++i) {
     if (saved[i] != std::byte{1}) continue;

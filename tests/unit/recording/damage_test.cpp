@@ -57,7 +57,7 @@ TEST(DamagedRecording, CutAtAnyByteGivesEveryWholeChunkInFrontOfTheCut) {
   }
 }
 
-// What a file with one changed bit gives: the messages in front of the damaged chunk, which is named.
+// Result of a file with one changed bit: the messages in front of the damaged chunk, which is named.
 void expect_longest_prefix(const std::filesystem::path& path, std::size_t at, std::size_t size,
                            const std::vector<KnownMessage>& messages, const std::vector<ChunkPlace>& chunks) {
   // the full check stops at or in front of the place
@@ -219,7 +219,7 @@ TEST(DamagedRecording, ADamagedLengthTakesNoMemory) {
   const std::vector<ChunkPlace> chunks = chunks_of(scratch / "whole.mcap");
   std::unique_ptr<Reader> reader;
   ASSERT_EQ(Reader::open(scratch / "whole.mcap", reader).text, "");
-  // bytes of lengths in the file, and what they claim
+  // bytes of lengths in the file, and their false values
   struct Claim {
     const char* what;
     std::size_t length_at;

@@ -1,4 +1,4 @@
-// A small recording with known content, and its reading back: what the tests of the format compare.
+// A small recording with known content and its read-back, for comparison in the tests of the format.
 #pragma once
 
 #include <gtest/gtest.h>

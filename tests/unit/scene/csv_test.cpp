@@ -1,4 +1,4 @@
-// CSV files of scripts and tables: how the world writes them, and what is refused.
+// CSV files of scripts and tables: common notations, and refused files.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,4 +1,4 @@
-// Flexible bodies of a scene: their files, what is taken of them, and every way in which they do not fit.
+// Flexible bodies of a scene: their files, the selection from them, and all mismatches.
 #include "scene/flexible_bodies.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a URDF file cannot be is refused with its line; what is left out is noted with its line.
+// Invalid contents of a URDF file are refused with their line; omitted contents are noted with their line.
 #include "urdf/reader.h"
 
 #include <gtest/gtest.h>
@@ -217,7 +217,7 @@ TEST(UrdfImport, TellsProblemsOfTheSceneAtTheLineOfTheUrdf) {
   }
 }
 
-// whatever is cut out of a file or put into it: a scene that is read again, or problems with their places
+// after any deletion from a file or insertion into it: a readable scene, or problems with their places
 TEST(UrdfImport, EndsWellWithDamagedFiles) {
   std::ifstream in(SLEWRING_SOURCE_DIR "/examples/urdf/two_link_arm.urdf");
   const std::string sound(std::istreambuf_iterator<char>(in), {});

@@ -1,5 +1,5 @@
 // Elastic forces that a flex node states (coupling study, section 5, scheme A1), in one process: the same motion as
-// without it, at every communication step; what a partner may state, and what is refused.
+// without it, at every communication step; accepted and refused samples of a partner.
 #include <gtest/gtest.h>
 
 #include <cmath>

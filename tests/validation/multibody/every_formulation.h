@@ -1,4 +1,4 @@
-// A case of the validation in every formulation, and what it reached beside the tolerance that the case states.
+// A case of the validation in every formulation, and its result beside the stated tolerance.
 //
 // With SLEWRING_FIGURES set every figure is printed as a row of the tables in docs/validation.
 #pragma once
