@@ -31,11 +31,11 @@ class ContactMemory {
   explicit ContactMemory(const ContactModel& model);
 
   // To be called after each search with the poses that it had; states() then belongs to set.points(), one each.
-  void follow(const ContactModel& model, std::span<const Pose> poses, const ContactSet& set) noexcept;
+  void advance(const ContactModel& model, std::span<const Pose> poses, const ContactSet& set) noexcept;
 
   // Becomes the successor of `before`, which stays unchanged: for a trial of an integrator. Both belong to this model.
-  void follow(const ContactMemory& before, const ContactModel& model, std::span<const Pose> poses,
-              const ContactSet& set) noexcept;
+  void advance(const ContactMemory& before, const ContactModel& model, std::span<const Pose> poses,
+               const ContactSet& set) noexcept;
 
   // Copies the contacts of `other`, of the same model. The cost grows with the remembered contacts; allocates only into
   // an empty memory.

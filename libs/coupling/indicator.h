@@ -104,7 +104,7 @@ class Indicator {
   };
   static constexpr std::size_t kBuckets = 20;  // buckets of whole steps; the oldest is dropped as a whole
   static constexpr std::size_t kDivergingBuckets = kBuckets / 2;
-  // number of buckets that a jump of a valve may each explain
+  // buckets left out of the sum: each may contain one jump of a valve
   static constexpr std::size_t kLeftOut = 3;
 
   template <typename Self, typename Bytes>

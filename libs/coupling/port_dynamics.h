@@ -106,10 +106,8 @@ class PortDynamics {
   [[nodiscard]] std::span<const double> f_mean() const noexcept { return {f_mean_.data(), rows_}; }
   [[nodiscard]] std::span<const double> f_slope() const noexcept { return {f_slope_.data(), rows_}; }
   [[nodiscard]] std::span<const double> work() const noexcept { return {work_.data(), rows_}; }  // work of z [J]
-  [[nodiscard]] std::span<const double> impulse() const noexcept {
-    return {impulse_.data(), rows_};
-  }  // impulse of z
-     // [N s]
+  // impulse of z [N s]
+  [[nodiscard]] std::span<const double> impulse() const noexcept { return {impulse_.data(), rows_}; }
 
  private:
   static constexpr double kUnbounded = std::numeric_limits<double>::infinity();

@@ -42,7 +42,7 @@ class PortLevels {
   void load(StateReader& bytes) noexcept;
 
  private:
-  void follow() noexcept;
+  void latch() noexcept;
 
   Level session_, first_session_;
   std::vector<Port> ports_;

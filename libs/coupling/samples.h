@@ -78,7 +78,7 @@ struct FlexibleSample {
 };
 
 // Sample from flexible bodies to mechanics: the elastic force of the modes, damping included, near the point (q_ref,
-// u_ref),
+// u_ref):
 //   Q - K (q - q_ref) - D (u - u_ref)
 // For bodies that keep their states, condensed over the step (scheme B): the point is their own state, K = D = 0, and
 //   M = M_modes + H/2 D + H^2/4 K,   Q = -K (q_ref + H/2 u_ref) - D u_ref

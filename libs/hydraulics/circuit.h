@@ -81,10 +81,8 @@ class Circuit {
   // 1, or 0 for positions; below zero 0 for volumes too: the size of a tension does not scale its error
   [[nodiscard]] const std::vector<double>& relatives() const noexcept { return relative_; }
   [[nodiscard]] const std::vector<double>& relatives_below_zero() const noexcept { return relative_below_zero_; }
-  [[nodiscard]] const math::SparsityPattern& pattern() const noexcept {
-    return pattern_;
-  }  // non-zero entries of
-     // jacobian()
+  // non-zero entries of jacobian()
+  [[nodiscard]] const math::SparsityPattern& pattern() const noexcept { return pattern_; }
   [[nodiscard]] double lowest_pressure() const noexcept { return oil_.lowest_pressure(); }
 
   // start states [y without x and v; the caller sets those]

@@ -25,7 +25,7 @@ constexpr double kLimitTolerance = 1e-6;  // m, rad
 // along the modes of one flexible body on either side of it (flexible/node_dummies.h).
 class DummyRules {
  public:
-  struct Verdict {
+  struct Fault {
     const char* what = nullptr;  // none: no fault
     const char* expected = nullptr;
   };
@@ -51,7 +51,7 @@ class DummyRules {
     }
   }
 
-  Verdict check(int body1, int body2) {
+  Fault check(int body1, int body2) {
     const int end1 = merged_[at(body1)], end2 = merged_[at(body2)];
     if (end1 == end2) return {};
     const std::optional<NodeSpan> span = node_span(end1, end2, parent_, is_node_);
@@ -72,7 +72,7 @@ class DummyRules {
   static std::size_t at(int body) { return static_cast<std::size_t>(body); }
 
   // all nodes of the ends and of the joint's inner side belong to one body
-  Verdict check_modes(const NodeSpan& span) {
+  Fault check_modes(const NodeSpan& span) {
     int unused = kNoBody;
     int& known = span.child > 0 ? across_[at(span.child)] : unused;
     for (const int link : {span.inner, span.carrier}) {
@@ -167,9 +167,9 @@ class StartRules {
     for (const ForceDummyDef& dummy : m_.force_dummies) {
       for (const TranslationalForceDef& force : m_.translational_forces) {
         if (force.name != dummy.relative_to) continue;
-        const DummyRules::Verdict verdict = rules.check(number_of_(force.body1), number_of_(force.body2));
-        if (verdict.what == nullptr) continue;
-        add(dummy.name + ".relative_to", fmt::format("'{}' {}", force.name, verdict.what), verdict.expected);
+        const DummyRules::Fault fault = rules.check(number_of_(force.body1), number_of_(force.body2));
+        if (fault.what == nullptr) continue;
+        add(dummy.name + ".relative_to", fmt::format("'{}' {}", force.name, fault.what), fault.expected);
       }
     }
   }

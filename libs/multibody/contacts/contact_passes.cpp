@@ -182,7 +182,7 @@ void update_contacts(const Model& model, Workspace& ws) noexcept {
   const std::span<const ContactPoint> points = contacts.set.points();
   contacts.force_count = points.size();
   if (points.empty()) return;
-  contacts.now.follow(contacts.before, elements.model, contacts.poses, contacts.set);
+  contacts.now.advance(contacts.before, elements.model, contacts.poses, contacts.set);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ContactPair& pair = elements.model.pairs()[points[i].pair];
     contacts.forces[i] = force_at(pair, touch_of(elements, ws, points[i]), contacts.now.states()[i]);
@@ -240,7 +240,7 @@ void accept_contacts(const Model& model, double h, State& state, Workspace& ws) 
   place_frames(elements, ws, contacts.poses);
   find_contacts(elements.model, contacts.poses, contacts.set);
   contacts.is_lost = find_passed(elements, contacts) || contacts.is_lost;
-  state.contacts.follow(contacts.before, elements.model, contacts.poses, contacts.set);
+  state.contacts.advance(contacts.before, elements.model, contacts.poses, contacts.set);
   const std::span<const ContactPoint> points = contacts.set.points();
   contacts.is_hit = false;
   for (std::size_t i = 0; i < points.size(); ++i) {

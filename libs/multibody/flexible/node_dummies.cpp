@@ -293,8 +293,8 @@ void pull_modes(const Model& model, std::size_t index, std::span<double> udot, c
   }
 }
 
-void push_back(const Model& model, std::size_t index, const Workspace& ws, std::span<double> residual,
-               std::span<const double> rate, std::span<Vec3> n, std::span<Vec3> f) noexcept {
+void back_substitute(const Model& model, std::size_t index, const Workspace& ws, std::span<double> residual,
+                     std::span<const double> rate, std::span<Vec3> n, std::span<Vec3> f) noexcept {
   const Link& link = model.links[index];
   const Vec3 joint = of_joint(link, rate);
   for (int i = link.first_node_dummy; i < link.node_dummy_end; ++i) {

@@ -79,7 +79,7 @@ void pull_modes(const Model& model, std::size_t link, std::span<double> udot, co
 
 // solve_backward(): adds the load on A by the residuals of a link's modes and the rates of its joint to the wrenches n,
 // f on all links and the residuals of the modes.
-void push_back(const Model& model, std::size_t link, const Workspace& ws, std::span<double> residual,
-               std::span<const double> rate, std::span<math::Vec3> n, std::span<math::Vec3> f) noexcept;
+void back_substitute(const Model& model, std::size_t link, const Workspace& ws, std::span<double> residual,
+                     std::span<const double> rate, std::span<math::Vec3> n, std::span<math::Vec3> f) noexcept;
 
 }  // namespace slew::multibody

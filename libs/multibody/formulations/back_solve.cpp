@@ -164,8 +164,8 @@ inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& 
 [[gnu::noinline]] void push_to_dummies(const Model& model, Workspace& ws, std::size_t link, const Rows& rows) noexcept {
   const std::size_t links = model.links.size(), speeds = ws.udot.size();
   for (std::size_t k = 0; k < rows.count; ++k) {
-    push_back(model, link, ws, {rows.residual + k * speeds, speeds}, {rows.rate + k * speeds, speeds},
-              std::span(ws.pass_n).subspan(k * links, links), std::span(ws.pass_f).subspan(k * links, links));
+    back_substitute(model, link, ws, {rows.residual + k * speeds, speeds}, {rows.rate + k * speeds, speeds},
+                    std::span(ws.pass_n).subspan(k * links, links), std::span(ws.pass_f).subspan(k * links, links));
   }
 }
 

@@ -36,7 +36,7 @@ class Body {
     const Mat3 R = math::rotation_of(q);
     const std::array<Pose, 2> poses = {Pose{}, Pose{p, R}};
     find_contacts(model_, poses, set_);
-    memory_.follow(model_, poses, set_);
+    memory_.advance(model_, poses, set_);
     Vec3 force = Vec3(0, 0, -kGravity), torque;
     normal_force = 0;
     for (std::size_t i = 0; i < set_.points().size(); ++i) {
