@@ -45,7 +45,7 @@ struct FrictionLawDef {
 
 [[nodiscard]] std::span<const Field> friction_law_fields() noexcept;
 
-// Appends what is out of range; paths are "owner.key".
+// Appends values out of range; paths are "owner.key".
 void check(std::string_view owner, const FrictionLawDef& def, Problems& problems);
 
 // A checked FrictionLawDef.

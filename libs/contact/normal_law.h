@@ -40,7 +40,7 @@ inline constexpr double kSmallestRestitution = 0.01;
 
 [[nodiscard]] std::span<const Field> normal_law_fields() noexcept;
 
-// Appends what is out of range; paths are "owner.key".
+// Appends values out of range; paths are "owner.key".
 void check(std::string_view owner, const NormalLawDef& def, Problems& problems);
 
 struct NormalLaw {

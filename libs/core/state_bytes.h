@@ -52,7 +52,7 @@ class StateWriter {
     append(values.data(), values.size_bytes());
   }
   void numbers(std::span<const double> values) { append(values.data(), values.size_bytes()); }
-  // 0 or 1 in whatever type.
+  // 0 or 1 in any type.
   template <typename T>
   void flag(const T& value) {
     number(static_cast<std::uint8_t>(value ? 1 : 0));

@@ -78,7 +78,7 @@ class Indicator {
               const PortLevels& levels) noexcept;
   void reset() noexcept;
 
-  // The window and what was shown last.
+  // The window and the last displayed values.
   void save(StateWriter& bytes) const;
   void load(StateReader& bytes) noexcept;
 

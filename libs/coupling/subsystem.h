@@ -1,4 +1,5 @@
-// A physics subsystem: what a node steps, hashes, records and changes. One implementation per physics role.
+// A physics subsystem: a node steps it, hashes and records its state, and changes its parameters. One implementation
+// per physics role.
 //
 // Life cycle: built from a scene -> first_sample() -> start() -> step(), step(), ... ; reset() returns to the state
 // before first_sample(). From start() on, no function allocates, locks or throws. A saved run continues with load() in

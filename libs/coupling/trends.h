@@ -10,8 +10,8 @@
 
 namespace slew::coupling {
 
-// The change over the last sub-step goes on, limited to twice the one before it, and not where the two differ in sign
-// (the limiter of van Leer 1977, J. Comput. Phys. 23, 276): a smooth change is continued to second order, an
+// The change over the last sub-step is continued, limited to twice the one before it, and dropped if the two differ in
+// sign (the limiter of van Leer 1977, J. Comput. Phys. 23, 276): a smooth change is continued to second order, an
 // alternating one gives no expected change. Both are changes from the beginning of a sub-step to its own end, under the
 // inputs held in it: neither contains a jump between two sub-steps. A caller that changes an input, or detects a
 // change, calls forget().

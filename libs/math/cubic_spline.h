@@ -4,8 +4,8 @@
 // On an interval of width h with B = (x - x_i)/h, A = 1 - B and second derivatives M at the points
 //   y = A y_i + B y_i+1 + h^2/6 ((A^3 - A) M_i + (B^3 - B) M_i+1)                                      (1)
 // M solves the tridiagonal system of continuous slopes, closed by M = 0 at both ends (natural) or by slope 0 there
-// (level). Beyond the points the curve goes on straight with the slope of its end: a natural spline then has no jump in
-// its second derivative, a level one holds its last value.
+// (level). Beyond the points the curve continues straight with the slope of its end: a natural spline then has no jump
+// in its second derivative, a level one holds its last value.
 // Source: de Boor 1978, chapter IV.
 #pragma once
 

@@ -128,7 +128,7 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
   const double* J = nullptr;
   Rejected rejected;
   while (rest > 0) {
-    // budget used up: a few more steps, whatever their error
+    // budget used up: a few more steps, with any error
     if (!report.is_over_budget && report.accepted + report.rejected >= options_.substep_budget) {
       report.is_over_budget = true;
       h = std::max(options_.minimum_step, rest / kUncheckedSteps);

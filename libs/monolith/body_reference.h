@@ -9,7 +9,7 @@
 // variables of their own. This reference shares the laws of the elements and the rows with the other one; coordinates,
 // equations, linear algebra and solver differ.
 //
-// What it does not cover: contacts, and singular positions, in which (1) has no unique multipliers: IDA then gives up.
+// Not covered: contacts, and singular positions, in which (1) has no unique multipliers: IDA then gives up.
 #pragma once
 
 #include "monolith/mechanics_reference.h"

@@ -3,9 +3,9 @@
 // A co-simulation is judged against it: same laws, same start, same controls, no coupling. BDF at rtol 1e-9 with
 // absolute tolerances of 1e-9 of each state's scale (0.01 rad, m, rad/s, m/s; pressure scale of the scene; 1 kJ); the
 // integration restarts at every change of a control, of its slope, or of a parameter, and quaternions are normalised
-// there; with joints that are cut also every 50 ms, where these are closed. Controls are what the components receive
-// (after dead zone, ramp and scale), by channel index; they are held over a call of advance_to, as a tick holds them
-// over a communication step, or go linearly over it.
+// there; with joints that are cut also every 50 ms, where these are closed. Controls are the values that the components
+// receive (after dead zone, ramp and scale), by channel index; they are held over a call of advance_to, as a tick holds
+// them over a communication step, or go linearly over it.
 //
 // Card: docs/models/coupling_reference_monolith.md. Not for real time: it allocates and its cost is not bounded.
 #pragma once

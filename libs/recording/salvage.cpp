@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kRefuted = "the bytes differ from what was written";
 constexpr std::uint64_t kChunkHeadBytes = kRecordHeadBytes + 40;  // up to the length of its compressed records
 constexpr std::uint64_t kFirstSearchBytes = 4 * 1024;             // bytes searched at once: the next place
-constexpr std::uint64_t kSearchBytes = 1u << 20;                  // to go on at is near or far
+constexpr std::uint64_t kSearchBytes = 1u << 20;                  // to continue is near or far
 
 class Salvager {
  public:

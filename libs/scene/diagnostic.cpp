@@ -53,7 +53,7 @@ bool Report::is_override(const Mark& mark) const noexcept {
 
 int Report::layer(const Mark& mark) const noexcept {
   const auto count = static_cast<int>(sources_.size());
-  // the scene's own file is read first, then what it includes, then the overrides
+  // the scene's own file is read first, then included files, then the overrides
   return is_override(mark) ? 2 * count : mark.source == 0 ? count : mark.source;
 }
 

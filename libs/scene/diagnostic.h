@@ -29,7 +29,7 @@ struct Diagnostic {
   int line = 0;      // 0: no line applies
   int column = 0;
   std::string path;        // "Bag.mass"; empty when the problem belongs to no key
-  std::string what;        // what is wrong
+  std::string what;        // the fault
   std::string expected;    // accepted value; may be empty
   std::string suggestion;  // a name that was probably meant; may be empty
 

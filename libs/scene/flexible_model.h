@@ -22,7 +22,7 @@ struct FlexibleModel {
   flex::ReductionDef reduction;
 };
 
-// Reads the file, what it includes and the matrices that it names, and builds the model. overrides:
+// Reads the file, its included files and named matrices, and builds the model. overrides:
 // "line.nodes=40", "materials.Steel.youngs_modulus=20 GPa". Throws LoadError, nothing else.
 [[nodiscard]] FlexibleModel load_flexible_file(const std::string& path, const Overrides& overrides = {});
 

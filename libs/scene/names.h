@@ -1,4 +1,4 @@
-// The names of a scene's elements: one name, one element, whatever its section.
+// The names of a scene's elements: one name, one element, in any section.
 #pragma once
 
 #include <map>

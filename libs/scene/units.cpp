@@ -305,7 +305,7 @@ std::string with_unit(double value, Dimension dimension) {
 
 namespace {
 
-// quantity: what the message quotes
+// quantity: text quoted in the message
 UnitResult find_unit(std::string_view text, Dimension dimension, UnitSystem& units, std::string_view quantity) {
   const Unit* unit = units.find(text);
   if (unit == nullptr) return {nullptr, unknown_unit(text, dimension, units)};

@@ -23,7 +23,7 @@ namespace {
 // may require more
 constexpr double kPartsPerThickness = 4;
 constexpr double kMostParts = 256;
-// a sub-step that is a multiple but for rounding does not get one part more
+// a multiple of the part to rounding does not get one part more
 constexpr double kContactRounding = 1e-9;
 
 void place_frames(const ContactElements& elements, const Workspace& ws, std::span<contact::Pose> poses) noexcept {

@@ -13,7 +13,7 @@
 //   f   = m a + alpha x s + b u' + w x (w x s) + 2 w x (b u) + (G u) u                                  (4)
 //   n   = s x a + J alpha + c u' + w x (J w) + (dJ/dt) w + w x (c u) + ax(H u u)                         (5)
 //   0   = b . a + c . alpha + M u' + 2 w . ax(Y_lk) u_l - 1/2 w . (dJ/dq_k) w + K q + D u - Q_0          (6)
-// so that energy and momentum of (3) are kept whatever the truncation of (3). Equations 34 to 36 of the flexible-body
+// so that energy and momentum of (3) are kept at any truncation of (3). Equations 34 to 36 of the flexible-body
 // tutorial thesis (2017), -A u~ G as in the errata; quadratic terms as Shabana, chapter 5.
 //
 // The recursion takes the modes as coordinates outside of the frame's joint:

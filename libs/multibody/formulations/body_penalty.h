@@ -1,5 +1,5 @@
 // The mechanism in body coordinates with joints that are held by penalties (formulations `penalty` and `augmented`):
-// six speeds a link as in body_coordinates.h, and one matrix that is positive definite whatever the rows are,
+// six speeds a link as in body_coordinates.h, and one matrix that is positive definite for any rows,
 //
 //   A = M + G^T alpha G,    alpha = f m_0 for rows in m, f m_0 l^2 for rows in 1                        (1)
 //                           (of a gear over the square of its ratio where that exceeds 1, lengths in l)

@@ -11,7 +11,7 @@ namespace slew::multibody {
 namespace {
 
 // c and omega times part of (9): measured on A02 with 1 to 40 loops. Larger ones lose energy in a flat position, the
-// second by how fast a row closes, both by what the Runge-Kutta method leaves open.
+// second by how fast a row closes, both by the error of the Runge-Kutta method.
 constexpr double kMostChange = 0.1, kPartFrequency = 0.2;
 // Limit for whole steps: the whip of A11's chain exceeds 0.4, without any such position.
 constexpr double kMostChangeOfAStep = 0.4;
@@ -54,7 +54,7 @@ bool take_part(const Model& model, const PenaltyModel& body, BodyState& state, S
                              [&](const BodyState&) { return find_accelerations(model, body, pws.row_force, ws, pws); });
 }
 
-// before another part of so many smallest ones
+// before the next part, with this number of smallest ones
 bool begin_part(const Model& model, const PenaltyModel& body, const BodyState& state, State& joints, Workspace& ws,
                 PenaltyWorkspace& pws, double h, int part) noexcept {
   const double least = part <= kSmallestParts / kClosingParts ? kPartFrequency * kSmallestParts / (part * h) : 0;

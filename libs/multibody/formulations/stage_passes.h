@@ -37,8 +37,8 @@ void add_accelerations(const StageContext& at, std::span<const double> rate) noe
 [[nodiscard]] std::size_t stop_count(const Model& model) noexcept;
 void see_stops(const Model& model, const Workspace& ws, std::span<signed char> stops) noexcept;
 
-// Right side of (4) into bws.solution; elements, inertia and joints' rows on the way. Needs place(), and the time of
-// the stage in ws.
+// Right side of (4) into bws.solution; evaluates elements, inertia and joints' rows. Needs place(), and the time of the
+// stage in ws.
 void find_residual(const StageContext& at, const Stage& stage) noexcept;
 
 // Left side of (4), after find_residual(); with the pull of the joints when their multipliers are known. False:

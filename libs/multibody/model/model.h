@@ -320,7 +320,7 @@ void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> r
 // Whether each force element is evaluated at every stage, after a change of its law.
 void mark_used_elements(Model& model) noexcept;
 
-// Mass properties of a link from what is lumped into it. Does not allocate.
+// Mass properties of a link from its lumped masses. Does not allocate.
 void lump_link(Model& model, int link) noexcept;
 // The same for all links.
 void lump_links(Model& model) noexcept;

@@ -151,7 +151,7 @@ class ReactionSum {
     sum.w2 += G.w2 * force;
   }
 
-  // from the tips towards Ground: a body's joint supplies what the body and its children need
+  // from the tips towards Ground: a body's joint supplies the wrench of the body and its children
   void pass_on(std::span<JointReaction> reactions) noexcept {
     for (std::size_t k = model_.body_order.size(); k-- > 0;) {
       const auto child = at(model_.body_order[k]);
