@@ -17,7 +17,7 @@ using coupling::ModeArray;
 
 namespace {
 
-constexpr std::uint32_t kLayout = 1;  // of a saved state
+constexpr std::uint32_t kLayout = 1;  // layout of a saved state
 
 }  // namespace
 
@@ -132,7 +132,7 @@ StepReport FlexSubsystem::step(StepIndex, const coupling::PartnerSamples& partne
                                coupling::OwnSample& sample) noexcept {
   StepReport report;
   if (partners.flexible->u.size() != u_.size() || partners.flexible->q.size() != q_.size()) {
-    // another scene's: what was seen last stays
+    // a sample of another scene: the last values stay
     report.raise(StepFlag::clamp_active);
     sample.elastic = published_;
     return report;
@@ -148,7 +148,7 @@ StepReport FlexSubsystem::step(StepIndex, const coupling::PartnerSamples& partne
   return report;
 }
 
-// of its own none: damping, modes and files need a restart
+// no parameters of its own: damping, modes and files need a restart
 bool FlexSubsystem::change_parameter(StepIndex, const coupling::ParameterChange& change) noexcept {
   return levels_.change(change.path, change.value);
 }
@@ -160,7 +160,7 @@ void FlexSubsystem::reset() {
   published_ = constant_;
 }
 
-// what was published is all there is, the own coordinates with it
+// the published sample is the whole state, own coordinates included
 std::uint64_t FlexSubsystem::state_hash() const noexcept {
   StateHash hash;
   for (const auto values :
@@ -185,7 +185,7 @@ void FlexSubsystem::save(std::vector<std::byte>& state) const {
   bytes.finish();
 }
 
-// What is published follows from the coordinates.
+// The published sample follows from the coordinates.
 Status FlexSubsystem::load(std::span<const std::byte> state, coupling::OwnSample& sample) {
   reset();
   StateReader bytes(state, {kLayout, saved_model_});

@@ -1,14 +1,14 @@
-// The flexible bodies of a scene as a Subsystem: their elastic forces, and what the modal coordinates of the mechanics
-// mean for deflection, stress and strain energy (coupling study, section 5, scheme A1).
+// The flexible bodies of a scene as a Subsystem: their elastic forces, and deflection, stress and strain energy from
+// the modal coordinates of the mechanics (coupling study, section 5, scheme A1).
 //
-// The mechanics owns the modal coordinates and integrates them with the coupled mass matrix; this side states
+// The mechanics owns the modal coordinates and integrates them with the coupled mass matrix; this side publishes
 //   Q - K (q - q_ref) - D (u - u_ref)                                                                  (1)
 // once, about q_ref = 0, or at every step about the mechanics' coordinates of that step (scene: session.flexible). It
-// then has no state: a step only looks at the mechanics' sample of the step's end. Scheme B (session.flexible:
-// condensed): this side keeps q, u and moves them by the trapezoidal rule. With the mean accelerations of the step
-// eliminated, the mechanics sees modes of the mass M and a constant force,
+// then has no state: a step only reads the mechanics' sample of the step's end. Scheme B (session.flexible: condensed):
+// this side keeps q, u and moves them by the trapezoidal rule. With the mean accelerations of the step eliminated, the
+// mechanics sees modes of the mass M and a constant force,
 //   M = 1 + H/2 D + H^2/4 K,   Q = -K (q + H/2 u) - D u                                                (2)
-// and tells the rates at the step's end, from which   q <- q + H/2 (u + u_end),   u <- u_end             (3)
+// and publishes the rates at the step's end, from which   q <- q + H/2 (u + u_end),   u <- u_end             (3)
 // Not covered: stress by modes that the body does not take; loads and accelerations are not used for it.
 #pragma once
 
@@ -59,7 +59,7 @@ class FlexSubsystem final : public coupling::Subsystem {
   void state_law(const Body& body) noexcept;
   void list_variables(const Body& body);
 
-  coupling::PortLevels levels_;  // none is its own; it says them as the others do
+  coupling::PortLevels levels_;  // the session's levels; this node has no port of its own
   coupling::ElasticExchange exchange_;
   double H_;                  // s
   std::vector<Body> bodies_;  // in the order of the samples
@@ -68,7 +68,7 @@ class FlexSubsystem final : public coupling::Subsystem {
   coupling::ModeArray q_, u_;
   std::vector<ElementVariable> variables_;
   mutable std::vector<double> normal_, shear_;  // Pa, by point: scratch of read_variables()
-  std::uint64_t saved_model_ = 0;               // what a saved state belongs to
+  std::uint64_t saved_model_ = 0;               // digest of the model of saved states
 };
 
 [[nodiscard]] std::unique_ptr<coupling::Subsystem> make_flex_subsystem(const scene::Scene& scene);

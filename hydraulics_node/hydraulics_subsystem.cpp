@@ -240,7 +240,7 @@ std::uint64_t HydraulicsSubsystem::state_hash() const noexcept {
   StateHash hash;
   integrator_->add_to(hash);
   ramps_.add_to(hash);
-  if (exchange_every_ > 1) reduced_.add_to(hash);  // an exchange at every step replaces it
+  if (exchange_every_ > 1) reduced_.add_to(hash);  // otherwise every step replaces it
   levels_.add_to(hash);
   signals_.add_to(*circuit_, hash);
   hash.add(failure_.has_failed());

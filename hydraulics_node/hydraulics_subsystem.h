@@ -1,7 +1,13 @@
 // The hydraulic circuit of a scene as a Subsystem: the circuit's own integration with the partner's reduced mechanics
-// inside (reduced_mechanics.h), volumes made consistent with the true piston positions at each exchange (coupling
-// study, section 8). Both samples of a step meet here: the subsystem also follows the coupling's error
-// (coupling_alarm.h).
+// inside, volumes made consistent with the true piston positions at each exchange (coupling study, section 8).
+//
+//   v_i^h' = (a_free + W F_line)_i  of a port of level two,   v_i^h' = 0  of any other                (1)
+//
+// F_line_j is evaluated at F, x^h, v^h of port j at any level, since a held port's force moves the others too. At level
+// tlm F is the force of the lines on the piston (hydraulics/line_chambers.h), as in the mechanics.
+//
+// Also computes the coupling error per port (coupling/indicator.h), since it has both samples of a step, and ends a
+// session whose coupling diverges (session.coupling_alarm).
 #pragma once
 
 #include <memory>
@@ -36,7 +42,8 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   Status start(const coupling::PartnerSamples& partners, coupling::OwnSample& sample) override;
   StepReport step(StepIndex n, const coupling::PartnerSamples& partners, std::span<const double> controls,
                   coupling::OwnSample& sample) noexcept override;
-  // In the place of step(): applies parameters and controls of this step, then publishes the step's end.
+  // Replaces step(): applies parameters and controls of this step, takes the external state and publishes the end
+  // sample.
   StepReport follow(StepIndex n, const FollowedCircuit& step, const coupling::PartnerSamples& partners,
                     std::span<const double> controls, coupling::OwnSample& sample) noexcept;
   bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;

@@ -37,9 +37,10 @@ void HydraulicsSubsystem::visit(Self& self, Bytes& bytes) {
 
 Status HydraulicsSubsystem::can_save() const {
   if (integrator_->can_save()) return Status::ok();
-  return Status::error(ExitCode::bad_input,
-                       "hydraulics.solver: cvode keeps a past that cannot be put back, so that its state is not saved. "
-                       "Set hydraulics.solver: rodas3, implicit_euler or rk4 for a session that is to go on later");
+  return Status::error(
+      ExitCode::bad_input,
+      "hydraulics.solver: cvode keeps a history that cannot be restored, so that its state is not saved. "
+      "Set hydraulics.solver: rodas3, implicit_euler or rk4 for a session that is to be continued later");
 }
 
 void HydraulicsSubsystem::save(std::vector<std::byte>& state) const {

@@ -12,11 +12,11 @@ using math::Vec3;
 
 // an edge axis must be better than the best face by this share, since faces carry more points
 constexpr double kFaceOverEdge = 0.95;
-// edges closer to parallel than this have no axis of their own (sine of the angle)
+// sine of the angle between two edges, below which they have no axis of their own
 constexpr double kParallel = 1e-6;
 
 struct Axis {
-  double depth = 0;  // m, overlap along it
+  double depth = 0;  // m, overlap along the normal
   Vec3 n_W;          // unit, from B to A
   int edge_a = -1, edge_b = -1;
   bool is_separating = false;
@@ -102,7 +102,7 @@ void box_box(const Solid& a, const Solid& b, Manifold& out) noexcept {
   const Face of_a = supporting_face(a, -axis.n_W);
   clip_faces(of_a, supporting_face(b, axis.n_W), axis.n_W, out);
   if (out.size() > before) return;
-  // a face was preferred where an edge has hardly less overlap, and nothing of it is inside: A's lowest corner
+  // a face was preferred over an edge with hardly less overlap, and no point of it is inside: A's lowest corner
   Vec3 lowest = of_a.vertices[0];
   for (const Vec3& p : of_a.vertices) {
     if (dot(p, axis.n_W) < dot(lowest, axis.n_W)) lowest = p;

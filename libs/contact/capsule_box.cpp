@@ -64,7 +64,7 @@ void capsule_box(const Solid& a, const Solid& b, Manifold& out) noexcept {
   const double nearest = nearest_along(axis, half);
   const Vec3 away = axis.outside(nearest);
   if (norm(away) >= radius) return;
-  // grazing is inside: the direction of a distance that is rounding means nothing
+  // grazing counts as inside: the direction of a distance of rounding size has no meaning
   constexpr double kGrazing = 1e-9;
   if (norm(away) < kGrazing * radius) {
     // the axis itself is inside: from the middle of that part out through the nearest face

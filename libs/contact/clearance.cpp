@@ -1,4 +1,4 @@
-// How far two shapes are apart at least, and whether they can have come together since.
+// Lower bound of the distance of two shapes, and whether they can have met since.
 //
 // Convex shapes are apart by at least the gap between them along any direction; the directions tried are the line of
 // their middles and the axes of boxes, meshes and planes. Surfaces of triangles count as the box around them. A point
@@ -33,13 +33,13 @@ double extent_along(const Solid& s, Vec3 n) noexcept {
          h[2] * std::fabs(d[2]);
 }
 
-// gap along n, which looks from b to a; negative: they overlap there
+// gap along n, which points from b to a; negative: the shapes overlap there
 double gap_along(const Solid& a, const Solid& b, Vec3 n) noexcept {
   const double top_of_b = b.geometry->type == ShapeType::plane ? dot(b.p_WS, n) : extent_along(b, n);
   return -extent_along(a, -n) - top_of_b;
 }
 
-// the largest gap along the directions that are tried
+// the largest gap along the tried directions
 double gap_between(const Solid& a, const Solid& b) noexcept {
   if (b.geometry->type == ShapeType::plane) return gap_along(a, b, b.R_WS.c[2]);
   if (a.geometry->type == ShapeType::plane) return gap_along(b, a, a.R_WS.c[2]);
@@ -67,7 +67,7 @@ double difference(const Mat3& a, const Mat3& b) noexcept {
 }
 
 // (1)
-double way(const Pose& from, const Pose& to, double extent) noexcept {
+double largest_motion(const Pose& from, const Pose& to, double extent) noexcept {
   const double turn = difference(from.R_WF, to.R_WF);
   return norm(to.p_WF - from.p_WF) + (turn > 0 ? turn * extent : 0.0);
 }
@@ -76,11 +76,11 @@ double way(const Pose& from, const Pose& to, double extent) noexcept {
 
 bool ContactModel::is_clear(std::size_t pair, const Pose& frame_a, const Pose& frame_b,
                             const ContactSet& set) const noexcept {
-  constexpr double kRounding = 0.999;  // of the distance: sums of (1) and poses are rounded
+  constexpr double kRounding = 0.999;  // share of the distance: sums of (1) and poses are rounded
   const ContactSet::Clearance& known = set.clearances_[pair];
   if (!(known.distance > 0)) return false;
-  const double moved = way(known.frame_a, frame_a, shapes_[pairs_[pair].shape_a].extent) +
-                       way(known.frame_b, frame_b, shapes_[pairs_[pair].shape_b].extent);
+  const double moved = largest_motion(known.frame_a, frame_a, shapes_[pairs_[pair].shape_a].extent) +
+                       largest_motion(known.frame_b, frame_b, shapes_[pairs_[pair].shape_b].extent);
   return moved < kRounding * known.distance;
 }
 

@@ -1,8 +1,8 @@
-// What touches what: shapes in frames, and the pairs of shapes that are tested. Only declared pairs are.
+// Contact definition: shapes in frames, and the pairs of shapes that are tested. Only declared pairs are tested.
 //
-// A frame is a body or Ground; this library knows its pose only. A shape has a pose in its frame. Its own axes: sphere
+// A frame is a body or Ground; this library uses its pose only. A shape has a pose in its frame. Its own axes: sphere
 // and box about the origin; cylinder and capsule about the origin along z; a plane is the half space z <= 0; a height
-// field spans x and y from the origin, heights along z, solid below; meshes as their vertices say.
+// field spans x and y from the origin, heights along z, solid below; meshes by their vertices.
 // Planes, height fields and triangle meshes belong to frames that do not move.
 #pragma once
 
@@ -67,10 +67,10 @@ struct ContactDef {
   std::vector<PairDef> pairs;
 };
 
-// Appends everything that is wrong: names, sizes, laws, meshes (empty, not finite, index out of range; a convex mesh
-// that is not closed, not convex or inside out; a triangle mesh that turns differently in parts), shapes that must not
-// move in frames that do, pairs of which nothing can move or that cannot be tested. Nothing is appended for a sound
-// Def. Paths are "Element.key".
+// Appends all problems: names, sizes, laws, meshes (empty, not finite, index out of range; a convex mesh that is not
+// closed, not convex or inside out; a triangle mesh that turns differently in parts), shapes that must not move in
+// frames that do, pairs without a moving shape or without a kernel. A sound Def gives no problems. Paths are
+// "Element.key".
 void validate(const ContactDef& def, Problems& problems);
 
 }  // namespace slew::contact

@@ -66,15 +66,15 @@ void ContactMemory::match(const ContactModel& model, std::span<const Pose> poses
   for (std::size_t i = 0; i < poses.size(); ++i) old_R_WF_[i] = poses[i].R_WF;
 }
 
-void ContactMemory::follow(const ContactModel& model, std::span<const Pose> poses, const ContactSet& set) noexcept {
+void ContactMemory::advance(const ContactModel& model, std::span<const Pose> poses, const ContactSet& set) noexcept {
   std::swap(states_, old_states_);
   std::swap(places_, old_places_);
   old_count_ = count_;
   match(model, poses, set);
 }
 
-void ContactMemory::follow(const ContactMemory& before, const ContactModel& model, std::span<const Pose> poses,
-                           const ContactSet& set) noexcept {
+void ContactMemory::advance(const ContactMemory& before, const ContactModel& model, std::span<const Pose> poses,
+                            const ContactSet& set) noexcept {
   SLEW_ASSERT(&before != this && before.states_.size() == states_.size());
   old_count_ = before.count_;
   std::copy_n(before.states_.begin(), old_count_, old_states_.begin());

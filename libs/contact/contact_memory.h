@@ -1,12 +1,12 @@
-// What contacts remember from one search to the next: impact speed and bristles, found again by place.
+// State of contacts from one search to the next: impact speed and bristles, matched by position.
 //
-// A contact of this search is the one of the last search that is nearest to it among those of its pair, seen from the
-// frame of shape A, and nearer than a tenth of the smaller shape. Two new ones may come from the same old one: a corner
-// that is found as two points, each with half of the load, keeps the bending and so the force of both together.
-// A contact without predecessor starts afresh: no impact speed, straight bristles. Bristles turn with their normal, and
-// about it by the mean of what both frames turned.
-// An integrator follows the state it has accepted and, for a trial within the step, what comes after a state that stays
-// as it is (follow with `before`).
+// A contact of this search is matched to the nearest contact of its pair in the last search, in the frame of shape A,
+// if it is nearer than a tenth of the smaller shape. Two new contacts may match the same old one: a corner found as two
+// points, each with half of the load, keeps the bending and so the total force.
+// A contact without predecessor starts with no impact speed and straight bristles. Bristles turn with their normal, and
+// about it by the mean turn of both frames.
+// An integrator advances the state that it has accepted. For a trial within the step it computes the successor of an
+// unchanged state (the overload with `before`).
 // Real-time safe. Not covered: bristles of points that vanish are lost, also when another point takes their load over.
 #pragma once
 
@@ -27,22 +27,23 @@ struct RememberedContact {
 
 class ContactMemory {
  public:
-  ContactMemory() = default;  // without pairs
+  ContactMemory() = default;  // memory without pairs
   explicit ContactMemory(const ContactModel& model);
 
   // To be called after each search with the poses that it had; states() then belongs to set.points(), one each.
-  void follow(const ContactModel& model, std::span<const Pose> poses, const ContactSet& set) noexcept;
+  void advance(const ContactModel& model, std::span<const Pose> poses, const ContactSet& set) noexcept;
 
-  // Becomes what `before` would become, which stays as it is: for a trial of an integrator. Both are of this model.
-  void follow(const ContactMemory& before, const ContactModel& model, std::span<const Pose> poses,
-              const ContactSet& set) noexcept;
+  // Becomes the successor of `before`, which stays unchanged: for a trial of an integrator. Both belong to this model.
+  void advance(const ContactMemory& before, const ContactModel& model, std::span<const Pose> poses,
+               const ContactSet& set) noexcept;
 
-  // The same contacts as `other`, of the same model. Costs by what is remembered; allocates only into an empty one.
+  // Copies the contacts of `other`, of the same model. The cost grows with the remembered contacts; allocates only into
+  // an empty memory.
   void assign(const ContactMemory& other);
 
-  // Raw bits of all that is remembered; nothing while nothing touches.
+  // Adds the raw bits of all states; no bits without contact.
   void add_to_hash(StateHash& hash) const noexcept;
-  // The same as bytes. What is loaded belongs to the same model.
+  // The same as bytes. Loaded bytes belong to the same model.
   void save(StateWriter& bytes) const;
   void load(StateReader& bytes) noexcept;
 

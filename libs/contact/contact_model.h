@@ -5,11 +5,11 @@
 //   find_contacts  poses of the frames -> contacts, in the order of the pairs
 //
 // A pair is first tested by bounding spheres, then by the kernel of its types (kernels.h). Pairs are few and declared,
-// so there is no broad phase over all shapes. A pair that was found apart is not searched again before both shapes have
-// moved by less than what was between them (clearance.cpp): this saves time and changes nothing that is found.
+// so there is no broad phase over all shapes. A pair that was found apart is not searched again until the motion of
+// both shapes exceeds their distance (clearance.cpp): this saves time and finds the same contacts.
 //
-// Real-time safe: no search allocates or locks, and its cost is bounded. A search sees one instant; what passed through
-// something between two of them is found by sweep.h.
+// Real-time safe: no search allocates or locks, and its cost is bounded. A search covers one instant; sweep.h finds
+// shapes that passed through each other between two instants.
 #pragma once
 
 #include <span>
@@ -32,7 +32,7 @@ struct ContactPoint {
   math::Vec3 p_W;        // m, half way between both surfaces
   math::Vec3 n_W;        // unit, from shape B to shape A: a normal force F pushes A along it
   double depth = 0;      // m, > 0
-  double share = 0;      // of the pair's stiffness; those of a pair sum to 1
+  double share = 0;      // share of the pair's stiffness; the shares of a pair sum to 1
 };
 
 struct ContactPair {
@@ -40,8 +40,8 @@ struct ContactPair {
   NormalLaw normal;
   FrictionLaw friction;
   bool has_friction = false;
-  double match_distance = 0;  // m: contacts of two searches nearer than this may be the same
-  double half_thickness = 0;  // m: a way shorter than this ends on the side where it began (sweep.h)
+  double match_distance = 0;  // m: contacts of two searches nearer than this may match
+  double half_thickness = 0;  // m: a displacement shorter than this stays on its side (sweep.h)
 };
 
 class ContactSet;
@@ -64,7 +64,7 @@ class ContactModel {
     std::size_t frame = 0;
     math::Vec3 p_FS;
     math::Mat3 R_FS;
-    double extent = 0;  // m, of the farthest point from the frame's origin
+    double extent = 0;  // m, distance of the farthest point from the frame's origin
   };
   [[nodiscard]] Solid place(const Shape& shape, const Pose& pose) const noexcept;
   void find_pair(std::size_t pair, const Pose& frame_a, const Pose& frame_b, ContactSet& set) const noexcept;
@@ -91,7 +91,7 @@ class ContactSet {
   friend class ContactModel;
   friend class Sweeper;
   friend void find_contacts(const ContactModel& model, std::span<const Pose> poses, ContactSet& set) noexcept;
-  // Where a pair was found apart, and by how much at least.
+  // Poses at which a pair was found apart, and the lower bound of its distance.
   struct Clearance {
     Pose frame_a, frame_b;
     double distance = 0;  // m; 0: unknown

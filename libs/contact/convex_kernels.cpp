@@ -1,5 +1,5 @@
-// Convex shapes for which there is no drawing: spheres against cylinders and convex meshes by the nearest point of
-// their surface, all others by their overlap (overlap.h) and the faces that meet there.
+// Convex shapes without a closed form: spheres against cylinders and convex meshes by the nearest point of their
+// surface, all others by their overlap (overlap.h) and the faces that meet there.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,10 +12,10 @@ namespace {
 
 using math::Vec3;
 
-// A point of B's surface, shape's axes, and how the centre of a ball lies to it.
+// A point of B's surface, shape's axes, and the position of a ball's centre relative to it.
 struct Foot {
   Vec3 on, outward;
-  double distance = 0;  // m, of the centre along `outward`; negative inside
+  double distance = 0;  // m, distance of the centre along `outward`; negative inside
 };
 
 void add_ball(const Solid& ball, const Solid& b, const Foot& foot, Manifold& out) noexcept {
@@ -56,13 +56,13 @@ bool is_above(const Geometry& g, const Geometry::FlatFace& face, Vec3 p) noexcep
   return true;
 }
 
-// the normal of a face of the shape that looks along d_W, d_W itself when it has none there
+// the normal of the shape's face that points along d_W; d_W itself if there is none
 Vec3 face_normal(const Solid& solid, Vec3 d_W) noexcept {
   const Face face = supporting_face(solid, d_W);
   return face.vertices.size() >= 3 ? face.normal : d_W;
 }
 
-// A face carries more points than an edge, so it is taken when the way out along it is hardly longer.
+// A face carries more points than an edge, so it is taken if the overlap along its normal is hardly larger.
 void prefer_faces(const Solid& a, const Solid& b, Overlap& overlap) noexcept {
   constexpr double kFacePreference = 0.95;
   double least = overlap.depth / kFacePreference;
@@ -70,7 +70,7 @@ void prefer_faces(const Solid& a, const Solid& b, Overlap& overlap) noexcept {
   for (const Vec3& n_W : {of_b, of_a}) {
     const double depth = overlap_along(a, b, n_W);
     if (depth >= least) continue;
-    least = depth * (1 - 1e-9);  // of two that are equal always B's
+    least = depth * (1 - 1e-9);  // take B's of two equal overlaps
     overlap.n_W = n_W;
     overlap.depth = depth;
   }
@@ -130,7 +130,7 @@ void sphere_convex_mesh(const Solid& a, const Solid& b, Manifold& out) noexcept 
     add_ball(a, b, {c - highest->normal * height, highest->normal, height}, out);
     return;
   }
-  // over an edge or a corner of faces that look towards the centre
+  // over an edge or a corner of faces that point towards the centre
   Vec3 nearest;
   double least = std::numeric_limits<double>::infinity();
   for (const Geometry::FlatFace& face : g.faces) {
@@ -151,7 +151,7 @@ void convex_convex(const Solid& a, const Solid& b, Manifold& out) noexcept {
   const Face of_a = supporting_face(a, -overlap.n_W), of_b = supporting_face(b, overlap.n_W);
   clip_faces(of_a, of_b, overlap.n_W, out);
   clip_lines(of_a, of_b, overlap.n_W, out);
-  // the faces may miss what is deepest (edge on edge, a rounded end, a rim between the corners that stand for it)
+  // the faces may miss the deepest point (edge on edge, a rounded end, a rim between its representative corners)
   constexpr double kRounding = 1e-6;
   const bool is_met = std::any_of(out.begin(), out.end(), [&](const ManifoldPoint& point) {
     return point.depth > (1 - kRounding) * overlap.depth;

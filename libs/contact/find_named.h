@@ -7,7 +7,7 @@
 
 namespace slew::contact {
 
-// Null when none of them has the name.
+// Null if no definition has the name.
 template <typename Def>
 [[nodiscard]] const Def* find_named(const std::vector<Def>& defs, std::string_view name) {
   const auto found = std::find_if(defs.begin(), defs.end(), [&](const Def& def) { return def.name == name; });

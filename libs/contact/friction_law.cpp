@@ -12,7 +12,7 @@ namespace {
 using math::Mat3;
 using math::Vec3;
 
-// below it a contact carries nothing that matters, and the quotients of (2) would overflow
+// level below which a contact's force is negligible and the quotients of (2) would overflow
 constexpr double kSmallestLevel = 1e-9;  // N
 
 // The law of one point at one speed: (1) and the constants times the share.
@@ -26,7 +26,7 @@ struct Level {
   Vec3 v, u;     // tangential velocity and its direction; u = 0 at s = 0
 };
 
-// speeds of which the direction has no meaning any more count as rest
+// speed below which the direction has no meaning; counts as rest
 constexpr double kSmallestSpeed = 1e-200;  // m/s
 
 Level level_of(const FrictionLaw& law, const SlidingContact& contact) noexcept {
@@ -54,10 +54,10 @@ bool carries(const Level& level) noexcept {
   return level.N > kSmallestLevel && level.sigma_0 > 0;
 }
 
-// Bristles at the start of the sub-step: in the plane, cut to what the present normal force can hold.
+// Bristles at the start of the sub-step: in the plane, limited to the bending that the present normal force can hold.
 struct Start {
   Vec3 z;
-  Vec3 d_N;  // dz/dN [m/N]: along z where it is cut, else 0
+  Vec3 d_N;  // dz/dN [m/N]: along z where it is limited, else 0
 };
 
 Start start_of(const Level& level, Vec3 n_W, Vec3 z_W) noexcept {
@@ -71,7 +71,7 @@ Start start_of(const Level& level, Vec3 n_W, Vec3 z_W) noexcept {
 // (4) and its derivatives along the direction of v, in N, and by v itself
 struct Bending {
   Vec3 z, d_s, d_N;
-  double d_v;  // of the part that is along v
+  double d_v;  // derivative of the part along v
 };
 
 Bending bending_after(const Level& l, const Start& start, double h) noexcept {

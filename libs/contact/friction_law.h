@@ -45,7 +45,7 @@ struct FrictionLawDef {
 
 [[nodiscard]] std::span<const Field> friction_law_fields() noexcept;
 
-// Appends what is out of range; paths are "owner.key".
+// Appends values out of range; paths are "owner.key".
 void check(std::string_view owner, const FrictionLawDef& def, Problems& problems);
 
 // A checked FrictionLawDef.
@@ -56,7 +56,7 @@ struct FrictionLaw {
 // Pre-condition: check() found nothing.
 [[nodiscard]] FrictionLaw build(const FrictionLawDef& def);
 
-// What one contact point remembers.
+// State of one contact point.
 struct FrictionState {
   math::Vec3 z_W;  // z [m], world axes, in the tangential plane
 };
@@ -64,20 +64,20 @@ struct FrictionState {
 // A contact point at one instant.
 struct SlidingContact {
   math::Vec3 n_W;           // unit normal, world axes
-  math::Vec3 v_W;           // v [m/s]; what it has along the normal is ignored
+  math::Vec3 v_W;           // v [m/s]; its component along the normal is ignored
   double normal_force = 0;  // F_n [N], >= 0; with 0 there is no contact and no friction
-  double share = 1;         // of this point in the pair: its part of sigma_0, sigma_1, sigma_2 and F_0
+  double share = 1;         // share of this point in the pair's sigma_0, sigma_1, sigma_2 and F_0
 };
 
 struct FrictionForce {
   math::Vec3 f_W;         // F [N], world axes
-  math::Mat3 d_velocity;  // dF/dv [N s/m], symmetric only in parts; nothing along the normal
+  math::Mat3 d_velocity;  // dF/dv [N s/m], symmetric only in parts; zero along the normal
   math::Vec3 d_normal;    // dF/dF_n [-]
   math::Vec3 z_W;         // bending at the end of the sub-step [m]
 };
 
 // Force at the end of a sub-step of length h [s] that began with `state` and has the velocity and normal force of
-// `contact`; h = 0 gives (3) as it stands. Derivatives are those of the force at the end with h held, through (4).
+// `contact`; h = 0 gives (3) directly. Derivatives are those of the force at the end with h held, through (4).
 // At v = 0 exactly, where |v| has a kink, the derivative is the mean of both sides. Real-time safe.
 [[nodiscard]] FrictionForce evaluate(const FrictionLaw& law, const SlidingContact& contact, double h,
                                      const FrictionState& state) noexcept;
@@ -88,8 +88,8 @@ struct FrictionForce {
 // sigma_0 z^2 / 2 of this point [J].
 [[nodiscard]] double stored_energy(const FrictionLaw& law, double share, const FrictionState& state) noexcept;
 
-// Carries z along when the normal turns from `from` to `to` (shortest way) and then by `spin` [rad] about it; keeps its
-// length. Opposite normals: the contact is another one, z becomes 0.
+// Turns z with the normal from `from` to `to` (shortest rotation) and then by `spin` [rad] about it; keeps its length.
+// Opposite normals: a different contact, z becomes 0.
 void turn_bristle(math::Vec3 from, math::Vec3 to, double spin, FrictionState& state) noexcept;
 
 }  // namespace slew::contact

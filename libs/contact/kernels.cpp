@@ -134,7 +134,7 @@ void cylinder_plane(const Solid& a, const Solid& b, Manifold& out) noexcept {
 }
 
 void convex_mesh_plane(const Solid& a, const Solid& b, Manifold& out) noexcept {
-  // more vertices than the manifold holds: cut down on the way, the deepest and the widest stay
+  // more vertices than the manifold holds: reduce meanwhile; the deepest and the widest points stay
   for (const Vec3& vertex : a.geometry->vertices) {
     if (out.size() == Manifold::capacity()) reduce(out);
     add_below(a.to_world(vertex), b, out);

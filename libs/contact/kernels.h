@@ -11,8 +11,8 @@ namespace slew::contact {
 
 using Kernel = void (*)(const Solid& a, const Solid& b, Manifold& out) noexcept;
 
-// The kernel of a pair of types in this order, null when there is none: then there is one of the other order, but for
-// pairs of which nothing can move.
+// The kernel of a pair of types in this order, or null: then the reversed order has one, except for pairs without a
+// moving shape.
 [[nodiscard]] Kernel find_kernel(ShapeType a, ShapeType b) noexcept;
 
 void sphere_sphere(const Solid& a, const Solid& b, Manifold& out) noexcept;
@@ -21,7 +21,7 @@ void sphere_capsule(const Solid& a, const Solid& b, Manifold& out) noexcept;
 void capsule_capsule(const Solid& a, const Solid& b, Manifold& out) noexcept;
 // one point; two along a face; deep inside, from the middle of the part within the box
 void capsule_box(const Solid& a, const Solid& b, Manifold& out) noexcept;
-// a ball about centre_W [m] with the radius [m], wherever it comes from
+// a ball about centre_W [m] with the radius [m], part of any shape
 void ball_box(math::Vec3 centre_W, double radius, const Solid& b, Manifold& out) noexcept;
 void sphere_box(const Solid& a, const Solid& b, Manifold& out) noexcept;
 void sphere_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
@@ -29,23 +29,22 @@ void sphere_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
 void capsule_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
 // every corner below, eight at most
 void box_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
-// of each end the lowest rim point; of the lower end also its opposite and the two between
+// the lowest rim point of each end; for the lower end also the opposite point and the two between
 void cylinder_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
 void convex_mesh_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
 // 15 separating axes; face against face gives up to eight points, edge against edge one (Gottschalk, Lin and Manocha
 // 1996 for the axes)
 void box_box(const Solid& a, const Solid& b, Manifold& out) noexcept;
-// by the nearest point of the surface; a centre inside leaves by the nearest face, cap or side
+// nearest point of the surface; a centre inside leaves through the nearest face, cap or side
 void sphere_cylinder(const Solid& a, const Solid& b, Manifold& out) noexcept;
 void sphere_convex_mesh(const Solid& a, const Solid& b, Manifold& out) noexcept;
-// any two of box, cylinder, capsule, convex mesh: shortest way out (overlap.h), facing faces clipped
+// any two of box, cylinder, capsule, convex mesh: least overlap (overlap.h), facing faces clipped
 void convex_convex(const Solid& a, const Solid& b, Manifold& out) noexcept;
 
-// B is a triangle mesh or a height field. Sphere: the points of the ground that are
-// nearer than all around them.
+// B is a triangle mesh or a height field. Sphere: the points of the ground at a local minimum of distance.
 void sphere_on_triangles(const Solid& a, const Solid& b, Manifold& out) noexcept;
-// Other convex shapes: the face that looks at a triangle, clipped by it. An edge of the shape that lies on an edge of
-// the mesh touches through the faces beside it only.
+// Other convex shapes: the face that faces a triangle, clipped by it. An edge of the shape that lies on an edge of the
+// mesh touches through the faces beside it only.
 void convex_on_triangles(const Solid& a, const Solid& b, Manifold& out) noexcept;
 
 }  // namespace slew::contact

@@ -34,7 +34,7 @@ Polygon clipped(const Polygon& in, const Side& side) noexcept {
   return out;
 }
 
-// Areas that the corners of a plane polygon, or of an edge, stand for.
+// Areas represented by the corners of a plane polygon or of an edge.
 using Areas = std::array<double, Polygon::capacity()>;
 
 Areas areas_of(const Polygon& polygon) noexcept {
@@ -61,7 +61,7 @@ Areas areas_of(const Polygon& polygon) noexcept {
     areas[i] += quarter;
     areas[next] += quarter;
   }
-  // none stands for nothing: it may be the only one that is inside
+  // give every corner an area: it may be the only one inside
   constexpr double kLeastShare = 1e-9;
   for (std::size_t i = 0; i < n; ++i) areas[i] = std::max(areas[i], kLeastShare * whole);
   return areas;
@@ -74,15 +74,15 @@ bool is_polygon(const Face& face) noexcept {
 }  // namespace
 
 void clip_faces(const Face& a, const Face& b, Vec3 n_W, Manifold& out) noexcept {
-  // the reference: a polygon that faces the other shape more squarely; A looks along -n, B along n
+  // the reference: the polygon that faces the other shape more squarely; A faces -n, B faces n
   const double of_a = is_polygon(a) ? -dot(a.normal, n_W) : 0.0;
   const double of_b = is_polygon(b) ? dot(b.normal, n_W) : 0.0;
-  // of nearly equal ones always B's, so that rounding does not swap them
+  // take B's of nearly equal polygons, so that rounding does not swap them
   constexpr double kPreference = 1e-6;
   const bool b_is_reference = of_b >= of_a - kPreference && of_b > 0;
   const double squareness = b_is_reference ? of_b : of_a;
-  // a face at an angle to the normal is not the one that touches (edge on edge, curved shapes); 0.8 degrees are for the
-  // accuracy of a normal that an iteration found
+  // a face at an angle to the normal is not the touching one (edge on edge, curved shapes); 0.8 degrees allow for the
+  // accuracy of an iterated normal
   constexpr double kSquare = 0.9999;
   if (!(squareness > kSquare)) return;
   const Face& reference = b_is_reference ? b : a;
@@ -107,7 +107,7 @@ void clip_faces(const Face& a, const Face& b, Vec3 n_W, Manifold& out) noexcept 
 void reduce(Manifold& points) noexcept {
   if (points.size() <= kMaxPointsPerPair) return;
   std::array<bool, Manifold::capacity()> is_kept{};
-  std::array<double, Manifold::capacity()> distance{};  // squared, to the nearest of those kept
+  std::array<double, Manifold::capacity()> distance{};  // squared distance to the nearest kept point
   distance.fill(std::numeric_limits<double>::infinity());
   std::size_t chosen = 0;
   for (std::size_t i = 1; i < points.size(); ++i) {

@@ -17,7 +17,7 @@ namespace slew::contact {
 inline constexpr std::size_t kMaxPointsPerPair = 8;
 inline constexpr std::size_t kMaxFaceVertices = 16;
 
-// what a point without a face stands for: a square of 1 mm; and an edge: a strip of 1 mm
+// area represented by a point without a face: a square of 1 mm; by an edge: a strip of 1 mm
 inline constexpr double kSpot = 1e-6;   // m^2
 inline constexpr double kStrip = 1e-3;  // m
 
@@ -25,7 +25,7 @@ struct ManifoldPoint {
   math::Vec3 p_W;       // m
   math::Vec3 n_W;       // unit, from B to A
   double depth = 0;     // m, > 0
-  double area = kSpot;  // m^2 > 0, part of the touching faces that the point stands for
+  double area = kSpot;  // m^2 > 0, part of the touching faces that the point represents
 };
 
 // The points found for one pair, before they are cut down to kMaxPointsPerPair.
@@ -38,13 +38,13 @@ struct Face {
 };
 
 // Appends the points of A's and B's faces that overlap along n_W. The flatter face against n_W clips the other one.
-// Nothing is appended when no face is at right angles to n_W, or when nothing is left: the caller then has its single
-// point. A corner of the common face stands for half of the triangles that its two edges make with the face's centroid,
-// so that a corner that rounding doubles stands for what it did before.
+// No point is appended if no face is at right angles to n_W, or if the common face is empty: the caller then has its
+// single point. A corner of the common face represents half of the triangles that its two edges form with the face's
+// centroid, so that a corner doubled by rounding keeps its total area.
 void clip_faces(const Face& a, const Face& b, math::Vec3 n_W, Manifold& out) noexcept;
 
-// Cuts the points down to kMaxPointsPerPair: the deepest, then always the one farthest from those kept. Order kept.
-// What is left out leaves its area to the nearest one.
+// Reduces the points to kMaxPointsPerPair: the deepest, then always the one farthest from the kept points. Order kept.
+// The area of a dropped point goes to the nearest kept point.
 void reduce(Manifold& points) noexcept;
 
 }  // namespace slew::contact

@@ -25,10 +25,10 @@ struct MassProperties {
 // density: kg/m3, > 0. Pre-condition: find_solid_fault(mesh) found nothing (mesh_check.h).
 [[nodiscard]] MassProperties mass_properties(const MeshDef& mesh, double density);
 
-// The same of a sheet of this thickness [m] on the mesh's surface, open or closed: with A the area of a triangle,
+// The same for a sheet of this thickness [m] on the mesh's surface, open or closed: with A the area of a triangle,
 //   V = t sum A,   V r = t sum A (a+b+c)/3,   C = t sum A/12 ((a+b+c)(a+b+c)^T + a a^T + b b^T + c c^T)   (5)
-// Exact for a thin sheet: what its thickness adds is of the order t^2 over the size squared. Which way triangles turn
-// has no effect; one that is there twice counts twice. Pre-condition: finite vertices, an area.
+// Exact for a thin sheet: the error by its thickness is of the order t^2 over the size squared. The orientation of
+// triangles has no effect; a duplicate counts twice. Pre-condition: finite vertices, an area.
 [[nodiscard]] MassProperties shell_properties(const MeshDef& mesh, double thickness, double density);
 
 }  // namespace slew::contact

@@ -16,7 +16,7 @@ namespace {
 
 using math::Vec3;
 
-// vertices of flat faces are printed with six digits and more: distance outside of a face as a share of the mesh's size
+// tolerance for vertices printed with six digits: distance outside of a face as a share of the mesh's size
 constexpr double kConvexTolerance = 1e-6;
 // triangles whose area is below this share of the size squared are lines
 constexpr double kAreaTolerance = 1e-12;
@@ -28,7 +28,7 @@ double size_of(const MeshDef& mesh) {
   return norm(high - low);
 }
 
-// twice the area along the normal
+// vector of twice the area along the normal
 Vec3 area_of(const MeshDef& mesh, std::size_t triangle) {
   const auto& t = mesh.triangles[triangle];
   const Vec3 on(mesh.vertices[t[0]]);

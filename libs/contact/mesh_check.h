@@ -1,4 +1,4 @@
-// What is wrong with a mesh or a height field, in words; nothing when it is sound.
+// Checks of meshes and height fields: the fault in words, or none.
 #pragma once
 
 #include <optional>
@@ -20,21 +20,21 @@ struct MeshFault {
   std::string expected;
 };
 
-// Triangles of vertices that are there and finite.
+// Triangles of existing, finite vertices.
 [[nodiscard]] std::optional<MeshFault> find_number_fault(const MeshDef& mesh);
 
 // An oriented surface, open or closed: finite vertices, triangles with an area, all turning the same way.
 [[nodiscard]] std::optional<MeshFault> find_surface_fault(const MeshDef& mesh);
 
-// A surface that encloses a volume: every edge has one triangle on either side, and outside is outside.
+// A surface that encloses a volume: every edge has one triangle on either side, and normals point outwards.
 [[nodiscard]] std::optional<MeshFault> find_closed_fault(const MeshDef& mesh);
 
-// What encloses a volume for mass properties, which ask for less than contact does: solids may touch at vertices, edges
-// and faces, triangles may have no area, as long as each edge has as many triangles one way as the other. Parts that do
-// not hang together may be holes: turned inside out within another part.
+// A surface that encloses a volume for mass properties, with weaker conditions than for contact: solids may touch at
+// vertices, edges and faces, and triangles may have no area. Each edge must have equal numbers of triangles in both
+// directions. A separate part may be a hole: turned inside out within another part.
 [[nodiscard]] std::optional<MeshFault> find_solid_fault(const MeshDef& mesh);
 
-// A closed surface without dents, which is then inside of all its triangles.
+// A convex closed surface: it lies behind the planes of all its triangles.
 [[nodiscard]] std::optional<MeshFault> find_convex_fault(const MeshDef& mesh);
 
 [[nodiscard]] std::optional<MeshFault> find_field_fault(const HeightFieldDef& field);

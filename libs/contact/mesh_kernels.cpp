@@ -1,8 +1,8 @@
 // A convex shape against the triangles of a ground that does not move.
 //
-// A triangle is one side of something solid. It counts when the shape's middle is on its outer side and the way out
-// along its normal is shorter than over any of its edges where the ground ends or falls away: so the wall beside the
-// face that carries a body does not push it sideways. Where two triangles give the same point, one stays.
+// A triangle is one side of a solid. It counts if the shape's middle is on its outer side and the overlap along its
+// normal is smaller than over any of its edges where the ground ends or falls away: so the wall beside the face that
+// carries a body does not push it sideways. Where two triangles give the same point, one stays.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,7 +34,7 @@ void make_room(Manifold& out) noexcept {
   if (out.size() + kLargest > Manifold::capacity()) reduce(out);
 }
 
-// points that two triangles share, told apart by rounding only
+// removes points that two triangles share, equal to rounding
 void drop_doubles(double size, Manifold& out) noexcept {
   constexpr double kSame = 1e-9;
   std::size_t kept = 0;
@@ -137,8 +137,8 @@ void convex_on_triangles(const Solid& a, const Solid& b, Manifold& out) noexcept
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 edge = t.at[(k + 1) % 3] - t.at[k];
       const Vec3 inward = cross(t.normal, edge) * (1 / norm(edge));
-      const bool is_way_out = (b.geometry->ways_out[triangle] >> k & 1U) != 0;
-      if (is_way_out && reach(a, inward) - dot(t.at[k], inward) < depth) return;
+      const bool is_open_edge = (b.geometry->open_edges[triangle] >> k & 1U) != 0;
+      if (is_open_edge && reach(a, inward) - dot(t.at[k], inward) < depth) return;
       face.vertices.push_back(t.at[k]);
     }
     face.normal = t.normal;

@@ -43,7 +43,7 @@ double damping_number(double restitution) noexcept {
   const double e = restitution;
   SLEW_ASSERT(e > 0 && e <= 1);
   if (e >= 1) return 0;
-  // halving: the root of e near 1 is small, so more rounds than a double has bits
+  // bisection: the root for e near 1 is small, so more rounds than a double has bits
   constexpr int kRounds = 120;
   double low = 0, high = 1 / e;
   for (int i = 0; i < kRounds; ++i) {

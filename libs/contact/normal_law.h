@@ -9,8 +9,8 @@
 // largest rate since the onset, at least v_min; e wanted restitution, a root of (3), the same for every k, n, mass and
 // speed. (3) is the exact integral of m d'' = -F from (0, v0) to (0, -e v0).
 //
-// F >= 0 costs nothing in (3): d' = -v0/a is a trajectory of the free impact (1 + chi d' = 0 there), so that no impact
-// crosses it, and e v0 < v0/a always. The maximum acts only when something else pulls the bodies apart faster.
+// F >= 0 does not affect (3): d' = -v0/a is a trajectory of the free impact (1 + chi d' = 0 there), so that no impact
+// crosses it, and e v0 < v0/a always. The maximum acts only if another force pulls the bodies apart faster.
 //
 // Source: Hunt and Crossley 1975 (the form of (1)); (3) replaces their chi = 3 (1 - e)/(2 v0), whose rebound is far
 // from e. Deviation: v0 is kept from falling below v_min and grows when the bodies approach faster than at the onset,
@@ -40,7 +40,7 @@ inline constexpr double kSmallestRestitution = 0.01;
 
 [[nodiscard]] std::span<const Field> normal_law_fields() noexcept;
 
-// Appends what is out of range; paths are "owner.key".
+// Appends values out of range; paths are "owner.key".
 void check(std::string_view owner, const NormalLawDef& def, Problems& problems);
 
 struct NormalLaw {
@@ -57,15 +57,15 @@ struct NormalLaw {
 // Root of (3) for 0 < e <= 1, to 1e-14 of itself; 0 for e = 1. a < 1/e.
 [[nodiscard]] double damping_number(double restitution) noexcept;
 
-// What one contact point remembers.
+// State of one contact point.
 struct NormalState {
   double impact_speed = 0;  // v0 [m/s]; 0: not touched yet
 };
 
-// Takes note of a depth and its rate, once per accepted sub-step and before evaluate(): an open contact (d <= 0) holds
-// the present speed of approach, a closed one the largest since the onset. Both are at least v_min. A contact that is
-// found closed for the first time takes the rate found (a start in penetration: v_min, so that it leaves with v_min/a
-// at most and does not shoot out).
+// Records a depth and its rate, once per accepted sub-step and before evaluate(): an open contact (d <= 0) holds the
+// present speed of approach, a closed one the largest since the onset. Both are at least v_min. A contact found closed
+// for the first time takes the rate found (a start in penetration: v_min, so that it leaves with v_min/a at most and
+// does not shoot out).
 void observe(const NormalLaw& law, double depth, double depth_rate, NormalState& state) noexcept;
 
 // Force and slopes of (1) at one point.
@@ -79,8 +79,8 @@ struct NormalForce {
 [[nodiscard]] NormalForce evaluate(const NormalLaw& law, double share, double depth, double depth_rate,
                                    const NormalState& state) noexcept;
 
-// The steepest slopes that a free mass [kg] finds on its way in from a depth [m] at a rate [m/s]: at its deepest point,
-// which lies no deeper than where the spring, or the damping alone, has taken the speed:
+// The steepest slopes that a free mass [kg] meets from a depth [m] at a rate [m/s] inwards: at its deepest point, which
+// is at most the depth where the spring, or the damping alone, has stopped it:
 //   K (d_1^(n+1) - d^(n+1))/(n + 1) = min(m d'^2/2, m d' v0/a),   K = w k d_ref^(1-n)                 (4)
 [[nodiscard]] NormalForce slopes_of_impact(const NormalLaw& law, double share, double depth, double depth_rate,
                                            const NormalState& state, double mass) noexcept;
@@ -88,10 +88,10 @@ struct NormalForce {
 // Energy [J] that the spring of (1) holds: integral of F over d at d' = 0.
 [[nodiscard]] double stored_energy(const NormalLaw& law, double share, double depth) noexcept;
 
-// Shares of the contact points of one pair: w_i = A_i d_i / sum of A_j d_j over the depths above 0, all 0 when none is.
-// A point that comes in, goes out or parts in two at the same place does so with no jump of force; points of equal
-// depth and area share equally. Held over a sub-step. depths [m], areas that the points stand for [m^2] > 0 and shares
-// [-]: one entry per point.
+// Shares of the contact points of one pair: w_i = A_i d_i / sum of A_j d_j over the depths above 0, all 0 if there is
+// none. The force does not jump when a point appears, vanishes or splits in two at the same place; points of equal
+// depth and area share equally. Held over a sub-step. depths [m], areas of the points [m^2] > 0 and shares [-]: one
+// entry per point.
 void share_stiffness(std::span<const double> depths, std::span<const double> areas, std::span<double> shares) noexcept;
 
 }  // namespace slew::contact

@@ -11,12 +11,13 @@ namespace {
 
 using math::Vec3;
 
-constexpr double kSettled = 1e-10;  // of the shapes' size: a ten thousandth of the depth of a load on stiff springs
-constexpr double kInPlane = 1e-12;  // of the shapes' size: rounding of a point's distance from a plane
+constexpr double kSettled = 1e-10;  // share of the shapes' size: a ten thousandth of the depth of a load on stiff
+                                    // springs
+constexpr double kInPlane = 1e-12;  // share of the shapes' size: rounding of a point's distance from a plane
 constexpr int kMostRounds = 64;
 constexpr std::size_t kMostPoints = 80;
 
-// A point of D and where it comes from, in world axes from A's origin.
+// A point of D and its source points, in world axes from A's origin.
 struct Corner {
   Vec3 x, on_a, on_b;
 };
@@ -56,7 +57,7 @@ class Portal {
  private:
   [[nodiscard]] bool begin() noexcept {
     v_[0] = difference_.within();
-    // middles that coincide: any ray will do
+    // middles that coincide: any ray serves
     if (norm(v_[0].x) < kSettled * size_) v_[0].x = Vec3(kSettled * size_, 0, 0);
     if (!take(1, -v_[0].x)) return false;
     Vec3 n = cross(v_[1].x, v_[0].x);
@@ -138,7 +139,7 @@ class Polytope {
   struct Face {
     std::array<std::uint8_t, 3> corner{};
     Vec3 n;               // outward, unit
-    double distance = 0;  // of its plane from the origin
+    double distance = 0;  // distance of its plane from the origin
   };
 
   [[nodiscard]] const Face& nearest() const noexcept {
@@ -172,7 +173,7 @@ class Polytope {
     return !faces_.empty();
   }
 
-  // half way between the points of both shapes that the face's point nearest to the origin comes from, from A's origin
+  // half way between the points of both shapes behind the face's point nearest to the origin, from A's origin
   [[nodiscard]] Vec3 middle_of(const Face& face) const noexcept {
     const Corner &a = corners_[face.corner[0]], &b = corners_[face.corner[1]], &c = corners_[face.corner[2]];
     const Vec3 foot = face.n * face.distance;

@@ -1,4 +1,4 @@
-// Overlap of two convex shapes of any kind: the shortest way out, by an expanding polytope.
+// Overlap of two convex shapes of any kind: the shortest separating displacement, by an expanding polytope.
 //
 // All differences of their points, D = {b - a}, make a convex shape that holds the origin when they overlap. Along a
 // unit vector n the two overlap by
@@ -11,12 +11,13 @@
 //   2. The tetrahedron grows by the point of D that is farthest along the normal of the face nearest to the origin,
 //   until
 //      that face is on the border of D within kSettled of the shapes' size (van den Bergen 2001).
-// Every direction that was tried is a way out, so what is returned after kMostPoints is one too, only not the shortest:
-// has_settled says so. Polyhedra end after a few points; curved shapes gain a factor of four with about three points.
+// Every tried direction separates the shapes, so the result after kMostPoints separates them too, but is not the
+// shortest: has_settled is then false. Polyhedra end after a few points; curved shapes gain a factor of four with about
+// three points.
 //
-// Deviations: points are those of step 1, which need not be on the border; faces in whose plane the new point lies are
-// replaced with those that it sees, so that no face is without area.
-// Real-time safe: no allocation, at most kMostRounds + kMostPoints questions for a farthest point.
+// Deviations: points are those of step 1, which need not be on the border; faces whose plane holds the new point are
+// replaced together with the visible ones, so that every face has an area.
+// Real-time safe: no allocation, at most kMostRounds + kMostPoints searches for a farthest point.
 #pragma once
 
 #include "contact/solid.h"
@@ -25,7 +26,7 @@ namespace slew::contact {
 
 struct Overlap {
   bool is_found = false;    // the shapes overlap
-  bool has_settled = true;  // the depth is the least there is
+  bool has_settled = true;  // the depth is the least one
   math::Vec3 n_W;           // unit, from B to A
   double depth = 0;         // m, > 0
   math::Vec3 p_W;           // m, half way between the deepest points
@@ -34,7 +35,7 @@ struct Overlap {
 // Pre-condition: convex shapes, no planes and no surfaces of triangles.
 [[nodiscard]] Overlap find_overlap(const Solid& a, const Solid& b) noexcept;
 
-// (1) [m]: how far A has to go along n_W (unit) to leave B; not positive when they are apart along it.
+// (1) [m]: displacement of A along n_W (unit) that separates it from B; not positive if they are apart along it.
 [[nodiscard]] double overlap_along(const Solid& a, const Solid& b, math::Vec3 n_W) noexcept;
 
 }  // namespace slew::contact

@@ -11,7 +11,7 @@ namespace {
 
 using math::Vec3;
 
-// triangles of one flat face: their normals agree to this; meshes carry six digits and more
+// tolerance of the normals within one flat face; meshes carry six digits and more
 constexpr double kCoplanar = 1e-5;
 
 Vec3 normal_of(const Geometry& g, const Triangle& t) {
@@ -32,7 +32,7 @@ void bound_vertices(Geometry& g) {
   for (const Vec3& v : g.vertices) g.bounding_radius = std::max(g.bounding_radius, norm(v - g.centre));
 }
 
-// All vertices in the plane of a triangle are corners of its face, since the mesh is convex; in order of their angle.
+// Face of a triangle: all vertices in its plane, since the mesh is convex, in order of their angle.
 void merge_faces(Geometry& g) {
   double size = g.bounding_radius;
   for (const auto& triangle : g.triangles) {
@@ -84,8 +84,8 @@ void triangulate(const HeightFieldDef& field, Geometry& g) {
   }
 }
 
-// An edge is a way out when there is nothing across it, or when the neighbour falls away by more than 30 degrees.
-void find_ways_out(Geometry& g) {
+// An edge is open if it has no neighbour, or if the neighbour falls away by more than 30 degrees.
+void find_open_edges(Geometry& g) {
   constexpr double kSharp = 0.866;  // cosine
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> owner;
   for (std::size_t i = 0; i < g.triangles.size(); ++i) {
@@ -100,12 +100,12 @@ void find_ways_out(Geometry& g) {
       if (neighbour != owner.end()) {
         const Vec3 across = g.triangle_normals[neighbour->second];
         const Vec3 inward = cross(g.triangle_normals[i], g.vertices[t[(k + 1) % 3]] - g.vertices[t[k]]);
-        // convex: the neighbour looks away from this triangle
+        // convex: the neighbour faces away from this triangle
         falls_away = dot(across, g.triangle_normals[i]) < kSharp && dot(across, inward) < 0;
       }
       if (falls_away) ways = static_cast<std::uint8_t>(ways | (1U << k));
     }
-    g.ways_out.push_back(ways);
+    g.open_edges.push_back(ways);
   }
 }
 
@@ -130,7 +130,7 @@ Face box_face(const Solid& s, Vec3 d) noexcept {
   return face;
 }
 
-// a cap as an octagon when it is looked at squarely, else the line of the side
+// a cap as an octagon if it faces d squarely, else the line of the side
 Face cylinder_face(const Solid& s, Vec3 d) noexcept {
   constexpr int kCorners = 8;
   const Geometry& g = *s.geometry;
@@ -208,7 +208,7 @@ Geometry make_geometry(const ShapeDef& def) {
   }
   if (def.type == ShapeType::triangle_mesh || def.type == ShapeType::height_field) {
     for (const Triangle& triangle : g.triangles) g.triangle_normals.push_back(normal_of(g, triangle));
-    find_ways_out(g);
+    find_open_edges(g);
     g.tree = TriangleTree(g.vertices, g.triangles);
   }
   return g;

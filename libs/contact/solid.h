@@ -1,4 +1,4 @@
-// A shape placed in the world, and what the kernels ask of it.
+// A shape placed in the world, and the geometric queries of the kernels.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,8 @@ struct Geometry {
   ShapeType type = ShapeType::sphere;
   double radius = 0;                 // m: sphere, cylinder, capsule
   double half_length = 0;            // m: cylinder, capsule (to the centre of an end)
-  math::Vec3 half_size;              // m: box; meshes and height fields: of the box around them about `centre`
+  math::Vec3 half_size;              // m: box; meshes and height fields: half size of the box around them about
+                                     // `centre`
   double bounding_radius = 0;        // m about `centre`; infinite for a plane
   math::Vec3 centre;                 // m
   math::Vec3 inside;                 // m: a point within a convex shape
@@ -32,15 +33,15 @@ struct Geometry {
 
   // triangle mesh, height field
   std::vector<math::Vec3> triangle_normals;
-  std::vector<std::uint8_t> ways_out;  // by triangle, bit k: over the edge from corner k to the next the ground ends
-                                       // or falls away sharply
+  std::vector<std::uint8_t> open_edges;  // by triangle, bit k: the ground ends or falls away sharply over the edge from
+                                         // corner k to the next
   TriangleTree tree;
 };
 
 // Pre-condition: validate() found nothing.
 [[nodiscard]] Geometry make_geometry(const ShapeDef& def);
 
-// Radius of a ball about the middle that the shape holds [m]; infinite for a plane, 0 for surfaces of triangles.
+// Radius of a ball inside the shape about its middle [m]; infinite for a plane, 0 for surfaces of triangles.
 [[nodiscard]] double inner_radius(const Geometry& geometry) noexcept;
 
 // A shape in the world.
@@ -56,12 +57,11 @@ struct Solid {
 // The largest p_W . d_W of all points of a convex shape [m]; d_W is a unit vector.
 [[nodiscard]] double reach(const Solid& solid, math::Vec3 d_W) noexcept;
 
-// The point of a convex shape farthest along d_S [m], shape's axes; the first of those that are equally far. d_S need
-// not be a unit vector.
+// The point of a convex shape farthest along d_S [m], shape's axes; the first of several at equal distance. d_S may
+// have any length.
 [[nodiscard]] math::Vec3 farthest_point(const Geometry& geometry, math::Vec3 d_S) noexcept;
 
-// The face, edge or vertex of a convex shape that looks most squarely along d_W (unit). Triangle meshes and planes have
-// none here.
+// The face, edge or vertex of a convex shape that faces d_W (unit) most squarely. None for triangle meshes and planes.
 [[nodiscard]] Face supporting_face(const Solid& solid, math::Vec3 d_W) noexcept;
 
 }  // namespace slew::contact

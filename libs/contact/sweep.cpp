@@ -25,9 +25,9 @@ class Sweeper {
 
   [[nodiscard]] Meeting run(std::span<const Pose> from, std::span<const Pose> to, ContactSet& set) const noexcept {
     if (is_clear(from, set) && is_clear(to, set)) return {};
-    const Vec3 start = apart(from), way = apart(to) - start;
-    Meeting meeting{.travel = norm(way)};
-    if (!may_meet(start, way)) return meeting;
+    const Vec3 start = apart(from), path = apart(to) - start;
+    Meeting meeting{.travel = norm(path)};
+    if (!may_meet(start, path)) return meeting;
     const double piece = model_.pairs_[pair_].half_thickness;
     const double pieces = meeting.travel > piece ? std::ceil(meeting.travel / piece) : 1.0;
     if (!(pieces <= kMostLooks)) {
@@ -61,13 +61,13 @@ class Sweeper {
     return middle(a_) - middle(b_);
   }
 
-  // the bounding spheres come together somewhere on the way
-  [[nodiscard]] bool may_meet(Vec3 start, Vec3 way) const noexcept {
+  // the bounding spheres meet somewhere along the path
+  [[nodiscard]] bool may_meet(Vec3 start, Vec3 path) const noexcept {
     const double reach = a_.geometry.bounding_radius + b_.geometry.bounding_radius;
     if (std::isinf(reach)) return true;
-    const double length2 = dot(way, way);
-    const double s = length2 > 0 ? std::clamp(-dot(start, way) / length2, 0.0, 1.0) : 0.0;
-    const Vec3 nearest = start + way * s;
+    const double length2 = dot(path, path);
+    const double s = length2 > 0 ? std::clamp(-dot(start, path) / length2, 0.0, 1.0) : 0.0;
+    const Vec3 nearest = start + path * s;
     return dot(nearest, nearest) < reach * reach;
   }
 

@@ -1,9 +1,9 @@
-// Whether a pair meets on the way between two instants that a search looked at.
+// Detects a pair that meets between two searched instants.
 //
-// The way is taken as straight, the turn as one step at its middle, and is looked at in pieces of at most half the
-// thickness of both shapes together (ContactPair::half_thickness), so that nothing passes between two looks unseen.
+// The path is taken as straight, the turn as one step at its middle. It is sampled in pieces of at most half the
+// thickness of both shapes together (ContactPair::half_thickness), so that no contact between two samples is missed.
 // Real-time safe with own kernels; cost bounded by kMostLooks. Not covered: a corner that cuts less deep than the
-// pieces are long; ways that curve strongly within one sub-step.
+// pieces are long; paths that curve strongly within one sub-step.
 #pragma once
 
 #include <span>
@@ -17,14 +17,14 @@ inline constexpr int kMostLooks = 128;
 struct Meeting {
   enum class Kind { none, found, too_fast };  // too_fast: near, but longer than kMostLooks pieces
   Kind kind = Kind::none;
-  math::Vec3 n_W{};   // found: normal at the first look that found an overlap, from B to A
+  math::Vec3 n_W{};   // found: normal at the first sample with an overlap, from B to A
   math::Vec3 p_W{};   // found: a point of the overlap there
-  double share = 0;   // found: of the way, where that was
-  double travel = 0;  // m, of A's middle seen from B
+  double share = 0;   // found: share of the path at that sample
+  double travel = 0;  // m, displacement of A's middle relative to B
 };
 
-// Poses of the frames at both ends; the last look is at the end itself. A way shorter than the pieces is not looked at
-// but at its end.
+// Poses of the frames at both ends; the last sample is the end itself. A path shorter than a piece is sampled at its
+// end only.
 [[nodiscard]] Meeting sweep(const ContactModel& model, std::size_t pair, std::span<const Pose> from,
                             std::span<const Pose> to, ContactSet& scratch) noexcept;
 

@@ -40,7 +40,7 @@ class TriangleTree {
   }
 
  private:
-  // 2^40 triangles do not fit into a memory
+  // 2^40 triangles exceed any memory
   static constexpr std::size_t kMaxDepth = 40;
   static constexpr std::size_t kLeafSize = 4;
 

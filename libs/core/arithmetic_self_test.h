@@ -9,7 +9,7 @@ namespace slew {
 // them out.
 [[nodiscard]] std::uint64_t arithmetic_self_test() noexcept;
 
-// True when the processor has the instructions that this build uses; text names what is missing otherwise.
+// True when the processor has the instructions that this build uses; otherwise text names the missing ones.
 [[nodiscard]] bool processor_fits(const char*& missing) noexcept;
 
 // Rounding to nearest and denormals as IEEE 754 has them, for the calling thread.

@@ -22,7 +22,7 @@ constexpr int kNotExecuted = static_cast<int>(ExitCode::resources);
 // between fork and exec: only calls that are safe there
 [[noreturn]] void become(const char* program, char* const* arguments, int output, pid_t parent) noexcept {
   setpgid(0, 0);
-  // a node ends in order when its supervisor is gone, also when that was killed just now
+  // a node ends in order when its supervisor is gone, even if the supervisor was killed just now
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(kNotExecuted);
   const int nothing = open("/dev/null", O_RDONLY);
@@ -31,7 +31,7 @@ constexpr int kNotExecuted = static_cast<int>(ExitCode::resources);
   dup2(output, STDERR_FILENO);
   // the supervisor's sockets are not the node's
   close_range(STDERR_FILENO + 1, ~0u, CLOSE_RANGE_CLOEXEC);
-  // signals that the supervisor handles or ignores are the node's own matter
+  // the node sets its own response to signals that the supervisor handles or ignores
   for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGHUP}) std::signal(signal, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);

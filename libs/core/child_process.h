@@ -20,7 +20,7 @@ struct ProcessEnd {
 class ChildProcess {
  public:
   // program: path of the executable. Throws Failure (resources) when no process can be made; a program that cannot be
-  // executed ends at once with code 127 and a line of output that says why.
+  // executed ends at once with code 127 and one line of output that states the reason.
   ChildProcess(std::string name, const std::string& program, const std::vector<std::string>& arguments);
   // Kills the process if it still runs.
   ~ChildProcess();
@@ -32,7 +32,7 @@ class ChildProcess {
   [[nodiscard]] int output_fd() const noexcept { return output_fd_; }
 
   void send_signal(int signal) noexcept;
-  // The end, once it has come. Does not block.
+  // Exit status once the process has ended. Does not block.
   [[nodiscard]] const std::optional<ProcessEnd>& poll_end();
   // Whole lines written since the last call; after the end also an unfinished one.
   [[nodiscard]] std::vector<std::string> take_lines();

@@ -54,7 +54,7 @@ struct DimensionInfo {
   std::string_view name;                // "pressure"
   std::string_view si_unit;             // "Pa"
   std::string_view example;             // "250 bar": for messages and the schema
-  std::array<std::int8_t, 5> exponent;  // of kg, m, s, K, rad
+  std::array<std::int8_t, 5> exponent;  // powers of kg, m, s, K, rad
 };
 
 [[nodiscard]] const DimensionInfo& info(Dimension dimension) noexcept;

@@ -30,7 +30,7 @@ constexpr std::pair<std::string_view, DisplayUnit> kUnits[] = {{"Pa", {1e-5, "ba
                                                                {"1", {1, ""}},
                                                                {"rad/s2", {kDegrees, "deg/s2"}}};
 
-// further units in which people choose values
+// further units in which users choose values
 constexpr std::pair<std::string_view, DisplayUnit> kUnitsOfData[] = {
     {"m", {1e3, "mm"}},     {"m2", {1e4, "cm2"}},
     {"m3", {1e6, "cm3"}},   {"rad/s", {30 / std::numbers::pi, "rpm"}},

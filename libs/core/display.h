@@ -1,5 +1,4 @@
-// How quantities and tables are shown to people: the units of the workshop, as many digits as can be read, lines that
-// fit the terminal.
+// Display of quantities and tables to users: workshop units, readable digits, lines that fit the terminal.
 #pragma once
 
 #include <cstddef>
@@ -24,9 +23,9 @@ struct DisplayUnit {
 // "47.2 kN" style: value in the display unit with four significant digits.
 [[nodiscard]] std::string quantity_text(double value, std::string_view si_unit);
 
-// A value that somebody has chosen, as a person would write it: at most six digits, in the unit of those usual that
-// makes it shortest: "30 deg", "1500 rpm", "0.1 l/min", "500 kg". Reading it back gives the value to 1e-9 where six
-// digits can; what is not given, and a bound that is not there, is "none".
+// A chosen value as a user would write it: at most six digits, in the usual unit that gives the shortest text: "30
+// deg", "1500 rpm", "0.1 l/min", "500 kg". Parsing the text gives the value to 1e-9 where six digits suffice. A missing
+// value or bound is "none".
 [[nodiscard]] std::string chosen_text(double value, std::string_view si_unit);
 
 // "1 body", "2 bodies".
@@ -37,7 +36,7 @@ struct DisplayUnit {
 // Rounded down to two digits.
 [[nodiscard]] std::string duration_below(double seconds);
 
-// Characters of a line where standard output is a terminal; 0 elsewhere: a line may have any length.
+// Line length in characters if standard output is a terminal; otherwise 0: no limit.
 [[nodiscard]] std::size_t output_width();
 
 // To standard output, in lines that fit the terminal.

@@ -11,7 +11,7 @@ namespace slew {
 struct ElementVariable {
   std::string name;
   Dimension dimension = Dimension::none;
-  bool is_detail = false;  // one of very many: a scene publishes it when a pattern other than "*" fits
+  bool is_detail = false;  // member of a large set: published only if a pattern other than "*" matches
 };
 
 }  // namespace slew

@@ -1,4 +1,4 @@
-// Text inside of HTML, SVG or XML.
+// Escapes text for HTML, SVG or XML.
 #pragma once
 
 #include <string>

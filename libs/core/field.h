@@ -10,7 +10,7 @@
 //                                      .change = Change::live, .doc = "mass of the body"}),
 //   };
 //
-// A Def that is composed of parts names the way to the member:
+// A Def that is composed of parts names the path to the member:
 //     field<&SlewCylinderDef::common, &CylinderParameters::leak_flow>("leak_flow", {...})
 //
 // Member types: double, std::int64_t, bool, std::string (text or reference), Triple, Table, std::vector<double>,
@@ -68,28 +68,28 @@ inline constexpr Range kNotNegative{.min = 0, .min_is_open = false};
 inline constexpr Range kFraction{.min = 0, .max = 1, .min_is_open = false, .max_is_open = false};
 inline constexpr Range kFractionAboveZero{.min = 0, .max = 1, .max_is_open = false};
 
-// What has to hold for a field to be read: another field of the same table makes a choice.
+// Condition for reading a field: a choice made by another field of the same table.
 struct ReadBy {
   // error_in_files: an override only warns, since sweeps over choices carry such settings along
   enum class Otherwise : std::uint8_t { error, error_in_files, warning };
 
-  std::string_view key;   // that other field
-  std::string_view what;  // what of it reads the field, for messages: "rk4 or implicit_euler"
+  std::string_view key;   // key of the other field
+  std::string_view what;  // values of the other field that read this one, for messages: "rk4 or implicit_euler"
   bool (*holds)(const void* def) noexcept = nullptr;
-  Otherwise otherwise = Otherwise::error;  // of a field that is stated and not read
+  Otherwise otherwise = Otherwise::error;  // treatment of a field that is stated and not read
 };
 
 struct FieldOptions {
   Dimension dimension = Dimension::none;
-  Dimension value_dimension = Dimension::none;  // of a table's values
-  Range range = kFinite;                        // of the number, of each element, of a table's values
+  Dimension value_dimension = Dimension::none;  // dimension of a table's values
+  Range range = kFinite;                        // range of the number, of each element, or of a table's values
   Presence presence = Presence::optional;
   Change change = Change::restart;
   double ramp = 0;                  // s: a live change is spread over this time by default
   std::string_view reference = {};  // kind of element the text must name: "body", "force", "component or force", ...
   std::span<const std::string_view> choices = {};
-  bool has_jumps = false;                // of a table: two points may have one argument
-  std::span<const ReadBy> read_by = {};  // all of these; empty: always
+  bool has_jumps = false;                // two points of a table may have the same argument
+  std::span<const ReadBy> read_by = {};  // conditions that must all hold; empty: always read
   std::string_view doc = {};
 };
 

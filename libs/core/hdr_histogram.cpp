@@ -21,7 +21,7 @@ std::size_t HdrHistogram::bucket_of(std::int64_t ns) noexcept {
   constexpr std::uint64_t kSubBuckets = 1u << kSubBucketBits;
   const std::uint64_t units = static_cast<std::uint64_t>(std::max<std::int64_t>(0, ns)) >> kUnitBits;
   if (units < kSubBuckets) return static_cast<std::size_t>(units);
-  // the leading bit tells the doubling, the next seven the place in it
+  // the leading bit gives the doubling, the next seven bits the place in it
   const int doubling = std::bit_width(units) - kSubBucketBits;  // 1, 2, ...
   if (doubling > kDoublings) return kBuckets - 1;
   const std::uint64_t place = (units >> (doubling - 1)) - kSubBuckets;

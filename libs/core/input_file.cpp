@@ -49,7 +49,7 @@ class OpenFile {
   }
   [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(status_.st_size); }
 
-  // Appends what is there, one byte beyond `most` at the furthest.
+  // Appends the content, up to one byte beyond `most`.
   [[nodiscard]] std::optional<InputFault> read_into(std::string& bytes, std::size_t most) const {
     constexpr std::size_t kBlock = 1u << 16;
     // one byte more than the file had, so that the end is found without growing

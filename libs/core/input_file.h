@@ -1,7 +1,7 @@
-// Files that a user or a scene names: what they are is checked before a byte is read.
+// Files that a user or a scene names: the type is checked before a byte is read.
 //
-// A regular file of a stated size at most. A FIFO or a device is refused without waiting for its other end, a file that
-// grows while it is read stops at the bound.
+// Accepts regular files up to a stated size. A FIFO or a device is refused without waiting for its other end. Reading a
+// file that grows meanwhile stops at the bound.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace slew {
 
-inline constexpr std::size_t kMaxAssetBytes = 1'000'000'000;  // of a mesh, a saved session, a matrix of a flexible body
+inline constexpr std::size_t kMaxAssetBytes = 1'000'000'000;  // largest mesh, saved session or flexible matrix
 
 // Why a file is not read.
 struct InputFault {
@@ -22,7 +22,7 @@ struct InputFault {
   [[nodiscard]] std::string text() const { return expected.empty() ? what : what + "; expected " + expected; }
 };
 
-// For a library that opens the file by itself; nothing: it may.
+// Check for a library that opens the file itself; no value: the file may be opened.
 [[nodiscard]] std::optional<InputFault> find_input_fault(const std::filesystem::path& path, std::size_t most);
 
 // Fills `bytes` with the whole file. After a fault they are empty.

@@ -31,7 +31,7 @@ struct Json::Value {
   [[nodiscard]] static const Held* in(const Json& json) noexcept {
     return json.value_ ? std::get_if<Held>(&json.value_->held) : nullptr;
   }
-  // what the value must be, with the name of that for the message
+  // requires a kind of value; the message names it
   template <class Held>
   [[nodiscard]] static const Held& as(const Json& json, const char* kind) {
     const Held* held = in<Held>(json);

@@ -24,7 +24,7 @@ namespace slew {
 class Json {
  public:
   struct Member;
-  enum class Order { by_name, as_put };  // of the members of every object that is written
+  enum class Order { by_name, as_put };  // order of the members in every written object
 
   Json() noexcept;                    // null
   template <std::same_as<bool> Bool>  // and no pointer
@@ -66,7 +66,7 @@ class Json {
   [[nodiscard]] const Json& at(std::string_view name) const;
   [[nodiscard]] const Json* find(std::string_view name) const noexcept;  // null: not there, or no object
   [[nodiscard]] std::string text_or(std::string_view name, std::string_view otherwise) const;  // member or otherwise
-  [[nodiscard]] const std::vector<Json>& items() const;  // of an array; null has none
+  [[nodiscard]] const std::vector<Json>& items() const;  // elements of an array; null has none
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] double number() const;
   [[nodiscard]] std::int64_t integer() const;

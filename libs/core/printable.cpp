@@ -22,7 +22,7 @@ bool is_shown(std::uint32_t point) {
   return !is_control && !is_of_direction;
 }
 
-// Length of the text's beginning that is shown as it is or as \xNN, and which of the two.
+// Length of the text's start that is shown plainly or as \xNN, and which of the two.
 struct Piece {
   std::size_t length = 0;
   bool is_shown = false;

@@ -1,4 +1,4 @@
-// What is wrong with a Def, found by the physics library that owns it; the scene reader adds the place in the file.
+// An error in a Def, found by the physics library that owns it; the scene reader adds the place in the file.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ namespace slew {
 // path: dotted from the element's name ("Bag.mass", "Cyl_Lift.rod"); the others are sentences without a full stop.
 struct Problem {
   std::string path;
-  std::string what;        // what is wrong, with the value got
-  std::string expected;    // what would be right; may be empty
+  std::string what;        // error, with the value got
+  std::string expected;    // accepted value; may be empty
   std::string suggestion;  // a name that was probably meant; may be empty
 };
 

@@ -20,14 +20,14 @@ void touch(volatile char* bytes, std::size_t size) noexcept {
   for (std::size_t i = 0; i < size; i += kPage) bytes[i] = 0;
 }
 
-// the frame goes, the pages stay
+// the stack frame is released, its pages stay mapped
 [[gnu::noinline]] void touch_stack() noexcept {
   char bytes[kStack];
   touch(bytes, kStack);
 }
 
 void keep_memory() noexcept {
-  // no block from the system alone, and nothing back to it: pages that were touched once stay
+  // allocate no block by mmap and return none to the system: touched pages stay
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, -1);
   if (void* heap = std::malloc(kHeap)) {

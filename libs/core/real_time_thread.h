@@ -1,4 +1,4 @@
-// What `--rt` asks of the operating system, and on which processor a program runs.
+// Real-time settings of `--rt`, and the processor that a program runs on.
 #pragma once
 
 #include <string>
@@ -8,17 +8,16 @@
 
 namespace slew {
 
-// SCHED_FIFO with the given priority (1..99) for the calling thread and those it starts, and memory that is there
-// already when it is needed: all of the process locked, what is freed kept, 32 MiB of heap and 256 KiB of this thread's
-// stack touched.
-// Error resources: the remedy for the missing permission; what could be set stays set.
+// Sets SCHED_FIFO with the given priority (1..99) for the calling thread and the threads it starts. Provides memory in
+// advance: locks the process, keeps freed memory, touches 32 MiB of heap and 256 KiB of this thread's stack.
+// Error resources: with the remedy for the missing permission; settings that succeeded stay.
 Status make_real_time(int priority);
 
 // Processors that this process may run on, ascending.
 [[nodiscard]] std::vector<int> usable_cpus();
 
-// The calling thread and those it starts run on this processor alone. Error bad_input: there is no such one here; the
-// text names those there are.
+// Binds the calling thread and the threads it starts to this processor. Error bad_input: the processor does not exist;
+// the text lists the available ones.
 Status run_on_cpu(int cpu);
 
 // "0, 1, 2"

@@ -23,7 +23,7 @@ std::size_t characters(std::string_view text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-// headings, when one of them says something, and rows, of the columns that are shown
+// headings (if one of them is not empty) and rows of the shown columns
 std::vector<Texts> shown_lines(const std::vector<ReportColumn>& columns,
                                const std::vector<std::vector<ReportCell>>& rows) {
   std::vector<Texts> lines(1);
@@ -55,7 +55,7 @@ std::vector<std::size_t> widths_of(const std::vector<Texts>& lines) {
 // columns of each block
 std::vector<std::vector<std::size_t>> blocks_of(const std::vector<std::size_t>& widths, std::size_t naming,
                                                 std::size_t room) {
-  // repeated columns: those that name a row, as many as fit
+  // repeated columns: the columns that name a row, as many as fit
   std::vector<std::size_t> repeated;
   std::size_t repeated_length = 0;  // with the gap behind each column
   while (repeated.size() < std::min(naming, widths.size())) {
@@ -64,7 +64,7 @@ std::vector<std::vector<std::size_t>> blocks_of(const std::vector<std::size_t>& 
     repeated_length = length;
     repeated.push_back(repeated.size());
   }
-  // as many further ones as fit, at least one
+  // further columns as far as they fit, at least one
   std::vector<std::vector<std::size_t>> blocks = {repeated};
   std::size_t length = repeated_length;
   for (std::size_t c = repeated.size(); c < widths.size(); ++c) {

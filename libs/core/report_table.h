@@ -4,7 +4,7 @@
 //   table.add({variable.name, {quantity_text(variable.range, "m"), variable.range}});
 //   std::fputs(table.text().c_str(), stdout);
 //
-// A cell has a text for people and an exact value for programs. Text and HTML show the text, CSV and JSON the value.
+// A cell has a text for users and an exact value for programs. Text and HTML show the text, CSV and JSON the value.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,7 @@
 
 namespace slew {
 
-// What the column is called in each form. A form without a name has no such column; an empty name is a column without
-// a heading.
+// Column name in each form. A form without a name omits the column; an empty name gives a column without a heading.
 struct ReportColumn {
   std::optional<std::string> text{};  // heading in the text and in HTML
   std::optional<std::string> csv{};   // heading in CSV, with the unit
@@ -43,18 +42,18 @@ class ReportTable {
   // For text and HTML alone.
   explicit ReportTable(std::initializer_list<const char*> headings, std::size_t naming = 1);
 
-  // A cell for each column, in their order. A row may end early: its last cells are not shown, or null.
+  // Adds one cell per column, in column order. A row may end early: its last cells are then omitted, or null.
   void add(std::vector<ReportCell> row);
 
   // Lines of columns aligned by spaces, two between them; the last cell of a line is not padded. Lengths are counted in
   // characters of UTF-8. The line of headings is left out when all of them are empty.
-  // width [characters]: of the longest line; 0: no limit. A wider table is put into blocks below each other with an
-  // empty line between them. Each block repeats the naming columns, or as many of them as fit, at least one. A line is
-  // longer than the width only in a block with a single further column that does not fit beside them.
+  // width [characters]: limit of the line length; 0: no limit. A wider table is split into blocks below each other with
+  // an empty line between them. Each block repeats the naming columns, or as many as fit, at least one. A line exceeds
+  // the width only in a block with a single further column that does not fit.
   [[nodiscard]] std::string text(std::string_view indent = "", std::size_t width = 0) const;
 
-  // Comma-separated values (RFC 4180) with a line of headings. Doubles have the fewest digits that give them again;
-  // null and what is not finite is empty.
+  // Comma-separated values (RFC 4180) with a line of headings. Doubles have the fewest digits that reproduce them; null
+  // and non-finite values are empty.
   [[nodiscard]] std::string csv() const;
 
   // An array with an object for each row.

@@ -1,4 +1,4 @@
-// A signal over one step, as straight pieces: what a tick's one value stands for.
+// A signal over one step as straight pieces; a tick carries one value for it.
 #pragma once
 
 #include <vector>
@@ -6,12 +6,12 @@
 namespace slew {
 
 struct SignalPiece {
-  double share;       // of the step's length, 0 < share <= 1; those of a step add up to 1
+  double share;       // part of the step's length, 0 < share <= 1; the shares of a step add up to 1
   double begin, end;  // a straight line from one to the other; the next piece may begin elsewhere, after a jump
 };
 using SignalCourse = std::vector<SignalPiece>;
 
-// Mean value over the step; of a signal that does not change this value itself, bit for bit.
+// Mean value over the step; for a constant signal its value, bit for bit.
 class SignalMean {
  public:
   void add(double share, double begin, double end) noexcept {

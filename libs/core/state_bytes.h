@@ -3,9 +3,9 @@
 //
 //   magic u32 | layout u32 | model u64 | length u64 | check u64 | `length` bytes
 //
-// layout: number of the field list, raised when it changes. model: digest of what the state belongs to. check: XXH3 of
-// the bytes. A state is one list of fields, visited by both classes below, which have the same functions for it: what
-// one writes the other reads in the same order. Sizes are those of the model and not written.
+// layout: number of the field list, raised when it changes. model: digest of the model that the state belongs to.
+// check: XXH3 of the bytes. A state is one list of fields. Both classes below visit it with the same functions, so the
+// reader follows the writer's order. Sizes follow from the model and are not written.
 #pragma once
 
 #include <concepts>
@@ -20,13 +20,13 @@
 
 namespace slew {
 
-// What bytes must say of themselves.
+// Header values that saved bytes must have.
 struct StateFormat {
   std::uint32_t layout = 0;
   std::uint64_t model = 0;
 };
 
-// No step number of a state is beyond; sums of two are step numbers still.
+// Limit of step numbers in a state; the sum of two is still a valid step number.
 inline constexpr std::int64_t kLastStep = std::int64_t{1} << 60;
 
 // A number of any value: not bool, not an enum.
@@ -52,7 +52,7 @@ class StateWriter {
     append(values.data(), values.size_bytes());
   }
   void numbers(std::span<const double> values) { append(values.data(), values.size_bytes()); }
-  // 0 or 1 in whatever type.
+  // 0 or 1 in any type.
   template <typename T>
   void flag(const T& value) {
     number(static_cast<std::uint8_t>(value ? 1 : 0));
@@ -74,7 +74,7 @@ class StateWriter {
   std::size_t begin_;
 };
 
-// Never reads beyond the bytes. From the first thing that does not fit on, targets stay as they are.
+// Never reads beyond the bytes. After the first fault, targets keep their values.
 class StateReader {
  public:
   static constexpr bool kIsReading = true;
@@ -82,9 +82,9 @@ class StateReader {
   StateReader(std::span<const std::byte> bytes, StateFormat format) noexcept;
 
   [[nodiscard]] bool is_sound() const noexcept { return fault_ == Fault::none; }
-  // The owner found that what was read cannot be.
+  // Called by the owner if a value read is impossible.
   void refuse() noexcept { note(Fault::damaged); }
-  // Ok when everything was sound and nothing is left. Error (bad_input); whose: "mechanics".
+  // Ok if everything was sound and no bytes are left. Error (bad_input); whose: "mechanics".
   [[nodiscard]] Status finish(std::string_view whose) const;
 
   template <StateNumber T>
@@ -121,7 +121,7 @@ class StateReader {
 
  private:
   enum class Fault { none, cut, no_state, layout, model, damaged };
-  // the first one is told
+  // keeps the first fault for the report
   void note(Fault fault) noexcept {
     if (fault_ == Fault::none) fault_ = fault;
   }

@@ -42,7 +42,7 @@ class StaticVector {
   [[nodiscard]] constexpr std::span<T> span() noexcept { return {values_.data(), size_}; }
 
   constexpr void clear() noexcept { size_ = 0; }
-  // New elements keep whatever the storage held; pre-condition: n <= Capacity.
+  // New elements keep the old content of the storage; pre-condition: n <= Capacity.
   constexpr void resize(std::size_t n) noexcept {
     SLEW_CHECK(n <= Capacity);
     size_ = n;

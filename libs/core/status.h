@@ -20,7 +20,7 @@ enum class ExitCode : int {
   terminated = 143    // SIGTERM
 };
 
-// Ok, or what happened, what was done about it and what the user can do.
+// Ok, or a text: what happened, what was done, what the user can do.
 struct [[nodiscard]] Status {
   ExitCode code = ExitCode::ok;
   std::string text;

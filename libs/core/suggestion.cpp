@@ -7,7 +7,7 @@
 namespace slew {
 namespace {
 
-// longer words are not compared: a suggestion for them would not be read
+// longer words are not compared
 constexpr std::size_t kLongestWord = 80;
 
 bool same_letter(char a, char b) {

@@ -1,4 +1,4 @@
-// Files that a verb writes: whole, or as they were.
+// Output files of verbs: written whole, or left unchanged.
 #pragma once
 
 #include <filesystem>
@@ -9,16 +9,17 @@
 
 namespace slew {
 
-// Replaces the file by what `write` puts into the path that it is given: one beside it, which takes its name when
-// everything is written, and is removed otherwise. What is there and no file, such as /dev/stdout, is written to as it
-// is. The result is write's own, about the file's own path; storage when the name cannot be taken.
+// Replaces the file. `write` receives the path of a temporary file beside it, which is renamed after a complete write
+// and removed otherwise. A target that is not a regular file, such as /dev/stdout, is written directly. Returns the
+// result of `write`, with the file's own path; storage if the rename fails.
 [[nodiscard]] Status replace_file(const std::filesystem::path& path,
                                   const std::function<Status(const std::filesystem::path&)>& write);
 
-// Writes to the path as it is. Error storage.
+// Writes directly to the path. Error storage.
 [[nodiscard]] Status put_text(const std::filesystem::path& path, const std::string& text);
 
-// Before long work: throws Failure (storage) when write_text() could not write there now. What is there stays as it is.
+// For use before long work: throws Failure (storage) if write_text() could not write there now. An existing file is not
+// changed.
 void require_writable(const std::string& path);
 
 // Replaces a file; "-" is standard output. Throws Failure (storage).

@@ -8,8 +8,8 @@
 namespace slew::coupling {
 namespace {
 
-// S^16 on the way to its largest eigenvalue: two digits of it, as the share of a second one just below is lost slowest;
-// the figure is a warning level, not a result
+// S^16 as an estimate of its largest eigenvalue: two digits, since the share of a second eigenvalue just below decays
+// slowest; the figure is a warning level, not a result
 constexpr int kSquarings = 4;
 
 // N: a port that carries less is idle, and the rounding of its energies is no error of the coupling
@@ -98,7 +98,7 @@ double Indicator::without_largest(std::size_t port, double sum) const noexcept {
     sum -= residual;
     least = std::min(least, residual);
   }
-  // rounding may leave less than nothing; NaN stays
+  // rounding may leave a negative sum; NaN stays
   const double kept = sum + least;
   return kept < 0 ? 0 : kept;
 }
@@ -190,10 +190,10 @@ bool Indicator::diverges(std::size_t port) const noexcept {
 
 namespace {
 
-// m x m, row-major, on the stack of who needs it
+// m x m, row-major, on the caller's stack
 using Square = std::array<double, kMaxPorts * kMaxPorts>;
 
-// P = P^2 / trace(P^2) of a symmetric P >= 0; false when nothing is left.
+// P = P^2 / trace(P^2) of a symmetric P >= 0; false if the trace vanishes.
 bool square(Square& P, std::size_t m) noexcept {
   Square squared;
   double trace = 0;
@@ -213,7 +213,7 @@ bool square(Square& P, std::size_t m) noexcept {
   return true;
 }
 
-// Of a symmetric S >= 0: the Rayleigh quotient of the longest column of S^16, that of its largest diagonal entry.
+// Rayleigh quotient of a symmetric S >= 0 for the longest column of S^16, the column of its largest diagonal entry.
 double largest_eigenvalue(const Square& S, std::size_t m) noexcept {
   if (m == 1) return S[0];
   Square power = S;
@@ -252,7 +252,7 @@ double omega_limit(Level level, double zeta) noexcept {
 }
 
 double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noexcept {
-  // S = sqrt(K) W sqrt(K) has the eigenvalues of W K; of all of S, since parts of the machine may not touch each other
+  // S = sqrt(K) W sqrt(K) has the eigenvalues of W K; the whole S is used, since parts of the machine may be uncoupled
   const std::size_t m = K.size();
   if (m == 0) return 0;
   std::array<double, kMaxPorts> root;

@@ -14,7 +14,7 @@
 // net < -3e-3 for 0.2 s: the coupling creates energy. The scale F^2 / (2 K) uses the largest |F| of the window,
 // at least 1 N.
 //
-// A light port is as wrong as its share of the machine's energy: of its own it has little to compare with.
+// The error of a light port is judged against the machine's energy, since its own is too small a scale.
 //
 // One jump of a valve is one exchange whose work the mechanics could not foresee: it may be large in eta and net for
 // the whole window and does no more. A coupling that diverges fails exchange after exchange. So a port diverges when
@@ -42,14 +42,14 @@ enum class Lamp : std::uint8_t { green, amber, red };
 
 inline constexpr double kGreenBelow = 5e-4;
 inline constexpr double kAmberBelow = 5e-3;
-// docs/coupling-alarm.md, of eta above kGreenBelow: error of the force over its range in the mean square of any second,
-// and of the stroke over its range: half of all runs are below the first, 95 of 100 below the second.
+// docs/coupling-alarm.md, errors at eta above kGreenBelow: error of the force over its range in the mean square of any
+// second, and error of the stroke over its range: half of all runs are below the first, 95 of 100 below the second.
 inline constexpr double kUsualForceError = 4, kLargeForceError = 25;
 inline constexpr double kUsualStrokeError = 1.3, kLargeStrokeError = 12;
 inline constexpr double kNetAlarm = -3e-3;
 // docs/coupling-alarm.md: sound runs reach 0.08 in half of their buckets
 inline constexpr double kDivergesAbove = 0.1;
-// and all of their sum |dE*| over own 1; runs that are wrong by 3 % of the force range reach 3
+// and sum |dE*| over own reaches 1 in sound runs; runs with an error of 3 % of the force range reach 3
 inline constexpr double kDivergesAtOnce = 4;
 inline constexpr SimDuration kIndicatorWindow = {1'000'000'000};
 inline constexpr SimDuration kNetAlarmAfter = {200'000'000};
@@ -78,7 +78,7 @@ class Indicator {
               const PortLevels& levels) noexcept;
   void reset() noexcept;
 
-  // The window and what was shown last.
+  // The window and the last displayed values.
   void save(StateWriter& bytes) const;
   void load(StateReader& bytes) noexcept;
 
@@ -87,7 +87,7 @@ class Indicator {
   [[nodiscard]] bool creates_energy() const noexcept;
   // sum |dE*| of the window over the port's own scale [-]
   [[nodiscard]] double own_residual(std::size_t port) const noexcept;
-  // (7), by the buckets that are full, or at once by own_residual. No allocation.
+  // (7), by the full buckets, or at once by own_residual. No allocation.
   [[nodiscard]] bool diverges(std::size_t port) const noexcept;
 
  private:
@@ -102,9 +102,9 @@ class Indicator {
       stiffness = stiffness < other.stiffness ? other.stiffness : stiffness;
     }
   };
-  static constexpr std::size_t kBuckets = 20;  // of whole steps; the oldest is dropped as a whole
+  static constexpr std::size_t kBuckets = 20;  // buckets of whole steps; the oldest is dropped as a whole
   static constexpr std::size_t kDivergingBuckets = kBuckets / 2;
-  // buckets that one jump of a valve each may have, without a word about what is between them
+  // buckets left out of the sum: each may contain one jump of a valve
   static constexpr std::size_t kLeftOut = 3;
 
   template <typename Self, typename Bytes>
@@ -122,18 +122,18 @@ class Indicator {
   std::size_t current_ = 0;
   std::int64_t alarm_after_steps_;
   std::vector<std::array<Bucket, kBuckets>> window_;   // by port
-  std::vector<Bucket> others_;                         // by port, of the window without the current bucket
+  std::vector<Bucket> others_;                         // by port, sums of the window without the current bucket
   std::vector<std::array<double, kLeftOut>> largest_;  // by port, residuals of others_, falling
   std::vector<std::int64_t> steps_below_alarm_;        // by port
   std::vector<PortDefects> defects_;
   double omega_H_ = 0;
 };
 
-// omega_H of two exchanges to a swing: whatever is said at the exchanges, a faster swing cannot be told from a slower.
+// omega_H at two exchanges per oscillation: the samples cannot distinguish a faster oscillation from a slower one.
 inline constexpr double kMostSampled = std::numbers::pi;
 
 // Largest omega_H at which a level is used without a warning (coupling study, sections 3, 4 and 10); zeta: damping
-// ratio of the port. Level tlm has none: what it costs is a parasitic mass K H^2.
+// ratio of the port. Level tlm has no limit: its cost is a parasitic mass K H^2.
 [[nodiscard]] double omega_limit(Level level, double zeta) noexcept;
 
 // H sqrt(largest eigenvalue of W diag(K)) by powers of the similar symmetric matrix, ports <= kMaxPorts.

@@ -1,4 +1,5 @@
-// How much of the partner's behaviour a subsystem uses inside a communication step (coupling study, section 2).
+// Coupling level: the part of the partner's behaviour that a subsystem uses inside a communication step (coupling
+// study, section 2).
 #pragma once
 
 #include <cstdint>
@@ -13,12 +14,12 @@ enum class Level : std::uint8_t {
 };
 inline constexpr int kLevels = 4;
 
-// Levels whose two sides foresee each other.
+// Levels at which both sides use the partner's reduced model.
 [[nodiscard]] constexpr bool is_balanced(Level level) noexcept {
   return level == Level::linear || level == Level::two;
 }
 
-// What a port says about its level: one of its own, or the session's.
+// The level stated for a port: one of its own, or the session's.
 enum class PortLevel : std::uint8_t { session, hold, linear, two, tlm };
 
 // Pre-condition: not `session`.

@@ -8,9 +8,9 @@ namespace slew::coupling {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-// Of a speed, before the edge: so far the extrapolation may be wrong, for what is tried must not lie behind the edge.
+// Margin of a speed before the edge: the error that the extrapolation may have without passing the edge.
 constexpr double kMargin = 0.02;
-// of the edge's speed: behind it for sure, and not so far that the steep part has changed the speed by much on the way
+// share of the edge's speed: surely behind the edge, and near enough that the steep part changes the speed little
 constexpr double kInside = 0.97;
 
 }  // namespace
@@ -40,11 +40,11 @@ double LineForceLaw::time_to_rest(double v, double a, double j) const noexcept {
   }
   if (edge == 0) return kNever;
   const double margin = kMargin * speed;
-  const double way = speed - edge > 2 * margin ? speed - edge - margin : speed - kInside * edge;
-  // way = b t - c t^2/2, the earlier time
+  const double change = speed - edge > 2 * margin ? speed - edge - margin : speed - kInside * edge;
+  // b t - c t^2/2 = change of speed, the earlier time
   const double b = std::fabs(a), c = a > 0 ? -j : j;
-  const double root = b * b - 2 * c * way;
-  return root >= 0 ? 2 * way / (b + std::sqrt(root)) : kNever;
+  const double root = b * b - 2 * c * change;
+  return root >= 0 ? 2 * change / (b + std::sqrt(root)) : kNever;
 }
 
 double LineForceLaw::friction(double F, double v) const noexcept {

@@ -1,5 +1,5 @@
 // The force that an actuator's line transmits: pressure force less friction plus end stops. One code for mechanics,
-// hydraulics and the monolith, so that all three feel the same cylinder.
+// hydraulics and the monolith, so that all three use the same cylinder.
 //
 //   F_line = F - F_mu + F_stop                                                                     (1)
 //   F_mu   = (|F| (1 - eta) f(|v|) + F_seal min(|v| / v_seal, 1)) sgn(v) + c_v v                   (2)
@@ -38,7 +38,7 @@ struct LineForce {
   double d_pressure = 1;  // dF_line/dF [-]
   double d_position = 0;  // dF_line/dx [N/m]
   double d_speed = 0;     // dF_line/dv [N s/m]
-  double stop = 0;        // of it, F_stop [N]
+  double stop = 0;        // F_stop, contained in force [N]
 };
 
 class LineForceLaw {
@@ -48,9 +48,9 @@ class LineForceLaw {
   [[nodiscard]] LineForce evaluate(double F, double x, double v) const noexcept;
   [[nodiscard]] double friction(double F, double v) const noexcept;    // F_mu of (2) [N]
   [[nodiscard]] double stop_force(double x, double v) const noexcept;  // F_stop of (3) [N]
-  // Time until a falling speed v with the acceleration a and its rate j [m/s3] is just before the edge of the steep
-  // part of the friction about rest, or just behind it for a speed that is there [s]; infinite where it does not get
-  // there or where there is no such part.
+  // Time [s] until a falling speed v with the acceleration a and its rate j [m/s3] is just before the edge of the steep
+  // part of the friction about rest; for a speed at the edge, until just behind it. Infinite if the speed does not
+  // reach the edge or there is no steep part.
   [[nodiscard]] double time_to_rest(double v, double a, double j) const noexcept;
   [[nodiscard]] double friction_scale(double F) const noexcept;  // |F| (1 - eta) [N]
   [[nodiscard]] bool touches_stop(double x) const noexcept { return x < def_.stroke_min || x > def_.stroke_max; }
@@ -63,7 +63,7 @@ class LineForceLaw {
   struct Friction {
     double force, d_pressure, d_speed;
   };
-  // Of the friction curve, from `start` to the next one's.
+  // Segment of the friction curve, from `start` to that of the next one.
   struct Segment {
     double start, value, slope;  // m/s, 1, s/m
   };
@@ -80,11 +80,11 @@ class LineForceLaw {
   bool has_friction_;
 };
 
-// One node of the machine's stiffest iteration, several ten times a millisecond: all of it in line.
+// Evaluated in the machine's stiffest iteration, several ten times a millisecond: all of it inline.
 
 inline LineForceLaw::Coefficient LineForceLaw::curve_at(double speed) const noexcept {
   if (segments_.empty()) return {0, 0};
-  // a speed stays in its segment for long: the same few comparisons each time
+  // a speed stays in its segment for many calls: the same few comparisons each time
   const Segment* segment = segments_.data();
   const Segment* const last = segment + segments_.size() - 1;
   if (speed >= last->start) return {last->value, 0};

@@ -62,7 +62,7 @@ void OwnPast::load(StateReader& bytes) noexcept {
   bytes.number(latest_);
   bytes.numbers(std::span<StepIndex>(steps_));
   bytes.numbers(values_);
-  // each step in its place, none older than what is remembered
+  // each step in its slot, none older than the history
   bool can_be = latest_ >= kNone && latest_ <= kLastStep;
   for (std::size_t i = 0; can_be && i < steps_.size(); ++i) {
     const StepIndex step = steps_[i];

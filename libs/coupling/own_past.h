@@ -1,8 +1,8 @@
-// What a subsystem held at the ports at the beginning of its last steps: its own coordinate and its copy of what the
-// partner states. A sample of step s that comes at step n is compared with the copy of step s, not of step n, and the
-// difference is carried to now (coupling study, section 6):
+// History of a subsystem's values at the ports at the beginning of its last steps: its own coordinate and its copy of
+// the partner's. A sample of step s that arrives at step n is compared with the copy at step s, not step n, and the
+// difference is applied to all later copies (coupling study, section 6):
 //   correction = sample - copy(s),  copy(k) += correction for all k from s to n                      (1)
-// Without (1) the way that the copy went since s would count as an error, and be taken back once more at every step.
+// Without (1) the displacement of the copy since s would count as an error, and be removed again at every step.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +14,13 @@
 
 namespace slew::coupling {
 
-// A partner's sample that is older than this is no longer compared with anything.
+// Greatest age of a partner's sample that is still compared.
 inline constexpr StepIndex kRememberedSteps = 128;
 
-// From here on a copy of the partner's model that is continued over the time t is good for little: omega t of the
-// fastest oscillation at the ports (study, section 6: unstable at about 0.6 for constant delays).
+// Validity limit of a copy of the partner's model continued over the time t: omega t of the fastest oscillation at the
+// ports (study, section 6: unstable at about 0.6 for constant delays).
 inline constexpr double kDegradedAbove = 0.5;
-// Up to here a session may work with samples that are always late (study, section 6: without friction 0.3 to 0.4).
+// Limit of omega t for a session whose samples are always late (study, section 6: without friction 0.3 to 0.4).
 inline constexpr double kMostLate = 0.3;
 
 class OwnPast {
@@ -28,7 +28,7 @@ class OwnPast {
   explicit OwnPast(std::size_t ports);
 
   void clear() noexcept;
-  // The beginning of step n, which is the latest from now on: two values by port.
+  // Records the beginning of step n, the latest step from now on: two values by port.
   void keep(StepIndex n, std::span<const double> first, std::span<const double> second) noexcept;
   [[nodiscard]] bool has(StepIndex n) const noexcept;
   // Pre-condition: has(n).
@@ -46,7 +46,7 @@ class OwnPast {
   std::size_t ports_;
   StepIndex latest_ = -1;
   std::vector<StepIndex> steps_;
-  std::vector<double> values_;  // by slot: first and second of each port
+  std::vector<double> values_;  // by slot: first and second value of each port
 };
 
 }  // namespace slew::coupling

@@ -2,9 +2,8 @@
 //
 //   value(n) = from + (to - from) min(1, (n - begin + 1) / steps)
 //
-// A handle is the owner's number for a parameter. A new change of the same parameter replaces the one under way and
-// begins at the value reached; so there is room for all changes when there is room for all parameters. Only the
-// constructor allocates.
+// A handle is the owner's number for a parameter. A new change of the same parameter replaces the current one and
+// begins at the value reached; so capacity for all parameters suffices for all changes. Only the constructor allocates.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +19,7 @@ namespace slew::coupling {
 
 class ParameterRamps {
  public:
-  // parameters: number of different handles that may come.
+  // parameters: greatest number of different handles.
   explicit ParameterRamps(std::size_t parameters) { ramps_.reserve(parameters); }
 
   // over: the target is reached after its whole steps, at least one.
@@ -36,7 +35,7 @@ class ParameterRamps {
     ramps_.push_back(ramp);
   }
 
-  // Calls set(handle, value) for every change under way; drops those that reached their target.
+  // Calls set(handle, value) for every current change; drops the changes that reached their target.
   template <typename Set>
   void apply(StepIndex n, Set&& set) noexcept {
     std::size_t kept = 0;
@@ -70,7 +69,7 @@ class ParameterRamps {
     bytes.count(ramps_.size(), ramps_.capacity());
     for (const Ramp& ramp : ramps_) visit(ramp, bytes);
   }
-  // is_handle(handle): whether the owner has such a parameter. Does not allocate.
+  // is_handle(handle): true if the owner has the parameter. Does not allocate.
   template <typename IsHandle>
   void load(StateReader& bytes, IsHandle&& is_handle) noexcept {
     std::size_t count = 0;

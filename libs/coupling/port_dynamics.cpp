@@ -11,26 +11,26 @@
 namespace slew::coupling {
 namespace {
 
-// instants of the stages' forces in a step, with which mean and slope of a force that is linear in time are exact:
+// instants of the stages' forces in a step that make mean and slope of a force linear in time exact:
 // (1 - gamma)(1 - t_1) gamma + gamma (1 - t_2) = 1/6 and (1 - gamma)(1 - t_1) + gamma (1 - t_2) = 1/2
 constexpr double kFirstOfLine = 1.0 / 3;
 constexpr double kEndOfLine = 0.90236892706218252;
 
-// A piecewise linear law needs one iteration per kink that is crossed. More are left for the halvings of two rows that
-// come to a jump at once.
+// A piecewise linear law needs one iteration per crossed kink. The rest is for bisections when two rows reach a jump at
+// once.
 constexpr int kMaxIterations = 80;
-// from here on the speed with the widest step is kept between its last two values with steps to either side, which ends
-// the cycles that narrow steep parts of a law can cause, such as friction about rest
+// iteration from which the speed with the widest step is bracketed by its last two values with steps to either side;
+// this ends cycles by narrow steep parts of a law, such as friction about rest
 constexpr int kBracketedAfter = 12;
-// A bracket that is this narrow, of the speed scale, holds a jump of its law, such as a stop's damping where it is
-// touched: no speed has a force that fits, so that the force is one between the two sides'.
+// Width of a bracket, in speed scales, below which it holds a jump of its law, such as a stop's damping at first touch:
+// no speed has a matching force, so the force is taken between those of the two sides.
 constexpr double kJumpWidth = 1e-9;
-constexpr double kNarrow = 1e-3;  // of the step that leads out of it
+constexpr double kNarrow = 1e-3;  // share of the step that leads out of the bracket
 // speeds are converged below this fraction of the speed scale: well under any physical resolution, above round-off
 constexpr double kRelativeTolerance = 1e-12;
 constexpr double kAbsoluteTolerance = 1e-15;
 
-// parts of micro-steps in a solve; beyond, what is left of a micro-step goes in one
+// limit of the parts of micro-steps in a solve; beyond it, the rest of a micro-step is one part
 constexpr int kMostTries = 512;
 
 }  // namespace
@@ -87,7 +87,7 @@ void PortDynamics::set_rows(std::size_t rows) noexcept {
   rows_ = rows;
 }
 
-// what the stages of one solve have in common
+// terms common to the stages of one solve
 void PortDynamics::prepare(double weight) noexcept {
   for (std::size_t i = 0; i < rows_; ++i) {
     const RowPartner& p = partner_[i];
@@ -125,8 +125,8 @@ void PortDynamics::forget_bracket(std::size_t row) noexcept {
   is_at_jump_[row] = 0;
 }
 
-// The answer lies beyond the present speed, to the side of the step. False where the bracket proves wrong because other
-// rows moved.
+// Moves the bracket: the solution lies beyond the present speed, in the direction of the step. False if the bracket is
+// wrong because other rows moved.
 bool PortDynamics::note_side(std::size_t row, double step) noexcept {
   if (is_at_jump_[row] != 0) return true;
   (step > 0 ? low_ : high_)[row] = v_stage_[row];
@@ -142,7 +142,7 @@ double PortDynamics::bracketed(std::size_t row, double step, double sway, double
   const double low = low_[row], high = high_[row], next = v_stage_[row] + step;
   const bool is_inside = low < next && next < high;
   if (is_at_jump_[row] != 0) {
-    // by the step itself: the speed has too few digits to tell forces in so narrow a bracket apart
+    // by the step itself: the speed has too few digits to separate forces in so narrow a bracket
     f_held_[row] += slope_[row] * step;
     const auto [least, most] = std::minmax(f_low_[row], f_high_[row]);
     if (!(least <= f_held_[row] && f_held_[row] <= most)) forget_bracket(row);
@@ -208,7 +208,7 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
     for (std::size_t i = 0; i < m; ++i) {
       const double step = residual_[i];
       const bool is_known = note_side(i, step);
-      // what the widest step is taken for must not throw the others out of theirs
+      // the change for the widest step must not move the other rows out of their brackets
       const bool is_thrown = is_known && std::isfinite(high_[i] - low_[i]) &&
                              !(low_[i] < v_stage_[i] + step && v_stage_[i] + step < high_[i]);
       if (is_at_jump_[i] != 0 || is_thrown || (is_known && i == widest)) {
@@ -239,7 +239,7 @@ void PortDynamics::add(double share, const Instant& at, std::span<const double> 
                        std::span<const double> pressure_force, std::span<const double> v) noexcept {
   for (std::size_t i = 0; i < rows_; ++i) {
     const bool has_partner = partner_[i].K != 0 || partner_[i].F_dot != 0;
-    const double time = at.is_at_stop ? at.of_way : has_partner ? at.of_stage : at.of_line;
+    const double time = at.is_at_stop ? at.of_displacement : has_partner ? at.of_stage : at.of_line;
     f_mean_[i] += share * f[i];
     f_slope_[i] += share * (time - 0.5 * h_) * f[i];
     work_[i] += share * pressure_force[i] * v[i];
@@ -294,8 +294,8 @@ bool PortDynamics::try_stages(const Span& span, RowLaws& laws, PortStep& report)
   move(report);
   report.meets_stop = report.meets_stop || is_at_stop;
   const bool all = is_at_stop || is_at_stop_;
-  const auto instant = [&](double of_stage, double of_line, double of_way) {
-    return Instant{of_stage, span.begin + of_line * span.length, span.begin + of_way * span.length, all};
+  const auto instant = [&](double of_stage, double of_line, double of_displacement) {
+    return Instant{of_stage, span.begin + of_line * span.length, span.begin + of_displacement * span.length, all};
   };
   add((1 - kGamma) * span.length, instant(span.first, kFirstOfLine, 1 - 2 * kGamma), f_first_, pressure_first_,
       v_first_);

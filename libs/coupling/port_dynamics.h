@@ -11,12 +11,12 @@
 // force is the one between its two sides that holds the speed at the jump. Friction slopes of 4e4 1/s and end stops are
 // thus inside the implicit solve, while the mechanism itself sees only the mean and the slope in time of f.
 //
-// The second stage begins where the first one's acceleration leads, 2.4 times as far: behind a stop that only pushes,
-// which then lets go of what it has just stopped at up to 1.4 times its speed. A micro-step in which a stop begins or
-// ends to push is therefore taken in parts, ever shorter ones towards the event, and the shortest one with it by
+// The second stage extrapolates the first one's acceleration by a factor of 2.4: behind a stop that only pushes, this
+// would release a row that was just stopped at up to 1.4 times its speed. A micro-step in which a stop begins or ends
+// to push is therefore taken in parts, ever shorter towards the event. The shortest part, with the event, uses
 //   implicit Euler:  x_1 = x_0 + h v_1,  v_1 = v_0 + h (a_free + W f_1)                            (3)
-// which never leaves a stop with energy that its spring did not hold. While a stop's spring throws back, parts are
-// short against its swing, omega = sqrt(k W_ii); one that is faster than the shortest part loses its rebound.
+// which adds no energy at a stop beyond that of its spring. While a stop's spring throws back, parts are short against
+// its oscillation, omega = sqrt(k W_ii); a stop faster than the shortest part loses its rebound.
 #pragma once
 
 #include <cstddef>
@@ -44,7 +44,7 @@ struct RowForce {
   double d_z = 0;    // 1
   double d_x = 0;    // N/m
   double d_v = 0;    // N s/m
-  double stop = 0;   // of it, the push of a stop [N]
+  double stop = 0;   // push of a stop, contained in force [N]
 };
 
 // The rows' force laws; row i depends on its own z, x, v only.
@@ -52,7 +52,7 @@ class RowLaws {
  public:
   virtual ~RowLaws() = default;
   [[nodiscard]] virtual RowForce evaluate(std::size_t row, double z, double x, double v) const noexcept = 0;
-  // Of the first `rows` rows at once.
+  // The first `rows` rows at once.
   virtual void evaluate_all(std::size_t rows, const double* z, const double* x, const double* v,
                             RowForce* force) const noexcept {
     for (std::size_t row = 0; row < rows; ++row) force[row] = evaluate(row, z[row], x[row], v[row]);
@@ -68,20 +68,20 @@ class RowLaws {
   virtual void keep() noexcept {}
   virtual void go_back() noexcept {}
 
-  // Whether x is where a stop of this row can push.
+  // True if a stop of this row can push at x.
   [[nodiscard]] virtual bool is_at_stop(std::size_t /*row*/, double /*x*/) const noexcept { return false; }
 };
 
 struct PortStep {
-  double residual = 0;  // largest of all stages when they ended [m/s or rad/s]; NaN once a number was lost
+  double residual = 0;  // largest final residual of all stages [m/s or rad/s]; NaN after a non-finite value
   int iterations = 0;   // Newton iterations of all stages
   bool has_converged = true;
-  bool meets_stop = false;  // one pushed on the way
+  bool meets_stop = false;  // a stop pushed during the step
 };
 
 class PortDynamics {
  public:
-  // Starts with that many rows.
+  // capacity: number of rows at the start.
   explicit PortDynamics(std::size_t capacity);
 
   // Number of rows of the next sub-steps, at most the capacity; all inputs must be set again.
@@ -105,8 +105,9 @@ class PortDynamics {
   // micro_steps (the quadrature's)
   [[nodiscard]] std::span<const double> f_mean() const noexcept { return {f_mean_.data(), rows_}; }
   [[nodiscard]] std::span<const double> f_slope() const noexcept { return {f_slope_.data(), rows_}; }
-  [[nodiscard]] std::span<const double> work() const noexcept { return {work_.data(), rows_}; }        // of z [J]
-  [[nodiscard]] std::span<const double> impulse() const noexcept { return {impulse_.data(), rows_}; }  // of z [N s]
+  [[nodiscard]] std::span<const double> work() const noexcept { return {work_.data(), rows_}; }  // work of z [J]
+  // impulse of z [N s]
+  [[nodiscard]] std::span<const double> impulse() const noexcept { return {impulse_.data(), rows_}; }
 
  private:
   static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
@@ -122,11 +123,11 @@ class PortDynamics {
   void take_euler(const Span& span, RowLaws& laws, PortStep& report) noexcept;
   void set_weight(double weight, RowLaws& laws) noexcept;
   void keep_first() noexcept;
-  // When the force of a stage acts. of_stage: where the stage is, for rows with a partner; of_line: so that mean and
-  // slope of a force that is linear in time are exact, for friction that holds against what grows; of_way: so that they
-  // move the row as far as the stages did (x_1 has h^2 (2 gamma (1 - gamma) f_first + gamma^2 f_end)), at a stop.
+  // Time at which the force of a stage acts. of_stage: at the stage itself, for rows with a partner. of_line: makes
+  // mean and slope of a force linear in time exact, for friction that holds against a growing load. of_displacement:
+  // reproduces the displacement of the stages (x_1 has h^2 (2 gamma (1 - gamma) f_first + gamma^2 f_end)), at a stop.
   struct Instant {
-    double of_stage, of_line, of_way;  // s
+    double of_stage, of_line, of_displacement;  // s
     bool is_at_stop;
   };
   void add(double share, const Instant& at, std::span<const double> f, std::span<const double> pressure_force,
@@ -138,7 +139,7 @@ class PortDynamics {
   void evaluate_rows(double weight, const RowLaws& laws) noexcept;
   void forget_bracket(std::size_t row) noexcept;
   bool note_side(std::size_t row, double step) noexcept;
-  // sway: what the row's own force moves it by [m/s per N]
+  // sway: speed change of the row by its own force [m/s per N]
   double bracketed(std::size_t row, double step, double sway, double narrow) noexcept;
 
   std::size_t capacity_;
@@ -153,20 +154,20 @@ class PortDynamics {
   std::vector<RowForce> law_;
   std::vector<double> f_, slope_, f_mean_, f_slope_, work_, impulse_;
   std::vector<double> residual_, A_;
-  std::vector<double> low_, high_;       // speeds of the stage between which the iteration's answer lies
-  std::vector<double> f_low_, f_high_;   // forces there
-  std::vector<double> f_held_;           // force in a bracket that holds a jump
-  std::vector<double> last_step_;        // of the iteration, inside the bracket
-  std::vector<char> is_at_jump_;         // the bracket holds a jump
-  std::vector<double> k_x_, k_v_, k_z_;  // slopes of the first stage
-  std::vector<double> v_first_, f_first_, pressure_first_;  // of the first stage
+  std::vector<double> low_, high_;                          // speeds of the stage that bracket the iteration's solution
+  std::vector<double> f_low_, f_high_;                      // forces there
+  std::vector<double> f_held_;                              // force in a bracket that holds a jump
+  std::vector<double> last_step_;                           // last step of the iteration, inside the bracket
+  std::vector<char> is_at_jump_;                            // the bracket holds a jump
+  std::vector<double> k_x_, k_v_, k_z_;                     // slopes of the first stage
+  std::vector<double> v_first_, f_first_, pressure_first_;  // values of the first stage
   std::vector<RowForce> law_first_, law_start_;
   std::vector<char> jump_first_;
-  double h_ = 0;           // of the solve
-  double largest_a_ = 0;   // of weighted_a_
-  double swing_rate_ = 0;  // of the stops that push, squared [1/s2]
+  double h_ = 0;           // length of the solve [s]
+  double largest_a_ = 0;   // largest value of weighted_a_
+  double swing_rate_ = 0;  // squared rate of the stops that push [1/s2]
   double allowed_ = 0;     // length that a stop's swing allows [s]
-  int tries_left_ = 0;     // of parts
+  int tries_left_ = 0;     // remaining tries of parts
   bool is_at_stop_ = false;
   bool has_memory_ = false;
 };

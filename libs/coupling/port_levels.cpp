@@ -22,10 +22,10 @@ int choice(double value, int choices) noexcept {
 PortLevels::PortLevels(Level session, std::vector<Port> ports)
     : session_(session), first_session_(session), ports_(std::move(ports)), levels_(ports_.size()) {
   for (const Port& port : ports_) first_.push_back(port.level);
-  follow();
+  latch();
 }
 
-void PortLevels::follow() noexcept {
+void PortLevels::latch() noexcept {
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     const PortLevel own = ports_[i].level;
     levels_[i] = own == PortLevel::session ? session_ : level_of(own);
@@ -41,7 +41,7 @@ bool PortLevels::change(std::string_view path, double value) noexcept {
     const int level = choice(value, kLevels);
     if (level < 0) return false;
     session_ = static_cast<Level>(level);
-    follow();
+    latch();
     return true;
   }
   if (!path.ends_with(kKey)) return false;
@@ -51,7 +51,7 @@ bool PortLevels::change(std::string_view path, double value) noexcept {
     const int level = choice(value, kLevels + 1);
     if (level < 0) return false;
     port.level = static_cast<PortLevel>(level);
-    follow();
+    latch();
     return true;
   }
   return false;
@@ -60,7 +60,7 @@ bool PortLevels::change(std::string_view path, double value) noexcept {
 void PortLevels::reset() noexcept {
   session_ = first_session_;
   for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].level = first_[i];
-  follow();
+  latch();
 }
 
 void PortLevels::add_to(StateHash& hash) const noexcept {
@@ -80,7 +80,7 @@ void PortLevels::save(StateWriter& bytes) const {
 void PortLevels::load(StateReader& bytes) noexcept {
   bytes.choice(session_, Level::tlm);
   for (Port& port : ports_) bytes.choice(port.level, PortLevel::tlm);
-  follow();
+  latch();
 }
 
 }  // namespace slew::coupling

@@ -1,8 +1,8 @@
-// The coupling level of every port of a session, as each of its nodes keeps it.
+// The coupling level of every port of a session; each node keeps its own copy.
 //
 // A port has a level of its own or follows the session's. Levels change at step boundaries, by parameter changes that
 // all nodes apply at the same step: "session.coupling" (a Level) and "<port>.coupling" (a PortLevel). Both sides can
-// change at once because a sample means the same at every level: a level only says what a side does with it.
+// change at once because a sample has the same meaning at every level: a level only selects how a side uses it.
 #pragma once
 
 #include <cstddef>
@@ -27,21 +27,22 @@ class PortLevels {
   PortLevels(Level session, std::vector<Port> ports);
 
   [[nodiscard]] Level operator[](std::size_t port) const noexcept { return levels_[port]; }
-  // The first of the enum's order that any port has; the session's without ports.
+  // The lowest level of any port in the enum's order; without ports the session's.
   [[nodiscard]] Level lowest() const noexcept;
 
-  // True when the path is the session's or a port's and the value is one of its levels, by number. No allocation.
+  // Applies a change. True if the path is the session's or a port's and the value is the number of one of its levels.
+  // No allocation.
   bool change(std::string_view path, double value) noexcept;
-  // As they were at construction.
+  // Restores the levels of the construction.
   void reset() noexcept;
 
-  // What differs from the construction.
+  // Adds the differences from the construction.
   void add_to(StateHash& hash) const noexcept;
   void save(StateWriter& bytes) const;
   void load(StateReader& bytes) noexcept;
 
  private:
-  void follow() noexcept;
+  void latch() noexcept;
 
   Level session_, first_session_;
   std::vector<Port> ports_;

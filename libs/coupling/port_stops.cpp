@@ -7,14 +7,14 @@
 namespace slew::coupling {
 namespace {
 
-// Parts of a micro-step about a stop. The way into a spring and out of it in one part leaves (omega part)^2 / 2 of the
-// speed out: kTouch is a thousandth.
+// Parts of a micro-step about a stop. Entering and leaving a spring in one part omits (omega part)^2 / 2 of the speed:
+// kTouch is a thousandth.
 constexpr double kPart = 8;
 constexpr double kTouch = 0.05;
-constexpr double kLeast = 1.0 / 8192, kMost = 1.0 / 64;  // shortest part, of the micro-step
-// longest part in a swing, times omega: 1e-4 of the amplitude a part
+constexpr double kLeast = 1.0 / 8192, kMost = 1.0 / 64;  // bounds of the shortest part, in micro-steps
+// longest part in an oscillation, times omega: 1e-4 of the amplitude per part
 constexpr double kInSwing = 0.3;
-// damping ratio from which on a stop throws back less than 3 % of the speed
+// damping ratio above which a stop throws back less than 3 % of the speed
 constexpr double kMostDamping = 3;
 constexpr double kRounding = 1e-9;
 
@@ -51,19 +51,19 @@ void PortDynamics::take_in_parts(const Span& span, RowLaws& laws, PortStep& repo
         is_last = false;
         continue;
       }
-      // a spring that is still too stiff for the part throws back less than was put into it
+      // a spring that is still too stiff for the part returns less energy than it received
       report.has_converged &= !is_tried || length <= allowed_;
       take_euler(part, laws, report);
     }
     done += length;
     length *= 2;
   }
-  // of the parts to come
+  // length of the next parts
   set_weight(kGamma * span.length, laws);
 }
 
-// Whether the same stops pushed from the start to the end, and the step is short against the swing of one that throws
-// back.
+// True if the same stops pushed from the start to the end, and the step is short against the oscillation of a stop that
+// throws back.
 bool PortDynamics::follows_stops(const Span& span, const RowLaws& laws) noexcept {
   bool is_concerned = is_at_stop_;
   for (std::size_t i = 0; i < rows_; ++i) {
@@ -89,8 +89,8 @@ bool PortDynamics::follows_stops(const Span& span, const RowLaws& laws) noexcept
   return is_same && span.length <= allowed_;
 }
 
-// Of a stop that pushes at the start. It throws back what swings further than its place at rest in the spring is deep:
-// with the acceleration a,  sqrt(a^2 + (omega v)^2) >= |W f_stop - a|.
+// True if a stop that pushes at the start throws back: the amplitude of the oscillation exceeds the depth at rest in
+// the spring. With the acceleration a, sqrt(a^2 + (omega v)^2) >= |W f_stop - a|.
 double PortDynamics::longest_in_swing(std::size_t row, double time) const noexcept {
   const RowForce& law = law_start_[row];
   const double W = W_[row * rows_ + row], omega = std::sqrt(-law.d_x * W);

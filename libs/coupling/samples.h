@@ -1,4 +1,4 @@
-// What mechanics, hydraulics and flexible bodies tell each other once per communication step (coupling study, sections
+// Samples that mechanics, hydraulics and flexible bodies exchange once per communication step (coupling study, sections
 // 5, 8 and 10).
 //
 // A port is one actuator: x is its stroke [m] (piston position), F the pressure force that pushes the stroke open [N].
@@ -23,7 +23,7 @@ enum class MobilityKind : std::uint8_t {
   step      // rows with stiff laws behind the ports (joint friction, limits) condensed implicitly over H
 };
 
-// Mechanics to hydraulics.
+// Sample from mechanics to hydraulics.
 struct MechanismSample {
   PortArray x;       // stroke [m]
   PortArray v;       // speed [m/s]
@@ -39,11 +39,12 @@ struct MechanismSample {
   bool operator==(const MechanismSample&) const = default;
 };
 
-// Hydraulics to mechanics. F holds at (x_ref, v_ref), the hydraulics' own piston position and speed at t_n; near it
+// Sample from hydraulics to mechanics. F holds at (x_ref, v_ref), the hydraulics' own piston position and speed at t_n;
+// near it
 //   F' = F_dot - K (v - v_ref) - lambda (F - F_n),  line contribution -D (v - v_ref).
 struct ActuatorSample {
   PortArray F;               // pressure force pA AA - pB AB [N]
-  PortArray F_dot;           // under the signals that the coming tick is expected to have [N/s]
+  PortArray F_dot;           // under the signals expected for the next tick [N/s]
   PortArray K;               // oil-column stiffness, >= 0 [N/m]
   PortArray lambda;          // leakage of the spring, >= 0 [1/s]
   PortArray D;               // feed-through damping, >= 0 [N s/m]
@@ -58,8 +59,8 @@ struct ActuatorSample {
   bool operator==(const ActuatorSample&) const = default;
 };
 
-inline constexpr std::size_t kMaxFlexibleBodies = 32;  // with modes
-inline constexpr std::size_t kMaxModes = 128;          // of all of them together
+inline constexpr std::size_t kMaxFlexibleBodies = 32;  // limit of bodies with modes
+inline constexpr std::size_t kMaxModes = 128;          // limit of the modes of all bodies together
 inline constexpr std::size_t kMaxModePairs = 2048;     // sum of the squares of their modes
 
 using BodyArray = StaticVector<double, kMaxFlexibleBodies>;
@@ -67,7 +68,7 @@ using FrameArray = StaticVector<double, kMaxFlexibleBodies * 13>;
 using ModeArray = StaticVector<double, kMaxModes>;      // body after body, in the scene's order
 using ModePairs = StaticVector<double, kMaxModePairs>;  // body after body, m x m, row-major
 
-// Mechanics to flexible bodies: scheme A1 of the study, in which the mechanics owns the modal coordinates.
+// Sample from mechanics to flexible bodies: scheme A1 of the study, in which the mechanics owns the modal coordinates.
 struct FlexibleSample {
   ModeArray q;  // modal coordinates [m sqrt(kg)]
   ModeArray u;  // their rates
@@ -76,9 +77,10 @@ struct FlexibleSample {
   bool operator==(const FlexibleSample&) const = default;
 };
 
-// Flexible bodies to mechanics: the elastic force of the modes, damping included, near the place (q_ref, u_ref),
+// Sample from flexible bodies to mechanics: the elastic force of the modes, damping included, near the point (q_ref,
+// u_ref):
 //   Q - K (q - q_ref) - D (u - u_ref)
-// Of bodies that keep their states, condensed over the step (scheme B): the place is where they are, K = D = 0, and
+// For bodies that keep their states, condensed over the step (scheme B): the point is their own state, K = D = 0, and
 //   M = M_modes + H/2 D + H^2/4 K,   Q = -K (q_ref + H/2 u_ref) - D u_ref
 struct ElasticSample {
   ModeArray Q;      // [m sqrt(kg)/s2]
@@ -88,15 +90,15 @@ struct ElasticSample {
   ModeArray q_ref;  // [m sqrt(kg)]
   ModeArray u_ref;
   BodyArray strain_energy;   // at the mechanics' coordinates [J]
-  bool is_constant = false;  // K, D and the place hold for the whole session
+  bool is_constant = false;  // K, D and the point hold for the whole session
   bool operator==(const ElasticSample&) const = default;
 };
 
-// How a session's flexible bodies take part.
+// Scheme of a session's flexible bodies.
 enum class ElasticExchange : int {
-  once,        // their elastic forces are linear: stated at the start, nobody waits for them any more
-  every_step,  // stated anew at every step, about the mechanics' coordinates of that step
-  condensed    // the flexible side keeps its coordinates and states itself condensed over each step
+  once,        // linear elastic forces, published at the start; no node waits for later samples
+  every_step,  // published at every step, about the mechanics' coordinates of that step
+  condensed    // the flexible side keeps its coordinates and publishes them condensed over each step
 };
 
 void resize(MechanismSample& sample, std::size_t ports);

@@ -1,4 +1,4 @@
-// What the saved state of a subsystem belongs to.
+// Identity of the model that a saved state belongs to.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace slew::coupling {
 
-// Digest of the names of all variables, in their order, and of the choices that decide what the state consists of.
-// Numbers of a scene are not in it.
+// Digest of the names of all variables, in their order, and of the choices that determine the fields of the state. It
+// excludes the numbers of a scene.
 [[nodiscard]] inline std::uint64_t saved_model(std::span<const ElementVariable> variables,
                                                std::initializer_list<std::int64_t> choices) noexcept {
   StateHash hash;

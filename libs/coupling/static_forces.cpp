@@ -11,9 +11,9 @@ namespace slew::coupling {
 
 namespace {
 
-// a port's mobility is spent when so little of it is left beside the pivots before
+// share of the earlier pivots below which a port's remaining mobility counts as zero
 constexpr double kRankTolerance = 1e-10;
-// the accelerations that are left, relative to the largest free one
+// limit of the remaining accelerations, relative to the largest free one
 constexpr double kResidualTolerance = 1e-8;
 
 // W = L L^T by Cholesky with complete pivoting; L: m x r, row-major with m columns.
@@ -46,7 +46,7 @@ std::size_t factorise(std::span<const double> W, std::size_t m, PortMatrix& L) n
   return m;
 }
 
-// The shortest F of all with W F = b: F = L (L^T L)^-2 L^T b.
+// The F of least norm with W F = b: F = L (L^T L)^-2 L^T b.
 bool share_between_ports(const PortMatrix& L, std::size_t m, std::size_t rank, std::span<double> F) noexcept {
   PortArray z;
   z.resize(rank);

@@ -7,9 +7,9 @@
 
 namespace slew::coupling {
 
-// W: m x m, row-major, symmetric; a_free, F: m <= kMaxPorts. Where several actuators move the same coordinate the
-// shortest of all F is taken: equal cylinders side by side carry equal shares. False, and F is of no use, when no
-// forces hold the ports. Does not allocate.
+// W: m x m, row-major, symmetric; a_free, F: m <= kMaxPorts. Where several actuators move the same coordinate, the F of
+// least norm is taken: equal cylinders side by side carry equal shares. False, with F undefined, if no forces hold the
+// ports. Does not allocate.
 [[nodiscard]] bool static_forces(std::span<const double> W, std::span<const double> a_free,
                                  std::span<double> F) noexcept;
 

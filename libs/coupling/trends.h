@@ -1,4 +1,4 @@
-// What quantities that follow the motion will change by over the sub-step to come.
+// Expected change over the next sub-step of quantities that follow the motion.
 #pragma once
 
 #include <cstddef>
@@ -10,21 +10,22 @@
 
 namespace slew::coupling {
 
-// The change over the last sub-step goes on, limited to twice the one before it, and not where the two differ in sign
-// (the limiter of van Leer 1977, J. Comput. Phys. 23, 276): what changes smoothly is continued to second order, what
-// alternates from sub-step to sub-step is taken as it stands. Both are changes from the beginning of a sub-step to its
-// own end, under the inputs that were held in it: a jump between two sub-steps is in neither. Who changes an input, or
-// finds that one has changed, forgets.
+// The change over the last sub-step is continued, limited to twice the one before it, and dropped if the two differ in
+// sign (the limiter of van Leer 1977, J. Comput. Phys. 23, 276): a smooth change is continued to second order, an
+// alternating one gives no expected change. Both are changes from the beginning of a sub-step to its own end, under the
+// inputs held in it: neither contains a jump between two sub-steps. A caller that changes an input, or detects a
+// change, calls forget().
 class Trends {
  public:
   explicit Trends(std::size_t count) : last_(count) {}
 
-  // The value at the beginning of a sub-step; the change expected until its end. None before two sub-steps are known.
+  // Takes the value at the beginning of a sub-step; returns the expected change until its end, 0 for the first two
+  // sub-steps.
   [[nodiscard]] double begin(std::size_t index, double value) noexcept;
-  // The value at its end, less what is known to have come from elsewhere; of a sub-step that was not begun: nothing.
+  // Takes the value at its end, less changes from other known causes; ignored if the sub-step was not begun.
   void end(std::size_t index, double value) noexcept;
 
-  // Nothing is known any more of one, of all.
+  // Drops the history of one quantity, of all.
   void forget(std::size_t index) noexcept { last_[index] = {}; }
   void clear() noexcept { last_.assign(last_.size(), {}); }
 

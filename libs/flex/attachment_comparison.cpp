@@ -13,7 +13,7 @@
 namespace slew::flex {
 namespace {
 
-// of a square section one, two and three bending modes a plane
+// numbers of modes: for a square section one, two and three bending modes per plane
 constexpr std::size_t kLowest[] = {2, 4, 6};
 
 ReductionDef other_frame(const ReductionDef& def, const Source& source) {
@@ -85,8 +85,11 @@ std::string text_of(const AttachmentComparison& comparison) {
   if (!comparison.obstacle.empty())
     return fmt::format("\n  clamped beside free: not available, {}\n", comparison.obstacle);
   std::string text = fmt::format(
-      "\n  what modes of a clamped and of a free body frame reach of the compliance of node {} with node {} held\n"
-      "  modes           clamped x, y, z [%]     free x, y, z [%]\n",
+      "
+      share of the compliance of node {} with node {} held,
+      by modes of a clamped and of a free body frame
+          "
+          "  modes           clamped x, y, z [%]     free x, y, z [%]\n",
       comparison.tip, fmt::join(comparison.reference_nodes, ", "));
   for (const AttachmentShares& row : comparison.rows)
     fmt::format_to(std::back_inserter(text), "  {:<16}{:<24}{}\n", row.modes, text_of(row.clamped), text_of(row.free));

@@ -1,7 +1,7 @@
-// A body frame that is clamped beside one that is free: what the modes of each reach of the tip's static compliance.
+// Comparison of a clamped and a free body frame: share of the tip's static compliance by the modes of each.
 //
-// The other frame is made of the same nodes: a clamped body is set free with the clamped nodes as interfaces too, a
-// free one is clamped at its first interface node. Both are measured from the clamped nodes (tip_compliance.h).
+// The other frame uses the same nodes: a clamped body is set free with the clamped nodes as interfaces too, a free one
+// is clamped at its first interface node. Both are measured from the clamped nodes (tip_compliance.h).
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct AttachmentComparison {
   int tip = 0;                       // id
   std::vector<int> reference_nodes;  // ids
   std::vector<AttachmentShares> rows;
-  std::string obstacle;  // why there are no rows; else empty
+  std::string obstacle;  // reason for missing rows; else empty
 };
 
 // all: reduce(model, def). kept: ordinals; empty: all. Reduces the model a second time.

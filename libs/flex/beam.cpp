@@ -15,10 +15,10 @@ using math::Vec3;
 
 namespace {
 
-// below this sine a direction says nothing about the section's y axis
+// sine below which a direction does not define the section's y axis
 constexpr double kAlongElement = 1e-3;
 
-// four points of Gauss and Legendre on 0 to 1: exact to the seventh power, the integrals need the sixth
+// four points of Gauss and Legendre on 0 to 1: exact to the seventh power; the integrals need the sixth
 const std::array<std::array<double, 2>, 4> kGauss = [] {
   const double a = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(6.0 / 5)),
                b = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(6.0 / 5));
@@ -128,7 +128,7 @@ class Checker {
       add(path + ".y_axis", "it lies along the element", "a vector across it");
   }
 
-  // every node hangs on the first one
+  // checks that every node is connected to the first
   void check_connection() {
     std::vector<std::size_t> group(def_.nodes.size());
     std::iota(group.begin(), group.end(), std::size_t{0});
@@ -229,7 +229,7 @@ void assemble(FeModel& model, int n) {
     for (int j = 0; j < kElementFreedoms; ++j) {
       for (int i = 0; i < kElementFreedoms; ++i) {
         const int row = at[static_cast<std::size_t>(i)], column = at[static_cast<std::size_t>(j)];
-        // what has no entries of K is not to be coupled in its factors
+        // freedoms without entries of K must not be coupled in its factors
         const bool is_apart = (i >= kNodalFreedoms || j >= kNodalFreedoms) && block(i, j) == 0;
         if (row >= 0 && column >= 0 && !is_apart) to.emplace_back(row, column, block(i, j));
       }

@@ -36,7 +36,7 @@ struct BeamElementDef {
   int node1 = 0, node2 = 0;  // ids
   std::size_t section = 0;   // places in BeamDef
   std::size_t material = 0;
-  Triple y_axis{};  // any vector in the section's x-y plane on the side of +y; 0: BeamDef's
+  Triple y_axis{};  // any vector in the section's x-y plane on the side of +y; 0: that of BeamDef
 };
 
 enum class MassKind : int { consistent, lumped };
@@ -57,7 +57,7 @@ struct BeamDef {
 // Nodes with the ids 1 to count at equal distances on a line [m, body frame]. Pre-condition: count >= 2.
 [[nodiscard]] std::vector<BeamNodeDef> line_of_nodes(Triple start, Triple end, int count);
 
-// What is wrong, all of it where one fault does not hide another; empty: build_beam() takes it.
+// All problems, as far as one does not hide another; empty: build_beam() accepts the Def.
 [[nodiscard]] Problems check_beam(const BeamDef& def);
 
 // Throws InputError with all problems. Allocates.

@@ -21,7 +21,7 @@ double bubble_slope(double xi) noexcept {
 // freedoms of one plane: displacement and turn of node 1, of node 2
 using PlaneTerms = std::array<double, 4>;
 
-// where the planes' freedoms are among the element's twelve, and the sign of the turn (-ry in the x-z plane)
+// places of the planes' freedoms among the element's twelve, and the sign of the turn (-ry in the x-z plane)
 constexpr std::array<int, 4> kPlaneY = {1, 5, 7, 11}, kPlaneZ = {2, 4, 8, 10};
 constexpr std::array<double, 4> kTurnY = {1, 1, 1, 1}, kTurnZ = {1, -1, 1, -1};
 
@@ -123,7 +123,7 @@ double shear_number(double bending, double shear_factor, double shear_modulus, d
 
 std::array<bool, 6> internal_freedoms(const BeamElement& element, RotaryInertia rotary) noexcept {
   const bool is_with = rotary == RotaryInertia::with, y = element.phi_y > 0, z = element.phi_z > 0;
-  // turns without inertia stay zero: nothing drives them
+  // turns without inertia stay zero: no load drives them
   return {true, y, z, true, z && is_with, y && is_with};
 }
 
@@ -169,7 +169,7 @@ ElementStrain strain_at(const BeamElement& element, double xi) {
   stretch(0) = twist(3) = -1 / l;
   stretch(6) = twist(9) = 1 / l;
   put(bend_z, curvature(xi, l, element.phi_y), kPlaneY, kTurnY);
-  put(bend_y, curvature(xi, l, element.phi_z), kPlaneZ, kTurnZ, -1);  // of ry, not -ry
+  put(bend_y, curvature(xi, l, element.phi_z), kPlaneZ, kTurnZ, -1);  // curvature of ry, not -ry
   stretch(kMiddle + kUx) = twist(kMiddle + kRx) = bend_y(kMiddle + kRy) = bend_z(kMiddle + kRz) = bubble_slope(xi) / l;
   return {per_body_freedom<1>(stretch, element.axes), per_body_freedom<1>(twist, element.axes),
           per_body_freedom<1>(bend_y, element.axes), per_body_freedom<1>(bend_z, element.axes)};

@@ -7,7 +7,7 @@
 //             + [3 xi^2 - 2 xi^3 + phi xi] v2         + l [-xi^2 + xi^3 - phi/2 (xi-xi^2)] rz2               (2)
 //   (1+phi) rz = 6/l (xi^2-xi) v1 + [1 - 4 xi + 3 xi^2 + phi (1-xi)] rz1
 //              + 6/l (xi-xi^2) v2 + [-2 xi + 3 xi^2 + phi xi] rz2                                             (3)
-// with phi_y; in the x-z plane the same of w and -ry with phi_z; ux and rx are linear. Six internal freedoms add
+// with phi_y; in the x-z plane the same for w and -ry with phi_z; ux and rx are linear. Six internal freedoms add
 // 4 xi (1-xi) times themselves to ux, v, w, rx, ry, rz: without them shear, stretch and twist are constant along the
 // element, and its frequencies of second order only. The planes' four are there with shear deformation. A point (y, z)
 // of a section moves by
@@ -39,7 +39,7 @@ struct BeamElement {
   int id = 0;  // counted from 1
   std::size_t node1 = 0, node2 = 0;
   ElementFreedoms freedoms{};   // rows of the model: six of node 1, six of node 2, internal; -1: none
-  math::Vec3 start;             // of node 1 [m]
+  math::Vec3 start;             // position of node 1 [m]
   math::Mat3 axes;              // columns: local x, y, z
   double length = 0;            // l [m]
   double youngs_modulus = 0;    // E [Pa]
@@ -58,10 +58,10 @@ struct ElementField {
   Matrix3xElement axis, per_y, per_z;
 };
 
-// Whether sections that turn in bending move their points along the beam: rotary inertia.
+// Rotary inertia: whether sections that turn in bending move their points along the beam.
 enum class RotaryInertia : int { with, none };
 
-// Which of the six internal freedoms the element has.
+// The element's internal freedoms, of six possible ones.
 [[nodiscard]] std::array<bool, 6> internal_freedoms(const BeamElement& element, RotaryInertia rotary) noexcept;
 
 [[nodiscard]] ElementField field_at(const BeamElement& element, double xi, RotaryInertia rotary = RotaryInertia::with);

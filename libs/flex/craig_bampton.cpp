@@ -16,9 +16,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// w^2 of a rigid motion over the first elastic one: 1e-10 is what 20 elements leave, 1e-7 what 200 do
+// w^2 of a rigid motion over the first elastic one: rounding gives 1e-10 with 20 elements, 1e-7 with 200
 constexpr double kRigid = 1e-5;
-// modes beyond those asked for, so that a group of one frequency is seen whole before it is cut
+// modes beyond the requested ones, so that a group of one frequency is complete before it is cut
 constexpr int kSpareModes = 4;
 
 std::vector<std::size_t> nodes_of(const FeModel& model, const std::vector<int>& ids, const std::string& key) {
@@ -66,7 +66,7 @@ SparseMatrix block_of(const SparseMatrix& A, const std::vector<int>& rows, const
   return block;
 }
 
-// rank of the rigid motions in the rows: how many of the six they hold
+// rank of the rigid motions in the rows: number of the six that they hold
 int motions_held(const FeModel& model, const std::vector<int>& rows) {
   Eigen::Matrix<double, Eigen::Dynamic, 6> R = rigid_motions(model, model.nodes.front().position);
   double size = 0;
@@ -149,7 +149,7 @@ FixedInterface fixed_interface_modes(const FeModel& model, const Partition& p, c
   return out;
 }
 
-// (1): Phi^C; the first to need a stiff inside
+// (1): Phi^C; the first use of a stiff inside
 MatrixXd constraint_modes(const FeModel& model, const Partition& p) {
   return -solve_positive(block_of(model.K, p.interior, p.interior), MatrixXd(block_of(model.K, p.interior, p.boundary)),
                          model.name +
@@ -185,13 +185,13 @@ ReducedMatrices reduce_matrices(const FeModel& model, const Partition& p, const 
   return out;
 }
 
-// (3) of a free body: shifted by its own first elastic mode
+// (3) for a free body: shifted by its own first elastic mode
 Modes free_modes(const FeModel& model, const ReducedMatrices& reduced, CraigBampton& out) {
   if (reduced.K.rows() < 7)
     throw InputError(model.name +
                      ": a free body of six reduced freedoms has rigid motions only; expected more interface "
                      "nodes or fixed-interface modes");
-  // a rough one first: interfaces may have directions without any stiffness, so no single ratio will do
+  // begin with a rough shift: interfaces may have directions without stiffness, so no single ratio is sufficient
   const double shift = all_modes(reduced.K, reduced.M, 1e-3 * reduced.K.trace() / reduced.M.trace()).lambda[6];
   Modes modes = all_modes(reduced.K, reduced.M, shift);
   const double limit = kRigid * modes.lambda[6];

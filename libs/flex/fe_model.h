@@ -1,10 +1,10 @@
-// A linear finite element model: nodes, mass and stiffness, and what is known beyond the two matrices.
+// A linear finite element model: nodes, mass and stiffness, and optional data beyond the two matrices.
 //
 // All vectors and freedoms are in the axes of the body frame. A node has three translations, or these and three
 // rotations; its rows follow each other: ux uy uz [rx ry rz]. The internal freedoms of beam elements (beam_element.h)
 // come behind those of the nodes; rigid motions leave them zero.
-// Where the mass sits is known of our beams as samples: M = sum w N^T N, and every integral of rho over the solid is a
-// sum over the same samples, so that all of them are consistent with M. Of imported matrices only M is known.
+// Beams of this program have their mass as samples: M = sum w N^T N, and every integral of rho over the solid is a sum
+// over the same samples, so that all integrals are consistent with M. Imported matrices have M only.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -27,13 +27,13 @@ struct FeNode {
   int freedoms = 6;     // 3 or 6
 };
 
-// A share of the mass at a place of the reference configuration, or the second moment of a section about its axis.
+// A share of the mass at a point of the reference configuration, or the second moment of a section about its axis.
 struct MassSample {
-  double weight = 0;         // w: kg, > 0; of an offset kg m2
+  double weight = 0;         // w: kg, > 0; for an offset kg m2
   bool is_offset = false;    // true: position and N are per metre away from the axis, and linear integrals vanish
-  math::Vec3 position;       // m; of an offset a unit vector
+  math::Vec3 position;       // m; for an offset a unit vector
   ElementFreedoms freedoms;  // rows of the model that move it, -1: none
-  Matrix3xElement N;         // displacement of the place per freedom
+  Matrix3xElement N;         // displacement of the point per freedom
 };
 
 struct FeModel {
@@ -42,7 +42,7 @@ struct FeModel {
   std::vector<FeNode> nodes;
   SparseMatrix M;  // kg, kg m, kg m2
   SparseMatrix K;  // N/m, N, N m
-  // columns: the first directions for modes that share a frequency; of a beam its first section's x, y, z
+  // columns: preferred directions for modes that share a frequency; for a beam its first section's x, y, z
   math::Mat3 axes = math::Mat3::identity();
   std::vector<MassSample> samples;    // empty: imported
   std::vector<BeamElement> elements;  // empty: imported
@@ -51,10 +51,10 @@ struct FeModel {
   [[nodiscard]] bool is_beam() const noexcept { return !elements.empty(); }
 };
 
-// Index of the node with the id. Throws InputError that names the key which asked for it.
+// Index of the node with the id. Throws InputError that names the requesting key.
 [[nodiscard]] std::size_t find_node(const FeModel& model, int id, const std::string& key);
 
-// m; of the node that is farthest from the first one
+// m; distance of the farthest node from the first one
 [[nodiscard]] double extent(const FeModel& model);
 
 // freedoms x 6: displacements of the model moved as a rigid body, along x, y, z and about x, y, z of the body frame
@@ -68,7 +68,7 @@ struct RigidMass {
   math::Mat3 second;  // W0 = integral rho x x^T [kg m2]
 };
 
-// From R^T M R with the rigid motions R: what the matrices say, whatever else is known.
+// From R^T M R with the rigid motions R, by the matrices alone.
 [[nodiscard]] RigidMass rigid_mass(const FeModel& model);
 
 [[nodiscard]] math::Vec3 centre_of(const RigidMass& mass) noexcept;        // m

@@ -20,21 +20,21 @@ constexpr Field kBodyFields[] = {
     field<&FlexibleBodyDef::model>(
         "model", {.presence = Presence::required, .doc = "first part of the files' names; a name of the machine"}),
     field<&FlexibleBodyDef::prefix>(
-        "prefix", {.presence = Presence::required, .doc = "second part of the files' names; tells variants apart"}),
-    field<&FlexibleBodyDef::description>("description", {.doc = "what the body is"}),
+        "prefix", {.presence = Presence::required, .doc = "second part of the files' names; distinguishes variants"}),
+    field<&FlexibleBodyDef::description>("description", {.doc = "description of the body"}),
     field<&FlexibleBodyDef::material>(
-        "material", {.reference = "material", .doc = "of elements that name none; needed where there are several"}),
+        "material", {.reference = "material", .doc = "default of the elements; required if there are several"}),
     field<&FlexibleBodyDef::section>(
-        "section", {.reference = "section", .doc = "of elements that name none; needed where there are several"}),
+        "section", {.reference = "section", .doc = "default of the elements; required if there are several"}),
     field<&FlexibleBodyDef::y_axis>(
         "y_axis", {.doc = "a vector in the x-y plane of the sections, on the side of +y; along an element that lies in "
                           "its direction the body's z is taken"}),
     field<&FlexibleBodyDef::mass_matrix>(
         "mass_matrix", {.choices = kMassMatrices, .doc = "consistent with the deflections, or lumped at the nodes"}),
-    field<&FlexibleBodyDef::rotary_inertia>("rotary_inertia",
-                                            {.choices = kRotaryInertias,
-                                             .doc = "of the sections in bending; none for comparison with Euler's "
-                                                    "beam: the frame keeps the inertia of the solid"}),
+    field<&FlexibleBodyDef::rotary_inertia>(
+        "rotary_inertia", {.choices = kRotaryInertias,
+                           .doc = "rotary inertia of the sections in bending; none for comparison with Euler's "
+                                  "beam: the frame keeps the inertia of the solid"}),
 };
 
 constexpr Field kMaterialFields[] = {
@@ -89,9 +89,10 @@ constexpr Field kHollowRectangleFields[] = {
     kWidth,
     kHeight,
     required_of_section<&SectionDef::wall>("wall", Dimension::length, "thickness of the walls normal to y"),
-    field<&NamedSection::section, &SectionDef::flange>(
-        "flange",
-        {.dimension = Dimension::length, .range = kNotNegative, .doc = "thickness of those normal to z; 0: as wall"}),
+    field<&NamedSection::section, &SectionDef::flange>("flange",
+                                                       {.dimension = Dimension::length,
+                                                        .range = kNotNegative,
+                                                        .doc = "thickness of the walls normal to z; 0: as wall"}),
     kShear,
     kShearFactor,
     kShearFactorY,
@@ -135,7 +136,7 @@ constexpr Field kStressPointFields[] = {
     field<&StressPointDef::torsion_modulus>("torsion_modulus",
                                             {.dimension = Dimension::volume,
                                              .range = kNotNegative,
-                                             .doc = "torque over its shear stress there; 0: shear is not asked for"}),
+                                             .doc = "torque over its shear stress at the point; 0: no shear stress"}),
 };
 
 constexpr Field kLineFields[] = {
@@ -155,8 +156,8 @@ constexpr Field kNodeField = field<&BeamNodeDef::position>(
 constexpr Field kElementFields[] = {
     field<&ElementChainDef::through>(
         "through", {.presence = Presence::required, .doc = "numbers of the nodes that the elements join one by one"}),
-    field<&ElementChainDef::section>("section", {.reference = "section", .doc = "name; without it the body's"}),
-    field<&ElementChainDef::material>("material", {.reference = "material", .doc = "name; without it the body's"}),
+    field<&ElementChainDef::section>("section", {.reference = "section", .doc = "name; default: the body's"}),
+    field<&ElementChainDef::material>("material", {.reference = "material", .doc = "name; default: the body's"}),
     field<&ElementChainDef::y_axis>("y_axis", {.doc = "as the body's, of these elements; 0: the body's"}),
 };
 
@@ -168,8 +169,9 @@ constexpr Field kMatrixFileFields[] = {
     field<&MatrixFilesDef::nodes>(
         "nodes", {.presence = Presence::required, .doc = "table `id x y z freedoms` in the order of the rows"}),
     field<&MatrixFilesDef::units>(
-        "units", {.choices = kUnitNames,
-                  .doc = "of all three files: length_mass_time; _lbf_: pound-force, its mass lbf s2 over the length"}),
+        "units",
+        {.choices = kUnitNames,
+         .doc = "units of all three files: length_mass_time; _lbf_: pound-force, its mass lbf s2 over the length"}),
 };
 
 constexpr Field kReductionFields[] = {
@@ -178,7 +180,7 @@ constexpr Field kReductionFields[] = {
     field<&BodyReductionDef::clamped_nodes>("clamped_nodes", {.doc = "numbers; none: the first node"}),
     field<&BodyReductionDef::interface_nodes>(
         "interface_nodes",
-        {.doc = "numbers, where loads are exact; none: the last node, free: the first and the last"}),
+        {.doc = "node numbers with exact response to loads; none: the last node, free: the first and the last"}),
     field<&BodyReductionDef::fixed_interface_modes>(
         "fixed_interface_modes", {.range = kModeCount, .doc = "modes of the inside with the interfaces held"}),
     field<&BodyReductionDef::stiffening>(

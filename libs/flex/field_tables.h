@@ -1,4 +1,4 @@
-// Field tables of a described flexible body: what its file may say, part by part.
+// Field tables of a described flexible body, for the parts of its file.
 #pragma once
 
 #include <span>
@@ -17,17 +17,17 @@ struct SectionType {
   std::span<const Field> fields;
 };
 
-[[nodiscard]] std::span<const Field> body_fields() noexcept;          // of FlexibleBodyDef, its single values
-[[nodiscard]] std::span<const Field> material_fields() noexcept;      // of NamedMaterial
+[[nodiscard]] std::span<const Field> body_fields() noexcept;          // fields of FlexibleBodyDef, its single values
+[[nodiscard]] std::span<const Field> material_fields() noexcept;      // fields of NamedMaterial
 [[nodiscard]] std::span<const SectionType> section_types() noexcept;  // in the order of SectionShape
-[[nodiscard]] std::span<const Field> stress_point_fields() noexcept;  // of StressPointDef
-[[nodiscard]] std::span<const Field> line_fields() noexcept;          // of NodeLineDef
+[[nodiscard]] std::span<const Field> stress_point_fields() noexcept;  // fields of StressPointDef
+[[nodiscard]] std::span<const Field> line_fields() noexcept;          // fields of NodeLineDef
 [[nodiscard]] const Field& node_field() noexcept;                     // position of a BeamNodeDef
-[[nodiscard]] std::span<const Field> element_fields() noexcept;       // of ElementChainDef
-[[nodiscard]] std::span<const Field> matrix_file_fields() noexcept;   // of MatrixFilesDef
-[[nodiscard]] std::span<const Field> reduction_fields() noexcept;     // of BodyReductionDef
+[[nodiscard]] std::span<const Field> element_fields() noexcept;       // fields of ElementChainDef
+[[nodiscard]] std::span<const Field> matrix_file_fields() noexcept;   // fields of MatrixFilesDef
+[[nodiscard]] std::span<const Field> reduction_fields() noexcept;     // fields of BodyReductionDef
 
-// Keys that describe a beam, which imported matrices have no use for.
+// Keys that describe a beam, without effect on imported matrices.
 [[nodiscard]] std::span<const std::string_view> beam_keys() noexcept;
 
 }  // namespace slew::flex

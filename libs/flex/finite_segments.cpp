@@ -14,7 +14,7 @@ using math::Vec3;
 
 namespace {
 
-// nodes off the line over its length, and turns of the section between elements [rad]
+// tolerances: distance of nodes from the line over its length, and turns of the section between elements [rad]
 constexpr double kOnAxis = 1e-6;
 
 // The beam along s from its first end, piece by piece.
@@ -55,7 +55,7 @@ class Segmenter {
                                           [id](const auto& e) { return e.node1 == id || e.node2 == id; }));
   }
 
-  // from the end that comes first in the files to the other
+  // from the end that is first in the files to the other
   void order_pieces() {
     const auto end = std::find_if(from_.body.nodes.begin(), from_.body.nodes.end(),
                                   [&](const ReducedNode& node) { return elements_at(node.id) == 1; });

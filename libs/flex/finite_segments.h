@@ -29,15 +29,15 @@ struct SegmentLump {
   math::Mat3 inertia;  // kg m2 about the centre, body axes
 };
 
-// Entries of the stiffness that are not zero [N/m, N, N m/rad], of the far end's displacement and rotation seen from
-// the near end in the connector's axes.
+// Non-zero entries of the stiffness [N/m, N, N m/rad] for displacement and rotation of the far end relative to the near
+// end, in the connector's axes.
 struct ConnectorStiffness {
   double k11 = 0, k22 = 0, k33 = 0, k44 = 0, k55 = 0, k66 = 0;
   double k26 = 0, k35 = 0;
 };
 
 struct SegmentConnector {
-  std::size_t near = 0, far = 0;  // lumps; near is on the way to the root
+  std::size_t near = 0, far = 0;  // lumps; near is towards the root
   math::Mat3 axes;                // columns x from near to far, y, z; body frame
   double length = 0;              // m
   ConnectorStiffness K;
@@ -47,10 +47,11 @@ struct FiniteSegments {
   std::vector<SegmentLump> lumps;
   std::vector<SegmentConnector> connectors;  // each after the one that carries its near lump
   std::size_t root = 0;                      // lump of the node that the body frame is clamped to, else of the first
-  std::vector<std::size_t> lump_of;          // by node
+                                             // node
+  std::vector<std::size_t> lump_of;          // lump by node
 };
 
-// Pre-condition: segments >= 1. Throws InputError for what is not covered.
+// Pre-condition: segments >= 1. Throws InputError for models that are not covered.
 [[nodiscard]] FiniteSegments finite_segments(const Reduction& reduction, int segments);
 
 }  // namespace slew::flex

@@ -16,7 +16,7 @@
 namespace slew::flex {
 namespace {
 
-// place of the name in the list; of no name, of the only entry
+// place of the name in the list; without a name, that of the only entry
 template <typename Named>
 std::optional<std::size_t> place_of(const std::vector<Named>& all, const std::string& name) {
   if (name.empty()) return all.size() == 1 ? std::optional<std::size_t>(0) : std::nullopt;
@@ -30,7 +30,7 @@ bool is_id(double value) {
   return value >= 0 && value <= std::numeric_limits<int>::max() && value == std::floor(value);
 }
 
-// Appends what is wrong with a list of ids; true when it is sound.
+// Appends the problems of a list of ids; true if it is sound.
 bool check_ids(const std::string& path, const std::vector<double>& ids, Problems& problems) {
   const std::size_t before = problems.size();
   for (const double id : ids) {
@@ -60,7 +60,7 @@ SectionDef section_of(const NamedSection& named) {
   return def;
 }
 
-// A beam, and which entry of the description each of its elements is of.
+// A beam, and the entry of the description for each element.
 struct BeamOf {
   BeamDef beam;
   std::vector<std::size_t> chain;
@@ -106,7 +106,7 @@ class BodyChecker {
     const bool has_line = def_.line.nodes > 0;
     const int bodies = (has_line ? 1 : 0) + (def_.nodes.empty() ? 0 : 1) + (def_.matrices.is_given() ? 1 : 0);
     if (bodies != 1)
-      add("", bodies == 0 ? "nothing says where the body is" : "the body is described more than once",
+      add("", bodies == 0 ? "the geometry of the body is missing" : "the body is described more than once",
           "one of line, nodes and matrices");
     for (const NamedSection& section : def_.sections) check_shear(section);
     check_ids("reduction.clamped_nodes", def_.reduction.clamped_nodes, problems_);
@@ -162,11 +162,11 @@ class BodyChecker {
 
   void check_choice(const std::string& key, std::size_t count, bool is_open) {
     if (count > 1 && is_open)
-      add(key, fmt::format("there are {} {}s, and elements without a word on theirs", count, key),
+      add(key, fmt::format("there are {} {}s, and elements that name none", count, key),
           fmt::format("the name of one here, or one for every element", key));
   }
 
-  // the rules of beams, told in the words of the description
+  // the rules of beams, reported with the keys of the description
   void check_as_beam() {
     const BeamOf made = beam_of(def_);
     for (Problem problem : check_beam(made.beam)) {
@@ -196,7 +196,7 @@ class BodyChecker {
   Problems problems_;
 };
 
-// Ids that the model has, each once; returns them.
+// Checks that the model has the ids, each once; returns them.
 std::set<int> known_ids(const std::string& path, const std::vector<double>& ids, const FeModel& model,
                         Problems& problems) {
   std::set<int> known;

@@ -1,8 +1,7 @@
-// A flexible body as somebody describes it: materials and sections by name, nodes, elements, and how it is reduced.
+// Description of a flexible body: materials and sections by name, nodes, elements, and its reduction.
 //
-// Either a beam (a line of nodes, or nodes by id) or the matrices of another finite element code. From here to the
-// numbers: model_of() and reduction_of(), then reduce() of reduction.h. How it is written in a file:
-// docs/howto/flexible-model.md.
+// Either a beam (a line of nodes, or nodes by id) or the matrices of another finite element code. Conversion to
+// numbers: model_of() and reduction_of(), then reduce() of reduction.h. File format: docs/howto/flexible-model.md.
 #pragma once
 
 #include <cstdint>
@@ -24,15 +23,15 @@ struct NamedMaterial {
 
 struct StressPointDef {
   double y = 0, z = 0;         // m, from the centroid
-  double torsion_modulus = 0;  // m3; 0: shear stress is not asked for
+  double torsion_modulus = 0;  // m3; 0: no shear stress
 };
 
 struct NamedSection {
   std::string name;
   SectionDef section;
-  double shear_factor = 0;                         // along y and z; 0: Cowper's, of a given section rigid in shear
+  double shear_factor = 0;                         // along y and z; 0: Cowper's, for a given section rigid in shear
   double shear_factor_y = 0, shear_factor_z = 0;   // the same along one axis; 0: as shear_factor
-  std::vector<StressPointDef> stress_points = {};  // of a given section
+  std::vector<StressPointDef> stress_points = {};  // points of a given section
 };
 
 // Nodes with the ids 1 to `nodes` at equal distances.
@@ -44,9 +43,9 @@ struct NodeLineDef {
 // One element, or several in a row.
 struct ElementChainDef {
   std::vector<double> through;  // ids, two or more
-  std::string section;          // empty: FlexibleBodyDef's
+  std::string section;          // empty: that of FlexibleBodyDef
   std::string material;
-  Triple y_axis{};  // 0: FlexibleBodyDef's
+  Triple y_axis{};  // 0: that of FlexibleBodyDef
 };
 
 // Files of imported_model.h; not absolute: from the description's folder.
@@ -66,11 +65,11 @@ struct BodyReductionDef {
 };
 
 struct FlexibleBodyDef {
-  std::string model, prefix;  // of the files' names
+  std::string model, prefix;  // parts of the files' names
   std::string description;
   std::vector<NamedMaterial> materials;
   std::vector<NamedSection> sections;
-  std::string material;  // of elements that name none; may be empty where there is one
+  std::string material;  // default of the elements; may be empty if there is one
   std::string section;
   NodeLineDef line;
   std::vector<BeamNodeDef> nodes;         // without a line; the first is the root, the last the tip
@@ -82,17 +81,16 @@ struct FlexibleBodyDef {
   BodyReductionDef reduction;
 };
 
-// What is wrong, with paths as in a description ("sections.Box.wall", "elements[0].through",
-// "reduction.clamped_nodes"), all of it where one fault does not hide another. Of imported matrices only what is known
-// without them.
+// All problems, as far as one does not hide another, with paths as in a description ("sections.Box.wall",
+// "elements[0].through", "reduction.clamped_nodes"). Imported matrices are not read.
 [[nodiscard]] Problems check_flexible_body(const FlexibleBodyDef& def);
 
-// What the reduction asks of the model's nodes and freedoms; paths as above.
+// Problems of the reduction with the model's nodes and freedoms; paths as above.
 [[nodiscard]] Problems check_reduction(const FlexibleBodyDef& def, const FeModel& model);
 
-// folder: of the description. Throws InputError: as check_flexible_body() says, or from the import. Allocates.
+// folder: that of the description. Throws InputError: problems of check_flexible_body(), or of the import. Allocates.
 [[nodiscard]] FeModel model_of(const FlexibleBodyDef& def, const std::filesystem::path& folder);
-// Pre-condition: check_reduction() is content.
+// Pre-condition: check_reduction() found no problem.
 [[nodiscard]] ReductionDef reduction_of(const FlexibleBodyDef& def);
 
 }  // namespace slew::flex

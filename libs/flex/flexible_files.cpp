@@ -196,7 +196,7 @@ void check_name(const char* what, const std::string& name) {
         fmt::format("the {} '{}' cannot be part of a file's name; expected letters, digits, _ - .", what, name));
 }
 
-// What stands at the files' places may be replaced: files, and of no other model.
+// Checks that existing files may be replaced: regular files, not of another model.
 void check_places(const FlexibleFileSet& set) {
   for (const std::string& matrix : flexible_matrices()) {
     const auto file = flexible_file(set, matrix);
@@ -208,7 +208,7 @@ void check_places(const FlexibleFileSet& set) {
   try {
     if (std::filesystem::exists(source)) owner = owner_of(source);
   } catch (const InputError&) {
-    return;  // a damaged set is nobody's
+    return;  // a damaged set has no owner
   }
   if (owner && owner->shadows(set.model, set.prefix))
     refuse_file(source, 0, fmt::format("this is of model '{}', prefix '{}'", owner->model, owner->prefix),

@@ -16,7 +16,7 @@ using math::Vec3;
 
 namespace {
 
-// |K - K^T| over the largest element that a hand may leave
+// |K - K^T| over the largest element, tolerance for edited files
 constexpr double kSymmetric = 1e-12;
 
 Vec3 vector_at(const FlexibleTable& table, std::size_t column) {
@@ -32,7 +32,7 @@ class Reader {
   explicit Reader(const FlexibleFileSet& set) : files_(set) {}
 
   Reduction run() {
-    // a missing file is named before any content is judged
+    // a missing file is reported before any content is checked
     for (const std::string& matrix : flexible_matrices()) {
       const auto file = flexible_file(files_, matrix);
       if (!std::filesystem::exists(file))
@@ -130,7 +130,7 @@ class Reader {
 
   void read_nodes() {
     FlexibleTable table = open("Nodes");
-    table.expect_rows(static_cast<std::size_t>(out_.source.nodes), "as Source says");
+    table.expect_rows(static_cast<std::size_t>(out_.source.nodes), "as in Source");
     for (int i = 0; i < out_.source.nodes; ++i) {
       const auto& words = table.next();
       const int id = static_cast<int>(table.at().whole_of(words[0], 0));
@@ -241,7 +241,7 @@ class Reader {
     FlexibleTable table = open("Foreshortening");
     const std::size_t pairs = modes_ * modes_;
     const bool is_there = out_.source.stiffening == GeometricStiffening::straight_beam;
-    table.expect_rows(is_there ? (2 + out_.body.nodes.size()) * pairs : 0, "as stiffening of Source says");
+    table.expect_rows(is_there ? (2 + out_.body.nodes.size()) * pairs : 0, "the stiffening of Source");
     for (std::size_t p = 0; is_there && p < pairs; ++p) {
       take_pair(table, "G", 0, p);
       out_.body.G.push_back(vector_at(table, 4));
@@ -283,7 +283,7 @@ class Reader {
   void read_elements() {
     constexpr double kUnit = 1e-9;
     FlexibleTable table = open("Elements");
-    table.expect_rows(static_cast<std::size_t>(out_.source.elements), "as Source says");
+    table.expect_rows(static_cast<std::size_t>(out_.source.elements), "as in Source");
     for (int i = 0; i < out_.source.elements; ++i) {
       const auto& words = table.next();
       table.expect_whole(0, i + 1, "element");

@@ -7,7 +7,7 @@
 namespace slew::flex {
 namespace {
 
-// what stands behind key= in the header's word
+// value behind key= in the header's word
 std::string_view value_of(const TextLines& lines, const std::vector<std::string_view>& words, std::size_t i,
                           std::string_view key) {
   if (i < words.size() && words[i].size() > key.size() && words[i].starts_with(key)) return words[i].substr(key.size());
@@ -66,13 +66,13 @@ FlexibleTable::FlexibleTable(const std::filesystem::path& file, const std::strin
 
 void FlexibleTable::expect_rows(std::size_t rows, const std::string& because) const {
   if (rows_ != rows)
-    refuse_file(lines_.file(), 1, fmt::format("the header says {} rows", rows_), fmt::format("{}, {}", rows, because),
+    refuse_file(lines_.file(), 1, fmt::format("the header states {} rows", rows_), fmt::format("{}, {}", rows, because),
                 "the files do not belong together; write the set again");
 }
 
 void FlexibleTable::expect_columns(std::size_t columns, const std::string& because) const {
   if (columns_ != columns)
-    refuse_file(lines_.file(), 1, fmt::format("the header says {} columns", columns_),
+    refuse_file(lines_.file(), 1, fmt::format("the header states {} columns", columns_),
                 fmt::format("{}, {}", columns, because), "the files do not belong together; write the set again");
 }
 
@@ -96,7 +96,7 @@ const std::vector<std::string_view>& FlexibleTable::next() {
 }
 
 void FlexibleTable::end() {
-  if (next_row()) lines_.refuse(fmt::format("there are more rows than {}", rows_), "the number that the header says");
+  if (next_row()) lines_.refuse(fmt::format("there are more rows than {}", rows_), "the number in the header");
   if (!lines_.is_ended())
     refuse_file(lines_.file(), lines_.number(), "the last line has no end", "a file that ends with its last row",
                 "it may have been cut; write the set again");

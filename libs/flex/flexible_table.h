@@ -1,4 +1,4 @@
-// One file of a flexible set: its form, and a reader that keeps to it.
+// One file of a flexible set: its format, and a strict reader.
 #pragma once
 
 #include <cstddef>
@@ -18,13 +18,13 @@ inline constexpr int kFormatVersion = 2;
 struct TableForm {
   std::string what;
   std::size_t columns = 0;  // 0: text after a key
-  std::string units;        // by column, of several kinds of rows in the order of the names
-  std::string names;        // of the columns, for the reader's eye
+  std::string units;        // by column; several kinds of rows in the order of the names
+  std::string names;        // names of the columns, for readers
 };
 
 [[nodiscard]] TableForm form_of(const std::string& what, std::size_t modes);
 
-// Whose files these are: the row `files` of Source.
+// Owner of the files: the row `files` of Source.
 struct FileOwner {
   std::string model, prefix;
   // Another pair whose files have the same names.
@@ -33,10 +33,10 @@ struct FileOwner {
   }
 };
 
-// Empty where Source has no such row. Throws InputError when the file is no Source of this format.
+// Empty if Source lacks the row. Throws InputError if the file is no Source of this format.
 [[nodiscard]] std::optional<FileOwner> owner_of(const std::filesystem::path& source);
 
-// Reads row after row; throws InputError at the first that is not as the header or the form say.
+// Reads row after row; throws InputError at the first that violates the header or the format.
 class FlexibleTable {
  public:
   explicit FlexibleTable(const std::filesystem::path& file, const std::string& what);
@@ -44,18 +44,18 @@ class FlexibleTable {
   [[nodiscard]] const std::string& set() const noexcept { return set_; }
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
   [[nodiscard]] std::size_t columns() const noexcept { return columns_; }
-  // Counts of the header against what the other files ask for.
+  // Checks the counts of the header against those of the other files.
   void expect_rows(std::size_t rows, const std::string& because) const;
   void expect_columns(std::size_t columns, const std::string& because) const;
 
   // Words of the next row.
   [[nodiscard]] const std::vector<std::string_view>& next();
   [[nodiscard]] std::string_view line() const noexcept { return lines_.line(); }
-  // Throws when there is another row.
+  // Throws if another row follows.
   void end();
   [[nodiscard]] const TextLines& at() const noexcept { return lines_; }
   [[nodiscard]] double number(std::size_t column) const { return lines_.number_of(words_[column]); }
-  // A counted number that must be this one.
+  // Reads a counted number that must have this value.
   void expect_whole(std::size_t column, long value, const char* what) const;
   void expect_word(std::size_t column, std::string_view word) const;
 

@@ -22,7 +22,7 @@ constexpr double kStraight = 1e-9;
 // three points of Gauss and Legendre on 0 to 1: exact for the fourth power, which squared slopes have
 const std::array<std::array<double, 2>, 3> kGauss3 = {
     {{(1 - std::sqrt(0.6)) / 2, 5.0 / 18}, {0.5, 8.0 / 18}, {(1 + std::sqrt(0.6)) / 2, 5.0 / 18}}};
-// four of them for what is integrated again with the mass: exact to the seventh power
+// four of them for integrals with the mass: exact to the seventh power
 const std::array<std::array<double, 2>, 4> kGauss4 = [] {
   const double a = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(6.0 / 5)),
                b = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(6.0 / 5));
@@ -31,7 +31,7 @@ const std::array<std::array<double, 2>, 4> kGauss4 = [] {
       {{(1 - b) / 2, wb}, {(1 - a) / 2, wa}, {(1 + a) / 2, wa}, {(1 + b) / 2, wb}}};
 }();
 
-// Of the beam: the axis, and the elements in the order of the chain with whether each runs along the axis.
+// The beam: its axis, and the elements in the order of the chain with the direction of each.
 struct Chain {
   Vec3 e;
   std::vector<std::size_t> elements;
@@ -39,21 +39,21 @@ struct Chain {
 
 [[noreturn]] void refuse(const FeModel& model, const std::string& what) {
   throw InputError(
-      model.name + ": geometric stiffening was asked for, but " + what +
+      model.name + ": geometric stiffening was requested, but " + what +
       "; expected one straight chain of beam elements; switch it off, or model the body as several straight "
       "ones");
 }
 
 constexpr const char* kSeveralClamps =
-    "it is clamped at several nodes, which keep their distance and pull instead of shortening";
+    "it is clamped at several nodes, which keep their distance and cause tension instead of shortening";
 
 double along(const FeModel& model, Vec3 e, std::size_t node) {
   return dot(model.nodes[node].position - model.nodes.front().position, e);
 }
 
-// Fills the chain; the text says why there is none, else it is empty.
+// Fills the chain; returns the reason if there is none, else an empty text.
 std::string find_chain(const FeModel& model, Chain& chain) {
-  if (!model.is_beam()) return "the model is of imported matrices, which do not tell the slopes inside";
+  if (!model.is_beam()) return "the model has imported matrices, which lack the slopes inside";
   Vec3 farthest;
   for (const FeNode& node : model.nodes) {
     const Vec3 d = node.position - model.nodes.front().position;
@@ -142,7 +142,7 @@ class Shortener {
   }
 
  private:
-  // from the low end of the chain, whatever is clamped
+  // from the low end of the chain, for any clamping
   void integrate_nodes() {
     for (const std::size_t i : chain_.elements) {
       const BeamElement& element = model_.elements[i];
@@ -184,7 +184,7 @@ class Shortener {
   Chain chain_;
   std::size_t pairs_;
   std::vector<std::vector<double>> at_node_;  // integral from the low end to the node, by pair [1/(kg m)]
-  std::vector<double> reference_;             // the same where g vanishes
+  std::vector<double> reference_;             // the same at the place where g vanishes
 };
 
 }  // namespace

@@ -3,9 +3,9 @@
 // A section of a beam that keeps its length moves along the axis e by -1/2 times the integral of its squared slope.
 // With the slopes t_k (v', w' across e) of the modes' shape functions and s along e from the clamped node,
 //   g_kl(s) = -e integral_0^s t_k . t_l ds                                                            (1)
-// of a free body less its mean over the mass. This gives stiffening by rotation and by tension and softening up to
+// less its mean over the mass for a free body. This gives stiffening by rotation and by tension and softening up to
 // buckling (Euler's load) from loads and accelerations alone, for any motion of the frame.
-// Off the axis a point takes the g of its section: the second-order turn of sections is left out, as is the shortening
+// Off the axis a point takes the g of its section: the second-order turn of sections is neglected, as is the shortening
 // by torsion. Valid for slopes up to about 0.2. Source: Sharf 1995 (foreshortening against geometric stiffness);
 // Wallrapp & Schwertassek 1991. Card: docs/models/flex_integrals.md.
 #pragma once
@@ -23,7 +23,7 @@ namespace slew::flex {
 void add_foreshortening(const FeModel& model, const Eigen::MatrixXd& Phi, std::span<const int> clamped_nodes,
                         ReducedBody& body);
 
-// Why add_foreshortening() would refuse the model clamped at so many nodes; empty: it does not.
+// Reason why add_foreshortening() refuses the model clamped at so many nodes; empty: it accepts it.
 [[nodiscard]] std::string obstacle_to_foreshortening(const FeModel& model, std::size_t clamped_nodes);
 
 }  // namespace slew::flex

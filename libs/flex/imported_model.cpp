@@ -19,17 +19,17 @@ using math::Vec3;
 
 namespace {
 
-// |A - A^T| over the largest element: what eight printed digits leave
+// |A - A^T| over the largest element: rounding of eight printed digits
 constexpr double kSymmetricMatrix = 1e-7;
 // force of a rigid motion over that of its stiffest row: eight printed digits, and room for a fine mesh
 constexpr double kRigidForce = 1e-6;
-// masses in x, y and z
+// tolerance of the masses in x, y and z
 constexpr double kOneMass = 1e-6;
 // a pivot of K + shift M over its diagonal below this is not positive
 constexpr double kIndefinite = -1e-12;
-// added to the diagonal of M before its signs are counted: more than rounding leaves of a zero
+// added to the diagonal of M before its signs are counted: above the rounding of a zero
 constexpr double kLift = 1e-9;
-// a box thinner than this share of its length says nothing about density
+// share of its length below which a box is too thin to give a density
 constexpr double kFlat = 1e-3;
 // kg/m3 over the box around the nodes: below a balloon of foil, above the densest metal
 constexpr double kLightest = 1e-2, kDensest = 25000;
@@ -139,7 +139,7 @@ SparseMatrix reordered(const SparseMatrix& A, const Ordered& order) {
   return out;
 }
 
-// K R = 0: largest force over what the stiffness would give without cancelling
+// K R = 0: largest force over that of the stiffness without cancellation
 void check_rigid_motions(const FeModel& model) {
   const Eigen::Matrix<double, Eigen::Dynamic, 6> R = rigid_motions(model, model.nodes.front().position);
   constexpr const char* kMotions[6] = {"along x", "along y", "along z", "about x", "about y", "about z"};
@@ -160,7 +160,7 @@ void check_rigid_motions(const FeModel& model) {
         where = static_cast<int>(i);
       }
     }
-    // sums of few terms that cancel leave rounding of the largest row; compare with it too
+    // cancelling sums of few terms have the rounding of the largest row; compare with it too
     const double overall = *std::max_element(scale.begin(), scale.end());
     if (worst > kRigidForce && std::abs(force[static_cast<std::size_t>(where)]) > kRigidForce * kRigidForce * overall) {
       const auto node = std::find_if(model.nodes.begin(), model.nodes.end(),
@@ -179,7 +179,7 @@ void check_rigid_motions(const FeModel& model) {
   }
 }
 
-// mass over the box around the nodes: scaled lengths or masses of solid elements show in nothing else
+// mass over the box around the nodes: the only check that detects scaled lengths or masses of solid elements
 void check_density(const FeModel& model, double mass) {
   Vec3 low = model.nodes.front().position, high = low;
   for (const FeNode& node : model.nodes) {
@@ -196,7 +196,7 @@ void check_density(const FeModel& model, double mass) {
         model.name,
         fmt::format("{:.6g} kg in a box of {:.3g} x {:.3g} x {:.3g} m around the nodes", mass, box[0], box[1], box[2]),
         fmt::format("{} to {} kg/m3", kLightest, kDensest),
-        "say `units:` of the matrices, or give lengths in m, masses in kg, stiffness in N/m");
+        "set `units:` of the matrices, or give lengths in m, masses in kg, stiffness in N/m");
 }
 
 void check_mass(const FeModel& model) {
@@ -239,7 +239,7 @@ void check_mass_definite(const FeModel& model) {
            "check the signs of its elements off the diagonal");
 }
 
-// no motion without stiffness but the six, and none with negative stiffness or mass
+// only six motions without stiffness, and none with negative stiffness or mass
 void check_definite(const FeModel& model) {
   // between zero and the first elastic mode of most meshes: the stiffest motions are 1e7 to 1e10 above it
   const double shift = 1e-8 * model.K.diagonal().cwiseAbs().sum() / model.M.diagonal().cwiseAbs().sum();

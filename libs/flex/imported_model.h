@@ -4,12 +4,12 @@
 //   id x y z freedoms          whole number, m, m, m, 3 (ux uy uz) or 6 (ux uy uz rx ry rz)
 // after optional lines that begin with # and one optional line of names that begins with `id`. Units are SI, or those
 // of `units` (model_units.h), which turn positions and matrices into SI.
-// The model's nodes are those of the table in ascending id, whatever the order of the rows.
-// Checked, each with what was found and expected: square matrices of one size, that of the nodes' freedoms together;
-// symmetry; no negative stiffness or mass; K R = 0 for the six rigid motions R of the table, and no other motion
-// without stiffness; one mass in x, y and z; a radius of gyration within the extent of the nodes. These find matrices
-// with supports, and nodes in another order than the rows; lengths, wave speed and density (model_units.h) find those
-// in other units. Card: docs/models/flex_craig_bampton.md.
+// The model's nodes are those of the table in ascending id, for any order of the rows.
+// Checked, each with the found and the expected value: square matrices of one size, that of the nodes' freedoms
+// together; symmetry; no negative stiffness or mass; K R = 0 for the six rigid motions R of the table, and no other
+// motion without stiffness; one mass in x, y and z; a radius of gyration within the extent of the nodes. These find
+// matrices with supports, and nodes in another order than the rows; lengths, wave speed and density (model_units.h)
+// find those in other units. Card: docs/models/flex_craig_bampton.md.
 #pragma once
 
 #include <filesystem>
@@ -29,7 +29,7 @@ struct ImportDef {
 // Throws InputError. Allocates; factorises both matrices.
 [[nodiscard]] FeModel import_model(const ImportDef& def);
 
-// The same from matrices in memory; rows as `nodes` in their order, whose `first` is not read. Throws InputError.
+// The same from matrices in memory; rows in the order of `nodes`, whose `first` is ignored. Throws InputError.
 [[nodiscard]] FeModel model_of_matrices(const std::string& name, std::vector<FeNode> nodes, const SparseMatrix& M,
                                         const SparseMatrix& K, ModelUnits units = ModelUnits::m_kg_s);
 

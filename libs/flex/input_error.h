@@ -1,6 +1,6 @@
-// What was asked for or read cannot be used. One text: what happened; expected ...; what to do.
+// Error of a request or an input file. One text: what happened; expected ...; what to do.
 //
-// Thrown while a model is built, reduced, written or read; never from what runs in a step.
+// Thrown while a model is built, reduced, written or read; never within a step.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// A file cannot be written: not what was asked for is at fault, but the place.
+// A file cannot be written: the fault is the place, not the request.
 class OutputError : public InputError {
  public:
   using InputError::InputError;

@@ -1,17 +1,17 @@
 // The integrals of a reduced body over its material (reduced_body.h, equation 2), in reduced form from the start.
 //
-// With the mass samples of our beams, M = sum w N^T N: for a sample at x (offset samples stand for the second moments
-// of a section about its axis; they have no part in linear integrals)
+// With the mass samples of beams, M = sum w N^T N: for a sample at x (offset samples hold the second moments of a
+// section about its axis; they have no part in linear integrals)
 //   mass += w,  s0 += w x,  W0 += w x x^T,  C_k += w N phi_k,  Z_k += w x (N phi_k)^T,  Y_kl += w N phi_k (N phi_l)^T
 //   (1)
 // so that tr Y_kl = phi_k^T M phi_l to rounding, and for q = 0 the numbers are those of the solid.
-// Of imported matrices only M is known. With the rigid motions R, exact for any elements:
+// Imported matrices have M only. With the rigid motions R, exact for any elements:
 //   mass, s0, W0 and C_k and the skew part of Z_k from R^T M R and R^T M Phi                               (2)
 // and with m_ij, the mean of the three translational diagonals of the nodes' 3 x 3 block (M_ij = m_ij 1 for solid
 // elements)
 //   symmetric part of Z_k = sum m_ij sym(x_i phi_jk^T),   Y_kl = sum m_ij phi_ik phi_jl^T                  (3)
-// To the diagonal of Y_kl comes a third of what its trace misses of phi_k^T M phi_l, so that the modal mass is exact.
-// How far (3) is from M is told: MassDeviation. Card: docs/models/flex_integrals.md.
+// The diagonal of Y_kl gets a third of the difference between phi_k^T M phi_l and its trace, so that the modal mass is
+// exact. MassDeviation gives the deviation of (3) from M. Card: docs/models/flex_integrals.md.
 #pragma once
 
 #include "flex/fe_model.h"

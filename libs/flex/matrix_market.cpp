@@ -20,7 +20,7 @@ std::string lower(std::string_view word) {
   return out;
 }
 
-// whether the file is symmetric
+// true if the file is symmetric
 bool read_header(TextLines& lines) {
   if (!lines.next()) refuse_file(lines.file(), 0, "the file is empty", kHeader);
   const auto words = lines.words();
@@ -51,7 +51,7 @@ Sizes read_sizes(TextLines& lines) {
   if (words.size() != 3)
     lines.refuse(fmt::format("{} numbers in the line of sizes", words.size()), "rows columns entries");
   const Sizes sizes{lines.whole_of(words[0], 1), lines.whole_of(words[1], 1), lines.whole_of(words[2], 0)};
-  // what Eigen's indices hold
+  // limit of Eigen's indices
   if (std::max({sizes.rows, sizes.columns, sizes.entries}) > 1'000'000'000)
     lines.refuse("the sizes are out of range", "at most 1e9 each");
   return sizes;

@@ -1,8 +1,8 @@
 // Sparse matrices in Matrix Market files: coordinate, real (or integer), general or symmetric.
 //
-// A symmetric file holds the lower triangle. Comments (%) and blank lines may stand before the sizes; entries may
-// repeat, as the format says they must not: that is an error. Source: Boisvert, Pozo & Remington 1996 (NISTIR 5935).
-// Not covered: array (dense), complex, pattern, skew-symmetric and hermitian files; they are refused by name.
+// A symmetric file holds the lower triangle. Comments (%) and blank lines may stand before the sizes; repeated entries
+// are an error, as the format demands. Source: Boisvert, Pozo & Remington 1996 (NISTIR 5935). Not covered: array
+// (dense), complex, pattern, skew-symmetric and hermitian files; they are refused with their name.
 #pragma once
 
 #include <filesystem>

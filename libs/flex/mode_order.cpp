@@ -12,11 +12,11 @@ using math::Vec3;
 
 namespace {
 
-// relative distance of two w^2 that are one frequency but for rounding
+// relative distance below which two w^2 are one frequency, to rounding
 constexpr double kRepeated = 2e-8;
 // translations below this share of rotation times size are rounding
 constexpr double kNoTranslation = 1e-9;
-// components this close to the largest one count as large: the first node's is taken
+// components this close to the largest one count as equal: the first node's is taken
 constexpr double kEqual = 1e-6;
 
 Vec3 translation(const FeNode& node, const MatrixXd& Phi, Eigen::Index mode) {

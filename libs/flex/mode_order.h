@@ -1,4 +1,4 @@
-// One choice among the modes that mathematics leaves open: turns of modes that share a frequency, and signs.
+// Unique choice of modes: rotation within modes that share a frequency, and signs.
 #pragma once
 
 #include <vector>

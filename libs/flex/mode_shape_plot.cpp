@@ -16,9 +16,9 @@ constexpr double kTitle = 52;        // px above the panels
 constexpr double kGap = 16;          // px between panels
 constexpr double kHead = 30;         // px of a panel's caption
 constexpr double kLeft = 44;         // px left of a plot, for the plane's name
-constexpr double kAmplitude = 0.36;  // of a plane's height
+constexpr double kAmplitude = 0.36;  // share of a plane's height
 
-// what is drawn of the body: middle of its nodes, half of its length, and along which axis it is longest
+// frame of the drawing: middle of the nodes, half of the length, and the longest axis
 struct Frame {
   Vec3 middle;
   double half = 0;
@@ -53,14 +53,14 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-// What a mode is drawn by: displacements, or where none moves the turn about one axis as a height.
+// Drawing of a mode: displacements, or without any the turn about one axis as a height.
 struct Kind {
-  double largest = 0;    // of what is drawn
+  double largest = 0;    // largest drawn value
   int turns_about = -1;  // axis, or -1: displacements
   std::string words;
 };
 
-// along which axis the mode moves most, or that it turns about one
+// the axis of the largest displacement, or of the turn
 Kind kind_of(const ReducedBody& body, std::size_t mode, double size) {
   Vec3 moved, turned;
   double largest = 0, largest_turn = 0;

@@ -19,7 +19,7 @@ struct ModeShapePlotOptions {
   double panel_height = 230;  // px, 160 or more
 };
 
-// ordinals: counted from 1, in the order of the panels. Throws InputError for one that is not there.
+// ordinals: counted from 1, in the order of the panels. Throws InputError for one that does not exist.
 [[nodiscard]] std::string mode_shape_svg(const Reduction& reduction, std::span<const int> ordinals,
                                          const ModeShapePlotOptions& options = {});
 

@@ -37,10 +37,10 @@ Units units_of(ModelUnits units) {
   return kUnits[static_cast<std::size_t>(units)];
 }
 
-// What a model looks like in its own units.
+// Properties of a model in its own units.
 struct Look {
   double length = 0, mass = 0, wave_speed = 0;
-  double density = std::numeric_limits<double>::quiet_NaN();  // (3), of a line
+  double density = std::numeric_limits<double>::quiet_NaN();  // (3), for a line
 
   [[nodiscard]] Look in(const Units& u) const {
     return {length * u.length, mass * u.mass, wave_speed * u.length / u.time,
@@ -132,7 +132,7 @@ void to_si(ModelUnits units, FeModel& model) {
 void judge_units(const FeModel& model, ModelUnits stated) {
   const Look look = look_at(model);
   if (look.is_solid()) return;
-  // in the units that the matrices are in, whatever they were taken for
+  // in the original units of the matrices, for any stated units
   const Units taken = units_of(stated);
   const Look raw = look.in({1 / taken.length, 1 / taken.mass, 1 / taken.time});
   std::string fits;
@@ -144,7 +144,7 @@ void judge_units(const FeModel& model, ModelUnits stated) {
       "{}: in {} this is no solid: {}; expected {} to {} m/s, {} m to {} m{}; {}", model.name,
       kUnitNames[static_cast<std::size_t>(stated)], look.text(), kSlowest, kFastest, kShortest, kLongest,
       std::isnan(look.density) ? "" : fmt::format(", {} to {} kg/m3", kThinnest, kDensest),
-      fits.empty() ? "say `units:` of the matrices beside their files, or export them in m, kg, s" : "say " + fits));
+      fits.empty() ? "set `units:` of the matrices beside their files, or export them in m, kg, s" : "set " + fits));
 }
 
 }  // namespace slew::flex

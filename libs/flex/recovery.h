@@ -1,10 +1,10 @@
-// Stress of a flexible beam from its modal coordinates: matrices made once, evaluated without allocation.
+// Stress of a flexible beam from its modal coordinates: matrices built once, evaluated without allocation.
 //
 // At both ends of every element, at the points of its section, with the strains of the shape functions
 //   sigma = E (ux' - y rz' + z ry') = N/A + M_y z/Iyy - M_z y/Izz                                  (1)
 //   tau = G J rx'/W_t                        where the torsion modulus W_t is known                 (2)
 // linear in q. Shear stress of transverse forces is not covered, nor is stress by held modes: with few modes
-// deflections are good before stresses are. Imported models have none.
+// deflections are more accurate than stresses. Imported models have none.
 #pragma once
 
 #include <cstddef>
@@ -17,16 +17,16 @@ namespace slew::flex {
 
 struct StressPoint {
   int element = 0;         // counted from 1
-  int node = 0;            // id of the end
+  int node = 0;            // id of the node at the end
   double y = 0, z = 0;     // m, in the section
-  bool has_shear = false;  // whether (2) is known
+  bool has_shear = false;  // true if (2) is known
 };
 
 struct Recovery {
   std::size_t modes = 0;
   std::vector<StressPoint> points;
   std::vector<double> normal;  // points x modes, row-major [Pa/(m sqrt(kg))]
-  std::vector<double> shear;   // points x modes; 0 where it is not known
+  std::vector<double> shear;   // points x modes; 0 if unknown
 };
 
 [[nodiscard]] Recovery make_recovery(const FeModel& model, const Eigen::MatrixXd& Phi);

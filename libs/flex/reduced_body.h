@@ -1,4 +1,4 @@
-// A flexible body as its floating frame sees it: what a multibody formulation needs, as plain numbers.
+// A flexible body in its floating frame: the data of a multibody formulation, as plain numbers.
 //
 // In the axes of the body frame, the material point at x is at
 //   p(q) = x + sum_k phi_k(x) q_k + 1/2 sum_kl g_kl(x) q_k q_l                                       (1)
@@ -8,7 +8,7 @@
 //   C_k = integral rho phi_k,   Z_k = integral rho x phi_k^T,   Y_kl = integral rho phi_k phi_l^T
 //   G_kl = integral rho g_kl,   H_kl = integral rho x g_kl^T                                          (2)
 // Elastic force -K q, K = diag(omega^2). Tensor of inertia tr(W0) 1 - W0; modal mass tr(Y_kl) = 1 for k = l, else 0;
-// Y_lk = Y_kl^T, G and H are symmetric in k, l. Damping is not here: 2 zeta_k omega_k is the caller's choice.
+// Y_lk = Y_kl^T, G and H are symmetric in k, l. Damping is not included: the caller chooses 2 zeta_k omega_k.
 // Card: docs/models/flex_integrals.md.
 #pragma once
 
@@ -25,7 +25,7 @@ struct ReducedNode {
   int id = 0;
   math::Vec3 position;          // x [m]
   std::vector<math::Vec3> phi;  // by mode: translation [1/sqrt(kg)]
-  std::vector<math::Vec3> psi;  // by mode: rotation [rad/(m sqrt(kg))]; 0 at nodes of three freedoms
+  std::vector<math::Vec3> psi;  // by mode: rotation [rad/(m sqrt(kg))]; 0 at nodes with three freedoms
   std::vector<math::Vec3> g;    // by pair k m + l [1/(kg m)]; empty without foreshortening
 };
 
@@ -48,19 +48,19 @@ struct ReducedBody {
 };
 
 // The body with some of its modes. ordinals: counted from 1, each once, in any order; kept in ascending frequency.
-// Throws InputError for an ordinal that is not there or given twice.
+// Throws InputError for an ordinal that does not exist or is given twice.
 [[nodiscard]] ReducedBody select(const ReducedBody& body, std::span<const int> ordinals);
 
 // Ordinals of the modes with omega <= highest [rad/s].
 [[nodiscard]] std::vector<int> modes_up_to(const ReducedBody& body, double highest);
 
-// "1;2;5" -> 1, 2, 5. Throws InputError for what is no list of whole numbers.
+// "1;2;5" -> 1, 2, 5. Throws InputError if the text is no list of whole numbers.
 [[nodiscard]] std::vector<int> mode_list(std::string_view text);
 
 // Places in ascending order of the ordinals 1 to count. Throws as select() does.
 [[nodiscard]] std::vector<std::size_t> places_of(std::span<const int> ordinals, std::size_t count);
 
-// Index of the node. Throws InputError when there is none.
+// Index of the node. Throws InputError if there is none.
 [[nodiscard]] std::size_t find_node(const ReducedBody& body, int id);
 
 // 1/2 q^T K q [J]. q: by mode. No allocation.

@@ -1,4 +1,4 @@
-// From a finite element model to the reduced body: modes, integrals, shortening, recovery, and what it was made of.
+// From a finite element model to the reduced body: modes, integrals, shortening, recovery, and its origin.
 #pragma once
 
 #include <span>
@@ -21,7 +21,7 @@ struct ReductionDef {
   GeometricStiffening stiffening = GeometricStiffening::none;
 };
 
-// What a reduced body was made of; one line each, for files and reports.
+// Origin of a reduced body; one line each, for files and reports.
 struct Source {
   std::string model;
   std::string made_of;
@@ -34,21 +34,21 @@ struct Source {
   int interior_freedoms = 0;
   int fixed_interface_modes = 0;
   GeometricStiffening stiffening = GeometricStiffening::none;
-  MassDeviation deviation;  // of imported matrices from what the integrals assume
+  MassDeviation deviation;  // deviation of imported matrices from the assumption of the integrals
 };
 
 struct Reduction {
   Source source;
   ReducedBody body;
   Recovery recovery;
-  std::vector<UniformElement> elements;  // of beams, whichever modes are kept
+  std::vector<UniformElement> elements;  // elements of beams, for any selected modes
 };
 
 // All modes of the reduction: those of the interfaces and of the inside. Throws InputError as craig_bampton() and
 // add_foreshortening() do. Allocates.
 [[nodiscard]] Reduction reduce(const FeModel& model, const ReductionDef& def);
 
-// With some of the modes, as select() of reduced_body.h.
+// The reduction with some of the modes, as select() of reduced_body.h.
 [[nodiscard]] Reduction select(const Reduction& reduction, std::span<const int> ordinals);
 
 }  // namespace slew::flex

@@ -31,7 +31,7 @@ void add_compliance(ReductionReport& report, const TipCompliance& tip, const std
     report.compliance.push_back({"xyz"[a], tip.full[a], tip.share(kept)[a] * tip.full[a]});
 }
 
-// full: frequencies of the whole model, none when it is not there
+// full: frequencies of the whole model, none without it
 void add_modes(ReductionReport& report, const ReducedBody& body, const std::vector<std::size_t>& kept,
                const std::vector<double>& full) {
   for (std::size_t k = 0; k < body.modes(); ++k) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kNoTorsion = std::numeric_limits<double>::infinity();
 // terms of the series for rectangles: the last one left out is below 1e-9 of the sum
 constexpr int kLastTerm = 99;
-// Catalan's: the sum of (-1)^((n-1)/2)/n^2 over odd n, which converges too slowly to be summed
+// Catalan's constant: the sum of (-1)^((n-1)/2)/n^2 over odd n, which converges too slowly for summation
 constexpr double kCatalan = 0.915965594177219015;
 
 double cube(double x) {
@@ -164,14 +164,14 @@ class SectionChecker {
   void below(const char* key, double value, double bound, const std::string& why) {
     if (!is_content_ || value < bound) return;
     problems_.push_back({owner_ + '.' + key,
-                         fmt::format("{} m leaves nothing inside", value),
+                         fmt::format("{} m fills the inside", value),
                          fmt::format("less than {} m, {}", bound, why),
                          {}});
   }
   void factor(const char* key, const std::optional<double>& value) {
     if (value) positive(key, *value, "");
   }
-  // lengths that are numbers may have powers that are none
+  // finite lengths may have powers that overflow
   void quantities(const Section& section) {
     for (const double value :
          {section.area, section.second_moment_y, section.second_moment_z, section.torsion_constant}) {
@@ -216,7 +216,7 @@ void check_section(const std::string& owner, const SectionDef& def, Problems& pr
     check.positive("wall", def.wall, "m");
     check.positive("flange", flange, "m");
     const double room = def.shape == SectionShape::i_section ? def.width : def.width / 2;
-    check.below("wall", def.wall, room, "what the width has room for");
+    check.below("wall", def.wall, room, "the free width");
     check.below("flange", flange, def.height / 2, "half of the height");
   }
   check.factor("shear_factor_y", def.shear_factor_y);

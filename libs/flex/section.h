@@ -1,4 +1,4 @@
-// Cross-sections of beams: from dimensions, or from numbers that are known.
+// Cross-sections of beams: from dimensions, or from given numbers.
 //
 // y and z are the section's principal axes through its centroid, which is taken as the shear centre too.
 //   A = integral dA,  Iyy = integral z^2 dA,  Izz = integral y^2 dA                      exact for sharp corners
@@ -28,10 +28,10 @@
 
 namespace slew::flex {
 
-// Where stress is asked for.
+// Point of stress output.
 struct SectionPoint {
   double y = 0, z = 0;                    // m, from the centroid
-  std::optional<double> torsion_modulus;  // torque over shear stress there [m3], infinite where there is none
+  std::optional<double> torsion_modulus;  // torque over shear stress there [m3], infinite without shear stress
 };
 
 struct Section {
@@ -51,22 +51,22 @@ struct SectionDef {
   SectionShape shape = SectionShape::given;
   double width = 0;     // along y [m]: rectangles, flanges of I
   double height = 0;    // along z [m]: rectangles, I over all
-  double wall = 0;      // of tube, of the webs (normal to y) of hollow rectangle and I [m]
+  double wall = 0;      // wall of a tube, webs (normal to y) of hollow rectangle and I [m]
   double flange = 0;    // the walls normal to z [m]; 0 in a hollow rectangle: as wall
-  double diameter = 0;  // outer, of tube and solid circle [m]
+  double diameter = 0;  // outer diameter of tube and solid circle [m]
   // shape given: the numbers and points themselves; its shear factors default to 0
   double area = 0, second_moment_y = 0, second_moment_z = 0, torsion_constant = 0;
   std::vector<SectionPoint> points = {};
   Shear shear = Shear::timoshenko;
-  // instead of Cowper's [1], > 0
+  // replaces Cowper's [1], > 0
   std::optional<double> shear_factor_y = {}, shear_factor_z = {};
 };
 
-// Appends what is wrong, under owner.
+// Appends problems, under owner.
 void check_section(const std::string& owner, const SectionDef& def, Problems& problems);
 
-// poisson_ratio: -1 < nu < 0.5, of the material that the section is made of. Pre-condition: check_section is content.
-// Points: corners and middles of the sides (rectangles), tips of the flanges and middle of the web (I), four on the
+// poisson_ratio: -1 < nu < 0.5, of the section's material. Pre-condition: check_section found no problem. Points:
+// corners and middles of the sides (rectangles), tips of the flanges and middle of the web (I), four on the
 // circumference (round ones).
 [[nodiscard]] Section make_section(const SectionDef& def, double poisson_ratio);
 

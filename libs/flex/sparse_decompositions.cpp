@@ -26,7 +26,7 @@ constexpr int kSearches = 12;
 
 using Factor = Eigen::SimplicialLDLT<SparseMatrix<double>>;
 
-// y = (K + sigma M)^-1 x without the modes that are known already
+// y = (K + sigma M)^-1 x orthogonal to the modes found already
 class DeflatedInverse {
  public:
   using Scalar = double;
@@ -36,7 +36,7 @@ class DeflatedInverse {
 
   [[nodiscard]] Eigen::Index rows() const { return factor_.rows(); }
   [[nodiscard]] Eigen::Index cols() const { return factor_.cols(); }
-  void set_shift(double) {}  // the factor has it
+  void set_shift(double) {}  // the factor contains the shift
   void perform_op(const double* x, double* y) const {
     VectorXd right(rows());
     std::copy_n(x, rows(), right.data());
@@ -137,19 +137,19 @@ Modes lanczos_modes(const SparseMatrix<double>& K, const SparseMatrix<double>& M
     } catch (const std::exception& error) {
       throw InputError(
           fmt::format("the iteration for {} modes of {} freedoms failed: {}; expected a well-conditioned "
-                      "model; ask for fewer modes or solve dense",
+                      "model; request fewer modes or solve dense",
                       count, M.rows(), error.what()));
     }
     found = sorted(found, static_cast<int>(found.lambda.size()));
     if (static_cast<int>(found.lambda.size()) < count) continue;
-    // complete when as many modes are below the last one asked for as have been found there
+    // complete if the number of modes below the last requested one equals the number found
     const double bound = found.lambda[static_cast<std::size_t>(count) - 1] * (1 - 1e-6) - 1e-6 * shift;
     const auto below = std::count_if(found.lambda.begin(), found.lambda.end(), [&](double x) { return x < bound; });
     if (count_below(K, M, bound) <= below) return sorted(found, count);
   }
   throw InputError(
       fmt::format("the {} lowest modes of {} freedoms were not all found in {} searches; expected a "
-                  "well-conditioned model; ask for fewer modes or solve dense",
+                  "well-conditioned model; request fewer modes or solve dense",
                   count, M.rows(), kSearches));
 }
 

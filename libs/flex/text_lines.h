@@ -23,7 +23,7 @@ class TextLines {
   [[nodiscard]] std::string_view line() const noexcept { return line_; }
   [[nodiscard]] std::size_t number() const noexcept { return number_; }  // counted from 1
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
-  // Whether the file's last line has its end: a cut file seldom has.
+  // True if the file's last line has its end; rarely true for a cut file.
   [[nodiscard]] bool is_ended() const noexcept { return text_.empty() || text_.back() == '\n'; }
   // Words of the line between white space, commas and semicolons.
   [[nodiscard]] std::vector<std::string_view> words() const;

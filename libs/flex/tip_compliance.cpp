@@ -35,7 +35,7 @@ std::vector<int> rows_at(const FeModel& model, const std::vector<std::size_t>& n
   return rows;
 }
 
-// (1) by direction and mode; no rows when the reference nodes leave a rigid motion free
+// (1) by direction and mode; no rows if the reference nodes leave a rigid motion free
 MatrixXd seen_from(const FeModel& model, const ReducedBody& body, const std::vector<std::size_t>& reference,
                    std::size_t tip) {
   const Eigen::Matrix<double, Eigen::Dynamic, 6> R = rigid_motions(model, model.nodes[reference.front()].position);

@@ -1,4 +1,4 @@
-// A beam's elements as numbers by length: what finite segments are made of (finite_segments.h).
+// A beam's elements as numbers by length, for finite segments (finite_segments.h).
 #pragma once
 
 #include <vector>
@@ -22,7 +22,7 @@ struct UniformElement {
   math::Vec3 y;              // body axes
 };
 
-// Of imported matrices none.
+// The elements of a beam; none for imported matrices.
 [[nodiscard]] std::vector<UniformElement> uniform_elements(const FeModel& model);
 
 }  // namespace slew::flex

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPositionScale = 1e-3;  // m: at rtol 1e-4 an error of 0.1 um, a few newtons of oil spring
 constexpr double kSpeedScale = 0.1;      // m/s
-constexpr double kNearFloor = 2;         // of the pressure scale: where air makes oil soft
+constexpr double kNearFloor = 2;         // in pressure scales: range where air makes oil soft
 
 }  // namespace
 
@@ -60,7 +60,7 @@ Circuit::Circuit(const HydraulicsDef& def)
   ls_.assign(builder.ls_names().size(), 0);
   jacobian_.assign((at(size_) + ls_.size()) * at(size_), 0);
   moved_.assign(at(size_), 0);
-  way_.assign(actuators_.size(), 0);
+  displacement_.assign(actuators_.size(), 0);
   growth_.assign(at(volume_count()), 0);
   physical_.assign(at(size_), 0);
   kept_.assign(at(size_), 0);
@@ -118,7 +118,7 @@ void Circuit::order_ls_sources(const CircuitBuilder& builder) {
       if (component->name() == name) source.push_back(component.get());
     }
   }
-  // those whose inputs are all ordered already, until none is left; a validated chain has no loop
+  // take components whose inputs are all ordered, until none is left; a validated chain has no loop
   std::vector<char> is_ordered(source.size(), 0);
   while (ls_order_.size() < source.size()) {
     const std::size_t before = ls_order_.size();
@@ -254,7 +254,7 @@ void Circuit::capacities(const double* y, double* C) const noexcept {
   for (std::size_t i = 0; i < volume_name_.size(); ++i) C[i] = is_fixed_[i] ? 0 : capacity(i, y).value;
 }
 
-// a line's flow in place of the piston's
+// use a line's flow in place of the piston's
 void Circuit::add_line_flows(const double* y, Rates& sums) const noexcept {
   for (const LineChamber& line : lines_) {
     if (line.is_line)

@@ -4,7 +4,7 @@
 //   u_i' = sum Q_i / C_i,   C_i = sum_k V_k (kappa_oil(p_i) + 1/B_k(p_i))          free volumes          (1)
 //   u_i' = 0                                                                       fixed volumes         (2)
 //   x' = v;  v' = 0 here: the owner adds the pistons' accelerations                                      (3)
-// u is the pressure p; of a volume that cavitates it counts the vapour (vapour.h), and C_i is constant there.
+// u is the pressure p; in a cavitating volume it measures the vapour (vapour.h), and C_i is constant there.
 // V_k: hoses, rigid blocks, and chambers V_0 +- A x; kappa_oil in oil.h, wall moduli B_k by their component.
 // Sources: the flexible-body tutorial thesis (Saimaa UAS 2017), eq. 22 to 27 (lumped fluid theory). Not covered:
 // inertia of the oil, wave travel, temperature.
@@ -40,15 +40,15 @@ struct LiveParameter {
   std::size_t component = 0;
 };
 
-// What an equilibrium start asks of a volume that cannot hold it.
+// Demand of an equilibrium start beyond the limit of a volume.
 struct StartDemand {
-  int volume = 0, actuator = 0;  // the actuator that asks
+  int volume = 0, actuator = 0;  // the volume and the actuator with the demand
   double pressure = 0;           // Pa absolute
-  double limit = 0;              // Pa absolute: what the volume can hold
-  std::string_view valve;        // that lets the oil out above it; empty: none does
+  double limit = 0;              // Pa absolute: highest pressure that the volume can hold
+  std::string_view valve;        // valve that opens above the limit; empty: none
 };
 
-// What a volume without a relief or shock valve of its own is taken to hold: hoses and cylinders burst.
+// Limit assumed for a volume without a relief or shock valve of its own: hoses and cylinders burst.
 inline constexpr double kMostHeld = 1000e5;  // Pa absolute
 
 enum class ParameterResult { ok, unknown, out_of_range };
@@ -78,28 +78,29 @@ class Circuit {
   [[nodiscard]] bool is_fixed(int volume) const noexcept { return is_fixed_[static_cast<std::size_t>(volume)] != 0; }
   [[nodiscard]] int find_volume(std::string_view name) const noexcept;                 // -1: none
   [[nodiscard]] const std::vector<double>& scales() const noexcept { return scale_; }  // typical sizes of y
-  // 1, or 0 for positions; of states below zero 0 for volumes too: the size of a tension is no measure of its error
+  // 1, or 0 for positions; below zero 0 for volumes too: the size of a tension does not scale its error
   [[nodiscard]] const std::vector<double>& relatives() const noexcept { return relative_; }
   [[nodiscard]] const std::vector<double>& relatives_below_zero() const noexcept { return relative_below_zero_; }
-  [[nodiscard]] const math::SparsityPattern& pattern() const noexcept { return pattern_; }  // of jacobian()
+  // non-zero entries of jacobian()
+  [[nodiscard]] const math::SparsityPattern& pattern() const noexcept { return pattern_; }
   [[nodiscard]] double lowest_pressure() const noexcept { return oil_.lowest_pressure(); }
 
-  // start states [y without x and v, which the caller owns]
+  // start states [y without x and v; the caller sets those]
   // Equilibrium: linear cylinders hold F with the rod side at the return pressure, slew cylinders around their mean
   // pressure; when a pressure would fall below 1 bar the pair is raised. Volumes of parallel cylinders take the mean.
   void start_in_equilibrium(std::span<const double> F, std::span<double> y) const;
-  // The volume whose pressure there is farthest beyond what it can hold: above the pressure at which the relief and
-  // shock valves on it are fully open, above kMostHeld without any, or below zero. None: all hold.
+  // The volume whose start pressure exceeds its limit most: above the pressure at which its relief and shock valves are
+  // fully open, above kMostHeld without any, or below zero. None: all hold.
   [[nodiscard]] std::optional<StartDemand> demand_beyond_limits(std::span<const double> F) const;
   void start_at_initial_pressures(std::span<double> y) const;
-  // The start that the Def asks for.
+  // The start that the Def selects.
   void start(std::span<const double> F, std::span<double> y) const;
 
   // inputs
   [[nodiscard]] int find_control(std::string_view component) const noexcept;  // -1: none
   [[nodiscard]] std::span<const std::string> controls() const noexcept { return control_name_; }
   [[nodiscard]] std::span<const double> control_signals() const noexcept { return control_; }
-  // Those that move flows at once, not by a state such as a spool.
+  // Controls that act on flows at once, without a state such as a spool.
   [[nodiscard]] std::span<const int> flow_controls() const noexcept { return flow_controls_; }
   void set_control(int control, double signal) noexcept { control_[static_cast<std::size_t>(control)] = signal; }
   void set_line_force(int actuator, double F) noexcept { line_force_[static_cast<std::size_t>(actuator)] = F; }
@@ -112,8 +113,8 @@ class Circuit {
 
   // equations (1) to (3)
   void rates(const double* y, double* f) noexcept;
-  // One component's part of rates(), added to f, and of jacobian(), for who measures what each costs. Pre-condition:
-  // rates() was called at this y.
+  // One component's part of rates(), added to f, and of jacobian(), for measurements of cost. Pre-condition: rates()
+  // was called at this y.
   void add_rates_of(std::size_t component, const double* y, double* f) noexcept;
   void add_slopes_of(std::size_t component, const double* y) noexcept;
   // Jacobian of rates() at y, with f = rates(y); row-major, stride state_count(); valid until the next call.
@@ -136,36 +137,37 @@ class Circuit {
   void set_vapour_capacities(std::span<const double> C) noexcept;
   void save_vapour(StateWriter& bytes, const double* y) const;
   void load_vapour(StateReader& bytes, const double* y) noexcept;
-  void add_vapour_to(StateHash& hash, const double* y) const noexcept;  // of the volumes that cavitate at y
-  // Of a quasi-static volume: no, it stores nothing.
+  void add_vapour_to(StateHash& hash, const double* y) const noexcept;  // capacities of the volumes that cavitate at y
+  // False for a quasi-static volume, which has no storage.
   void take_up_vapour(int volume, bool does) noexcept;
 
   // Capacities C_i [m3/Pa] over the state; 0 for fixed volumes.
   void capacities(const double* y, double* C) const noexcept;
   // d ln C / dp of a volume that is not fixed [1/Pa]
   [[nodiscard]] double capacity_growth(int volume, const double* y) const noexcept;
-  // -dQ/dp of each volume at y, on the steeper side of switches.
+  // Slopes -dQ/dp of each volume at y, on the steeper side of switches.
   void outflow_slopes(const double* y, double* slope) noexcept;
   // rates(), outflow_slopes() and capacities() at once.
   void rates_and_outflow(const double* y, double* f, double* slope, double* C) noexcept;
-  // Oil of volumes that nothing but pistons and lines changed from y_before on, with rates f_before, to y, sets their
-  // states at y right: where air makes the oil soft, a method's error in a pressure is a large one in its oil. Near the
-  // floor only. pressures: int p dt over the sub-step of h seconds by line [Pa s]: what a line took from its volume.
+  // Corrects the states of volumes at y from their oil balance if only pistons and lines changed them since y_before
+  // (rates f_before): where air makes the oil soft, a small error of the pressure is a large error of the oil. Near the
+  // floor only. pressures: int p dt over the sub-step of h seconds by line [Pa s], which gives the oil taken by the
+  // line.
   void keep_closed_oil(double h, const double* y_before, const double* f_before, double* y,
                        std::span<const double> pressures) noexcept;
   // Moves the pistons to x_new and lets each pressure follow its chamber's change of volume, no oil lost:
-  // C du + A dx = 0, integrated over the way. False when a wave of a line had to be held at the lowest pressure.
+  // C du + A dx = 0, integrated over the displacement. False if a wave of a line was held at the lowest pressure.
   bool move_pistons(double* y, const double* x_new) noexcept;
 
-  // Chambers of an actuator as transmission lines (line_chambers.h), and back; the oil is kept. delay [s] is the
-  // communication step, the same until they are lumped again. Between them the volumes' pressures are those at the
+  // Converts the chambers of an actuator to transmission lines (line_chambers.h), and back; the oil is kept. delay [s]
+  // is the communication step, constant until they are lumped again. Meanwhile the volumes' pressures are those at the
   // lines' ends, and moving the pistons makes the lines consistent.
   void make_line(int actuator, double delay, const double* y) noexcept;
   void lump_line(int actuator, double* y) noexcept;
   [[nodiscard]] bool is_line(int actuator) const noexcept;
   // Ends a communication step; mean_pressure [Pa] of the volumes over it, by line.
   void end_line_step(const double* y, std::span<const double> mean_pressure) noexcept;
-  // What the lines will do to the piston in the next step, at rest.
+  // Force of the lines on the piston in the next step, at rest.
   [[nodiscard]] LineThrust line_thrust(int actuator, const double* y) const noexcept;
   [[nodiscard]] double line_capacity(const LineChamber& line, double p, double x) const noexcept;
   // Two chambers per actuator, A then B, lines or not.
@@ -173,12 +175,11 @@ class Circuit {
   [[nodiscard]] std::span<LineChamber> mutable_lines() noexcept { return lines_; }  // for tests
   void add_lines_to(StateHash& hash) const noexcept;
 
-  // All that changes here beside y: live parameters, signals, line forces and load-sensing pressures for display,
-  // lines.
+  // All state beside y: live parameters, signals, line forces and load-sensing pressures for display, lines.
   void save(StateWriter& bytes) const;
   void load(StateReader& bytes) noexcept;
 
-  // Holds the pressures of volumes without vapour at or above the lowest pressure; true when one had to be moved.
+  // Holds the pressures of volumes without vapour at or above the lowest pressure; true if one was changed.
   bool bound(double* y) const noexcept;
 
   // StepFlag bits that hold at y: cavitating, relief_open, limit_hit (a piston in its stop), clamp_active (a chamber
@@ -200,9 +201,9 @@ class Circuit {
     double value, d_pressure, content, oil;
   };
 
-  // A content whose volume or wall changes, with what is constant in it worked out.
+  // A content whose volume or wall changes, with its constant parts precomputed.
   struct Piece : Content {
-    double lumped = 1;  // share that belongs to the volume; the rest is a transmission line
+    double lumped = 1;  // share of the volume; the rest is a transmission line
     bool has_constant_wall = true;
     double wall_compressibility = 0;  // 1/Pa, when constant
 
@@ -224,11 +225,11 @@ class Circuit {
     std::size_t begin = 0, end = 0;  // in pieces_
   };
 
-  // Mean of the pressures that the actuators on a volume ask for, and how many do; absolute, of any size.
+  // Mean and number of the pressures that the actuators on a volume require; absolute, of any size.
   struct Asked {
     double sum = 0;
     int actuators = 0;
-    int last = 0;  // of them
+    int last = 0;  // last of the volume's actuators
     [[nodiscard]] double pressure() const noexcept { return sum / actuators; }
   };
   [[nodiscard]] std::vector<Asked> asked_in_equilibrium(std::span<const double> F) const;
@@ -238,7 +239,7 @@ class Circuit {
   void list_variables();
   void list_parameters();
   void evaluate_ls(const CircuitView& now) noexcept;
-  // y with the pressures of volumes that cavitate in the place of their u; y itself when none does.
+  // y with pressures in place of u for cavitating volumes; y itself without cavitation.
   [[nodiscard]] const double* physical(const double* y) noexcept;
   [[nodiscard]] CircuitView view(const double* y) noexcept {
     return {physical(y), control_.data(), ls_.data(), line_force_.data()};
@@ -280,7 +281,7 @@ class Circuit {
   StartState start_;
   double start_return_, start_slew_, start_pump_;
 
-  std::vector<Piece> pieces_;  // by volume
+  std::vector<Piece> pieces_;  // pieces, by volume
   std::vector<VolumeContent> volumes_;
   std::vector<std::size_t> with_chambers_;  // volumes that pistons change
   std::vector<LineChamber> lines_;          // two by actuator
@@ -307,7 +308,7 @@ class Circuit {
   std::vector<double> parameter_value_;
 
   // work space
-  std::vector<double> ls_, jacobian_, moved_, way_, growth_, physical_, kept_, kept_rates_;
+  std::vector<double> ls_, jacobian_, moved_, displacement_, growth_, physical_, kept_, kept_rates_;
   std::array<std::vector<double>, 4> slope_;  // stages of move_pistons()
 };
 

@@ -1,4 +1,4 @@
-// What a component may ask for while the circuit is built: positions of its ports, states, content, oil data.
+// Services for a component while the circuit is built: positions of its ports, states, content, oil data.
 #pragma once
 
 #include <limits>
@@ -24,15 +24,15 @@ struct Content {
   StateIndex volume_index = 0;
   double volume = 0;         // m3, at x = 0
   double slope = 0;          // m2, dV/dx
-  StateIndex position = -1;  // of x; -1: constant
+  StateIndex position = -1;  // position of x; -1: constant
   double smallest = 0;       // m3
   WallLaw wall = {};
 };
 
 // A cylinder as the power port sees it.
 struct Actuator {
-  std::string name;   // of the component
-  std::string force;  // force element that it drives
+  std::string name;   // name of the component
+  std::string force;  // driven force element
   StateIndex port_a = 0, port_b = 0;
   double area_a = 0, area_b = 0;   // m2; F = p_A area_a - p_B area_b
   PortCoordinate coordinate = {};  // x = offset + ratio * element coordinate
@@ -40,14 +40,14 @@ struct Actuator {
   StartRule start = StartRule::return_pressure;
 };
 
-// A valve that lets oil out of a volume whatever else is closed.
+// A valve that relieves a volume even if all other connections are closed.
 struct Relief {
   std::string valve;  // component
   StateIndex volume = 0, outlet = 0;
   double fully_open = 0;  // Pa above the outlet
 };
 
-// What a component's control signal moves: flows at once, or a state that flows follow.
+// Effect of a component's control signal: on flows at once, or on a state that flows follow.
 enum class SignalMoves { flows, a_state };
 
 struct ComponentState {
@@ -64,7 +64,7 @@ class CircuitBuilder {
   [[nodiscard]] StateIndex volume(std::string_view name) const;
   [[nodiscard]] StateIndex add_state(const ComponentState& state);
   [[nodiscard]] int add_control(std::string_view component, SignalMoves moves);
-  // Number of the component's own load-sensing pressure; of another component's.
+  // Number of the component's own load-sensing pressure, and of another component's.
   [[nodiscard]] LsIndex ls_index(std::string_view component) const;
   void add_content(const Content& content) { contents_.push_back(content); }
   // Index of the component's actuator; its position is y[position(index)], its speed y[speed(index)].
@@ -83,7 +83,7 @@ class CircuitBuilder {
   [[nodiscard]] const std::vector<Actuator>& actuators() const noexcept { return actuators_; }
   [[nodiscard]] const std::vector<ComponentState>& states() const noexcept { return states_; }
   [[nodiscard]] const std::vector<std::string>& controls() const noexcept { return controls_; }
-  // Controls whose signal moves flows at once.
+  // Controls whose signal acts on flows at once.
   [[nodiscard]] const std::vector<int>& flow_controls() const noexcept { return flow_controls_; }
   [[nodiscard]] const std::vector<std::string>& ls_names() const noexcept { return ls_names_; }
   [[nodiscard]] const std::vector<StateIndex>& supply() const noexcept { return supply_; }

@@ -55,7 +55,7 @@ std::unique_ptr<math::StiffIntegrator> make_solver(const Circuit& circuit, Solve
   return std::make_unique<math::Rodas3>(coupled_pattern(circuit), stride, options);
 }
 
-// Of a volume, over its state.
+// Function of a volume's state.
 class VolumePressure final : public math::StateFunction {
  public:
   VolumePressure(const Circuit& circuit, int volume) noexcept : circuit_(circuit), volume_(volume) {}
@@ -73,10 +73,11 @@ std::size_t at(int i) noexcept {
   return static_cast<std::size_t>(i);
 }
 
-constexpr int kMostCorrections = 40;        // of the quasi-static pressures; the way to a far solution is halved often
-constexpr double kConsistent = 1e-3;        // of the solver's tolerance
-constexpr double kLargestCorrection = 0.5;  // of a pressure and its scale, at once
-constexpr int kRadiusIterations = 200;      // once, before a run
+constexpr int kMostCorrections = 40;        // iterations of the quasi-static pressures; steps to a far solution are
+                                            // halved often
+constexpr double kConsistent = 1e-3;        // share of the solver's tolerance
+constexpr double kLargestCorrection = 0.5;  // share of a pressure and its scale, per iteration
+constexpr int kRadiusIterations = 200;      // iterations of the one estimate before a run
 
 }  // namespace
 
@@ -136,7 +137,7 @@ void CircuitIntegrator::start(std::span<const double> x, std::span<const double>
   refresh();
 }
 
-// Those that the Def marks, and those whose rate at the present state is above the limit.
+// Quasi-static volumes: marked by the Def, or with a rate at the present state above the limit.
 void CircuitIntegrator::choose_quasi_static() {
   if (quasi_static_above_ > 0) {
     circuit_.outflow_slopes(y_.data(), outflow_.data());
@@ -161,8 +162,7 @@ void CircuitIntegrator::list_quasi_static() {
 }
 
 // Newton on the pressures of the quasi-static volumes, all other states held, for flows that add up to zero. The rows
-// are those flows over C: without the slope of C the iteration would run to where oil is soft, not to where flows
-// balance.
+// are those flows over C: without the slope of C the iteration would converge to soft oil instead of balanced flows.
 bool CircuitIntegrator::make_consistent() noexcept {
   const std::size_t n = quasi_static_.size();
   if (n == 0) return true;
@@ -195,7 +195,7 @@ bool CircuitIntegrator::make_consistent() noexcept {
   return false;
 }
 
-// A solver with a memory has to know when an input changed by a step.
+// Reports a step change of an input to a multistep solver.
 void CircuitIntegrator::note_inputs() noexcept {
   bool has_changed = false;
   std::size_t k = 0;
@@ -266,7 +266,7 @@ void CircuitIntegrator::add_accelerations(const double* y, double* f) noexcept {
   motion_->accelerations(F_.data(), y + circuit_.position(0), y + circuit_.speed(0), f + circuit_.speed(0));
 }
 
-// Pre-condition: F_ are the forces at y.
+// Pre-condition: F_ holds the forces at y.
 void CircuitIntegrator::stamp_accelerations(const double* y, double* J) noexcept {
   if (m_ == 0) return;
   motion_->slopes(F_.data(), y + circuit_.position(0), y + circuit_.speed(0), da_dF_.data(), da_dx_.data(),
@@ -434,7 +434,7 @@ void CircuitIntegrator::publish() noexcept {
   }
 }
 
-// of the lines as the next step has them
+// values of the lines in the next step
 void CircuitIntegrator::publish_line(int actuator) noexcept {
   ActuatorLinearisation& out = published_[static_cast<std::size_t>(actuator)];
   const LineThrust thrust = circuit_.line_thrust(actuator, y_.data());

@@ -1,4 +1,4 @@
-// Advances a circuit and its pistons over communication steps, and states what a partner needs to know afterwards.
+// Advances a circuit and its pistons over communication steps, and provides the partner's linearisation.
 //
 // Within a step the circuit's equations and the pistons' motion (PistonMotion) are one system for the solver that the
 // Def chooses (math/rodas3.h, runge_kutta4.h, implicit_euler.h, cvode_stepper.h):
@@ -10,14 +10,14 @@
 //   int g dt = h/2 (g_0 + g_1) + h^2/12 (g_0' - g_1')                                                           (1)
 // for g = F (impulse) and, about the sub-step's mean force F_m = (F_0 + F_1)/2,
 //   work = F_m (x_1 - x_0) + int (F - F_m) v dt,  the integral by (1):
-// a piston that stands under load then shows no work of its integrator's errors in v.
+// the errors of v then produce no work at a piston that rests under load.
 //
 // Published at the end (coupling study, section 8; K_A = A_A^2/C_A, K_B = A_B^2/C_B):
 //   F, F_dot = A_A p_A' - A_B p_B',  K = K_A + K_B,  lambda = (K_A l_A + K_B l_B)/K,  l = -(dQ/dp)/C             (2)
 // l on the steeper side of unilateral valves. Chambers have no feed-through, D = 0; where they are transmission lines
-// (line_chambers.h) F is what the lines do at v, D their impedance, K = F_dot = lambda = 0. The mean pressure of a
-// volume, and with it the oil that the line takes, is integrated by the method itself: what leaves the volume is in the
-// line, whatever the tolerance.
+// (line_chambers.h) F is the force of the lines at v, D their impedance, K = F_dot = lambda = 0. The mean pressure of a
+// volume, and with it the oil that the line takes, is integrated by the method itself: the oil that leaves the volume
+// enters the line at any tolerance.
 #pragma once
 
 #include <cstdint>
@@ -35,25 +35,25 @@
 
 namespace slew::hydraulics {
 
-// One actuator's force near (x, v) and what happened to it in the last step.
+// One actuator's force near (x, v), and its work and impulse in the last step.
 struct ActuatorLinearisation {
   double F = 0;             // N
   double F_dot = 0;         // N/s at constant v
-  double K = 0;             // N/m; 0 of lines
+  double K = 0;             // N/m; 0 for lines
   double D = 0;             // N s/m
-  double stiffness = 0;     // N/m, K of the oil columns, of lines too
+  double stiffness = 0;     // N/m, K of the oil columns, also for lines
   double lambda = 0;        // 1/s
   double x = 0;             // m, the circuit's own piston position
   double v = 0;             // m/s
   double work = 0;          // J, integral of F v dt over the last step
   double impulse = 0;       // N s
   double p_a = 0, p_b = 0;  // Pa absolute
-  double Q_a = 0, Q_b = 0;  // m3/s, what the circuit sends into the chambers' volumes
+  double Q_a = 0, Q_b = 0;  // m3/s, flows of the circuit into the chambers' volumes
 };
 
-// How near an explicit solver's sub-step is to its limit at a state.
+// An explicit solver's sub-step relative to its stability limit at a state.
 struct ExplicitStability {
-  double ratio = 0;       // h |lambda|_max / 2; above 1 the solver is not to be used
+  double ratio = 0;       // h |lambda|_max / 2; above 1 the solver is unstable
   double substep = 0;     // h [s]
   StateIndex owner = -1;  // the state with the largest part in the fastest motion
 };
@@ -63,10 +63,10 @@ class CircuitIntegrator final : private math::StiffSystem {
   // circuit outlives the integrator. def: validated.
   CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def);
 
-  // Start state as the Def asks for; F: static forces of the actuators [N]. Clears the step size and failures.
+  // Start state as the Def selects; F: static forces of the actuators [N]. Clears the step size and failures.
   void start(std::span<const double> x, std::span<const double> v, std::span<const double> F) noexcept;
 
-  // Of rk4 at the present state, for steps of H seconds; nothing for the other solvers, which have no limit.
+  // Stability of rk4 at the present state, for steps of H seconds; all zero for the other solvers, which have no limit.
   [[nodiscard]] ExplicitStability explicit_stability(double H, const PistonMotion& motion);
   // Turns chambers into transmission lines with the delay H, or back into volumes; the oil is kept. Between two steps,
   // after align().
@@ -75,29 +75,30 @@ class CircuitIntegrator final : private math::StiffSystem {
   // Takes the pistons' true position and speed: pressures follow with the oil enclosed (study, section 8).
   void align(std::span<const double> x, std::span<const double> v) noexcept;
 
-  // Advances by H seconds. A non-finite state is latched: the last finite one stays, every further report says so.
-  // offender: StateIndex of the state that failed, ran out of budget or of stability (not_converged), of the volume
-  // farthest beyond the oil's law, or of the first volume that cavitates.
+  // Advances by H seconds. A non-finite state is latched: the last finite one stays, and every further report has the
+  // flag. offender: StateIndex of the state that failed, ran out of budget or of stability (not_converged), of the
+  // volume farthest beyond the oil's law, or of the first volume that cavitates.
   StepReport step(double H, const PistonMotion& motion) noexcept;
 
   [[nodiscard]] std::span<const ActuatorLinearisation> actuators() const noexcept { return published_; }
   [[nodiscard]] std::span<const double> state() const noexcept { return y_; }
-  // For tests and tools; refresh() afterwards.
+  // Mutable state for tests and tools; call refresh() afterwards.
   [[nodiscard]] std::span<double> mutable_state() noexcept { return y_; }
   [[nodiscard]] std::span<LineChamber> mutable_lines() noexcept { return circuit_.mutable_lines(); }
-  // Works out actuators() from the state.
+  // Computes actuators() from the state.
   void refresh() noexcept;
-  // F_dot alone, under the control signals as they are now.
+  // Computes F_dot alone, under the present control signals.
   void refresh_force_rates() noexcept;
   [[nodiscard]] double step_size() const noexcept { return solver_->step_size(); }
   void set_step_size(double h) noexcept { solver_->set_step_size(h); }
   [[nodiscard]] std::span<const StateIndex> quasi_static() const noexcept { return quasi_static_; }  // volumes
   [[nodiscard]] const math::StiffReport& last_report() const noexcept { return report_; }
 
-  // Raw bits of all that the future depends on: y, the solver's memory, failure latch, live parameters.
+  // Adds the raw bits of all state that influences later results: y, the solver's memory, failure latch, live
+  // parameters.
   void add_to(StateHash& hash) const noexcept;
-  // The same as bytes, the circuit's and actuators() with it. Pre-condition: can_save(). load() allocates; what comes
-  // next is align() or step().
+  // The same as bytes, the circuit's and actuators() with it. Pre-condition: can_save(). load() allocates; call align()
+  // or step() next.
   [[nodiscard]] bool can_save() const noexcept { return solver_->can_save(); }
   void save(StateWriter& bytes) const;
   void load(StateReader& bytes);
@@ -113,7 +114,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   struct PressureForce {
     double F = 0, rate = 0;  // N, N/s
   };
-  // Of an actuator at y with rates f.
+  // Force and its rate of an actuator at y with rates f.
   [[nodiscard]] PressureForce pressure_force(const Actuator& actuator, const double* y, const double* f) const noexcept;
   void add_accelerations(const double* y, double* f) noexcept;
   void stamp_accelerations(const double* y, double* J) noexcept;
@@ -128,7 +129,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   void integrate_pressures(double h, const double* y_before, const double* f_before, const double* y) noexcept;
 
   Circuit& circuit_;
-  const PistonMotion* motion_ = nullptr;  // during step()
+  const PistonMotion* motion_ = nullptr;  // set during step()
   std::size_t m_;
   std::vector<double> y_, y_start_, f_;
   std::vector<double> F_, F_dot_, F_mean_, jerk_, da_dF_, da_dx_, da_dv_, C_, outflow_;
@@ -137,17 +138,17 @@ class CircuitIntegrator final : private math::StiffSystem {
   double open_quadrature_ = 0;  // h^2/12 of the last sub-step, whose end slope is not known yet
   bool was_clamped_ = false;
   bool has_failed_ = false;
-  StateIndex offender_ = -1;  // of the failure
+  StateIndex offender_ = -1;  // offender of the failure
   math::StiffOptions options_;
   Solver choice_;
   std::unique_ptr<math::StiffIntegrator> solver_;
   math::StiffReport report_;
-  std::vector<double> inputs_;  // controls and live parameters of the last step; empty when nobody asks
+  std::vector<double> inputs_;  // controls and live parameters of the last step; empty if unused
   double quasi_static_above_;   // 1/s
   std::vector<char> may_be_quasi_static_, is_marked_, is_quasi_static_;  // by volume
   std::vector<StateIndex> quasi_static_;
   std::vector<double> mass_;
-  math::DenseLu algebraic_;  // of the quasi-static rows and columns
+  math::DenseLu algebraic_;  // matrix of the quasi-static rows and columns
   bool is_consistent_ = true;
 };
 

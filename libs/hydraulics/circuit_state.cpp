@@ -10,14 +10,14 @@ namespace slew::hydraulics {
 namespace {
 
 constexpr double kLowestStart = 1e5;     // Pa; below it an anti-cavitation valve would be open from the start
-constexpr double kLargestChange = 0.02;  // of a pressure, per part of a piston's way
+constexpr double kLargestChange = 0.02;  // share of a pressure, per part of a piston's displacement
 constexpr int kMostParts = 64;
 
 struct Pair {
   double a, b;
 };
 
-// Pressures that hold F; b at `aim`, or higher when a would be too low.
+// Pressures that hold F; b is `aim`, or higher if a would be too low.
 Pair held_by_return_side(const Actuator& actuator, double F, double aim) noexcept {
   Pair p{(F + aim * actuator.area_b) / actuator.area_a, aim};
   if (p.a < kLowestStart && actuator.area_b > 0) {
@@ -27,7 +27,7 @@ Pair held_by_return_side(const Actuator& actuator, double F, double aim) noexcep
   return p;
 }
 
-// Pressures that hold F around `mean`, which rises when one would be too low.
+// Pressures that hold F around `mean`, which is raised if one would be too low.
 Pair held_around_mean(const Actuator& actuator, double F, double mean) noexcept {
   const double half = F / (actuator.area_a + actuator.area_b);
   mean = std::max(mean, kLowestStart + std::fabs(half));
@@ -66,7 +66,7 @@ void Circuit::start_in_equilibrium(std::span<const double> F, std::span<double> 
   for (const StateIndex volume : supply_) {
     if (!is_fixed(volume)) y[static_cast<std::size_t>(volume)] = start_pump_;
   }
-  // volumes that several cylinders share take the mean of what each asks for
+  // a volume shared by several cylinders takes the mean of the required pressures
   const std::vector<Asked> asked = asked_in_equilibrium(F);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     if (asked[i].actuators > 0 && is_fixed_[i] == 0) y[i] = std::max(asked[i].pressure(), floor_);
@@ -103,7 +103,7 @@ void Circuit::start(std::span<const double> F, std::span<double> y) const {
   }
 }
 
-// du/ds = -(dV/dx . way) / C at the state y; s runs from 0 to 1 along the pistons' way.
+// du/ds = -(dV/dx . dx) / C at the state y; s runs from 0 to 1 along the pistons' displacement dx.
 void Circuit::chamber_rates(const double* y, double* du) const noexcept {
   for (std::size_t i = 0; i < volume_name_.size(); ++i) {
     du[i] = 0;
@@ -114,15 +114,15 @@ void Circuit::chamber_rates(const double* y, double* du) const noexcept {
 
 bool Circuit::move_pistons(double* y, const double* x_new) noexcept {
   const std::size_t n = volume_name_.size(), m = actuators_.size();
-  for (std::size_t j = 0; j < m; ++j) way_[j] = x_new[j] - y[n + j];
-  // a piston that is lost takes no pressure with it: its state is the one to be named
+  for (std::size_t j = 0; j < m; ++j) displacement_[j] = x_new[j] - y[n + j];
+  // a non-finite piston leaves the pressures finite: the report names the piston's state
   if (!all_finite({x_new, m})) {
     std::copy(x_new, x_new + m, y + n);
     return false;
   }
   const bool is_within = move_lines(x_new);
   for (std::size_t i = 0; i < n; ++i) growth_[i] = chamber_growth(i);
-  // parts short enough for the stiffness of oil with air to change little within one
+  // parts short enough that the stiffness of oil with air changes little within one
   chamber_rates(y, slope_[0].data());
   double change = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -132,13 +132,13 @@ bool Circuit::move_pistons(double* y, const double* x_new) noexcept {
   const int parts = std::max(1, static_cast<int>(wanted));
   const double h = 1.0 / parts;
   for (int part = 0; part < parts; ++part) {
-    // classical Runge-Kutta of order 4 along the way
+    // classical Runge-Kutta of order 4 along the displacement
     constexpr double kStage[] = {0, 0.5, 0.5, 1};
     for (std::size_t stage = 0; stage < 4; ++stage) {
       for (std::size_t i = 0; i < n; ++i) {
         moved_[i] = y[i] + (stage == 0 ? 0 : kStage[stage] * h * slope_[stage - 1][i]);
       }
-      for (std::size_t j = 0; j < m; ++j) moved_[n + j] = y[n + j] + kStage[stage] * h * way_[j];
+      for (std::size_t j = 0; j < m; ++j) moved_[n + j] = y[n + j] + kStage[stage] * h * displacement_[j];
       chamber_rates(moved_.data(), slope_[stage].data());
     }
     for (std::size_t i = 0; i < n; ++i) {
@@ -150,7 +150,7 @@ bool Circuit::move_pistons(double* y, const double* x_new) noexcept {
         y[i] = moved;
       }
     }
-    for (std::size_t j = 0; j < m; ++j) y[n + j] += h * way_[j];
+    for (std::size_t j = 0; j < m; ++j) y[n + j] += h * displacement_[j];
   }
   for (std::size_t j = 0; j < m; ++j) y[n + j] = x_new[j];
   return is_within;

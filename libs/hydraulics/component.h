@@ -1,8 +1,8 @@
-// The seam for hydraulic components: what a component sees of the circuit and what it adds to its equations.
+// The interface of hydraulic components: their view of the circuit and their terms in its equations.
 //
 // The circuit's state vector is y = [p of all volumes | x | v of all actuators | component states]. A component keeps
-// the positions (StateIndex) of what it is connected to, adds flows into volumes [m3/s] and rates of its own states,
-// and stamps their partial derivatives into the Jacobian. The circuit turns flows into pressure rates,
+// the positions (StateIndex) of its connected volumes and states, adds flows into volumes [m3/s] and rates of its own
+// states, and stamps their partial derivatives into the Jacobian. The circuit turns flows into pressure rates,
 //   p' = sum Q / C,   C = sum over contents V_k (kappa_oil + 1/B_k),
 // including the dependence of C on p and x: components never see capacities.
 #pragma once
@@ -27,7 +27,7 @@ struct CircuitView {
   const double* y;           // state vector
   const double* control;     // control signals
   const double* ls;          // load-sensing pressures above tank [Pa]
-  const double* line_force;  // of the actuators, as the partner states them [N]; for display
+  const double* line_force;  // line forces of the actuators from the partner [N]; for display
   [[nodiscard]] double operator[](StateIndex i) const noexcept { return y[i]; }
 };
 
@@ -69,7 +69,7 @@ class JacobianStamp {
   int size_;
 };
 
-// Where a component's Jacobian may be non-zero; the integrator's elimination is planned from it.
+// Non-zero pattern of a component's Jacobian; the integrator plans its elimination from it.
 class DependencyList {
  public:
   DependencyList(math::SparsityPattern& pattern, int size) : pattern_(pattern), size_(size) {}
@@ -115,12 +115,12 @@ class HydraulicComponent {
 
   // Load-sensing pressure above tank and its derivatives, for components that have one; called in an order in which
   // every source comes before its consumers.
-  [[nodiscard]] virtual std::vector<LsIndex> ls_inputs() const { return {}; }  // that ls_pressure() reads
+  [[nodiscard]] virtual std::vector<LsIndex> ls_inputs() const { return {}; }  // pressures that ls_pressure() reads
   [[nodiscard]] virtual double ls_pressure(const CircuitView&) const noexcept { return 0; }
   virtual void declare_ls_dependencies(DependencyList&) const {}
   virtual void add_ls_jacobian(const CircuitView&, JacobianStamp&) const noexcept {}
 
-  // Raises outflow_slope[volume] (-dQ/dp) to the steeper side where a unilateral element is about to switch.
+  // Raises outflow_slope[volume] (-dQ/dp) to the steeper side near the switch of a unilateral element.
   virtual void raise_outflow_slopes(const CircuitView&, double* /*outflow_slope*/) const noexcept {}
   // StepFlag bits that hold now; load-sensing pressures are those of the last evaluation.
   [[nodiscard]] virtual std::uint32_t flags(const CircuitView&) const noexcept { return 0; }
@@ -130,7 +130,7 @@ class HydraulicComponent {
   virtual void list_variables(std::vector<ElementVariable>& variables) const = 0;
   virtual double* read_variables(const CircuitView& view, double* values) const noexcept = 0;
 
-  // The component's own copy of its Def (live parameters are written there) and what follows from a change of it.
+  // The component's own copy of its Def (live parameters are written there), and the update after a change.
   [[nodiscard]] virtual void* def_address() noexcept = 0;
   virtual void apply_parameters() noexcept = 0;
 

@@ -1,4 +1,4 @@
-// What a scene says about one hydraulic component, and the table that lists every component type there is.
+// Definition of one hydraulic component, and the table of all component types.
 //
 // The set is open: a new type is a final Def with its field table, a ComponentType row, and a HydraulicComponent. The
 // row is entered by hand in component_types.cpp; nothing registers itself.
@@ -34,7 +34,7 @@ struct ComponentDef {
 
   // Key of the type in component_types().
   [[nodiscard]] virtual std::string_view type_name() const noexcept = 0;
-  // Address of the final Def: what Field::member expects.
+  // Address of the final Def, for Field::member.
   [[nodiscard]] virtual void* address() noexcept = 0;
   // Facts of a component that drives a force element through a power port; none of the others.
   [[nodiscard]] virtual std::optional<ActuatorDef> actuator() const { return std::nullopt; }
@@ -44,7 +44,7 @@ struct ComponentDef {
 
 struct ComponentType {
   std::string_view name;          // value of `type:` in the scene
-  std::span<const Field> fields;  // of the final Def
+  std::span<const Field> fields;  // fields of the final Def
   std::string_view doc;
   std::unique_ptr<ComponentDef> (*make_def)() = nullptr;
   // Rules between fields and between elements; ranges and references are checked from the table. May be null.
@@ -58,7 +58,7 @@ struct ComponentType {
 // All component types of this version, in the order of the documentation.
 [[nodiscard]] std::span<const ComponentType> component_types();
 
-// Null when there is no such type.
+// Null if the type does not exist.
 [[nodiscard]] const ComponentType* find_component_type(std::string_view name);
 
 }  // namespace slew::hydraulics

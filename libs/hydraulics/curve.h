@@ -6,11 +6,11 @@
 namespace slew::hydraulics {
 
 // The points of a linear curve; for pchip the monotone cubic (Fritsch and Carlson 1980) sampled at 16 equal parts of
-// every interval. Oddness is not expanded: the table holds what the scene gives.
+// every interval. Oddness is not expanded: the table holds the points of the scene.
 // Pre-condition: at least two points, arguments strictly increasing.
 [[nodiscard]] Table straight_lines(const CurveDef& curve);
 
-// Null when the circuit has no such curve.
+// Null if the circuit lacks the curve.
 [[nodiscard]] const CurveDef* find_curve(const HydraulicsDef& circuit, std::string_view name);
 
 }  // namespace slew::hydraulics

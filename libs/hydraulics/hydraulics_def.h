@@ -1,4 +1,4 @@
-// What a scene says about its hydraulic circuit: oil, solver, start state, volumes, components, curves.
+// Definition of a hydraulic circuit: oil, solver, start state, volumes, components, curves.
 //
 // Pressures are absolute. Settings of valves and pumps are relative to the tank they are connected to.
 #pragma once
@@ -33,7 +33,7 @@ struct VolumeDef {
   double initial_pressure = 1e5;  // Pa absolute
   double rigid_volume = 0;        // m3, oil in a rigid block at this node
   bool fixed = false;             // true: a tank or an ideal pressure source, held at initial_pressure
-  bool quasi_static = false;      // true: no storage, the pressure makes the flows add up to zero
+  bool quasi_static = false;      // true: no storage; the pressure balances the flows
 };
 
 // A function of one variable given by points; the last value is held beyond the ends.
@@ -47,14 +47,14 @@ struct CurveDef {
 struct HydraulicsDef {
   // oil: an ISO VG 46 mineral oil
   OilLaw oil_law = OilLaw::oil_and_air;
-  double oil_bulk_modulus = 1.5e9;       // Pa, of the oil without air
+  double oil_bulk_modulus = 1.5e9;       // Pa, modulus of the oil without air
   double oil_density = 870;              // kg/m3
   double oil_viscosity = 46e-6;          // m2/s, at working temperature
   double entrained_air = 0.005;          // air volume / oil volume at the reference pressure
   double air_reference_pressure = 1e5;   // Pa absolute
-  double polytropic_exponent = 1.2;      // of the entrained air
-  double oil_compressibility = 6.5e-10;  // 1/Pa at zero pressure, of the density parabola
-  double oil_density_peak = 3000e5;      // Pa absolute, where the density parabola has its top
+  double polytropic_exponent = 1.2;      // exponent of the entrained air
+  double oil_compressibility = 6.5e-10;  // 1/Pa at zero pressure, for the density parabola
+  double oil_density_peak = 3000e5;      // Pa absolute, at the top of the density parabola
   double pressure_floor = 5e3;           // Pa absolute; below it a volume is cavitating
   double orifice_transition = 1e4;       // Pa; below it an orifice is laminar
 
@@ -80,7 +80,7 @@ struct HydraulicsDef {
 
 inline constexpr Range kToleranceRange{.min = 1e-10, .max = 1e-1};
 inline constexpr Range kBudgetRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_open = false};
-// a top below 1300 bar would be inside the pressures that a circuit may reach
+// a top below 1300 bar would be within the pressure range of a circuit
 inline constexpr Range kPeakRange{.min = 1300e5};
 inline constexpr Range kAirRange{.min = 0, .max = 0.2, .min_is_open = false, .max_is_open = false};
 inline constexpr Range kPolytropicRange{.min = 1, .max = 2, .min_is_open = false, .max_is_open = false};
@@ -173,7 +173,7 @@ inline constexpr Field kHydraulicsFields[] = {
         "quasi_static_above", {.dimension = Dimension::frequency,
                                .range = kNotNegative,
                                .doc = "volumes without a chamber whose rate at the start is above this become "
-                                      "quasi-static; 0: only those marked so"}),
+                                      "quasi-static; 0: only marked volumes"}),
     field<&HydraulicsDef::start>(
         "start", {.choices = kStartChoices,
                   .doc = "equilibrium: cylinders hold the static load; table13: every volume at its initial pressure"}),
@@ -219,7 +219,7 @@ inline constexpr Field kCurveFields[] = {
 // Force elements are named here but live in the mechanics: the scene checks that they exist.
 void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings);
 
-// The actuator with a chamber that is part of the volume; null when there is none.
+// The actuator with a chamber in the volume; null if there is none.
 [[nodiscard]] const ComponentDef* find_chamber(const HydraulicsDef& def, const VolumeDef& volume);
 
 }  // namespace slew::hydraulics

@@ -9,7 +9,7 @@ namespace slew::hydraulics {
 namespace {
 
 constexpr int kMergeIterations = 6;  // Newton on a monotonous function, from within: quadratic
-constexpr int kOilParts = 4;         // of Runge-Kutta over a step's oil ...
+constexpr int kOilParts = 4;         // Runge-Kutta parts over a step's oil ...
 constexpr int kMostOilParts = 64;    // ... more where it changes the pressure by more than
 constexpr double kPartChange = 0.1;  // ... this share for each
 
@@ -37,7 +37,7 @@ void Circuit::make_line(int actuator, double delay, const double* y) noexcept {
     if (line.is_line || line.slope == 0 || is_fixed(line.volume)) continue;
     const double p = pressure(line.volume, y).value, x = y[line.position];
     const double Z = delay / line_capacity(line, p, x);
-    // the flow of the piston runs through the line
+    // the flow of the piston passes through the line
     const double rise = Z * line.slope * y[line.speed];
     line.is_line = true;
     line.delay = delay;
@@ -51,7 +51,7 @@ void Circuit::lump_line(int actuator, double* y) noexcept {
     if (!line.is_line) continue;
     const auto volume = static_cast<std::size_t>(line.volume);
     const double x = y[line.position];
-    // room that oil has to fill, in both, and the pressures from there on
+    // the room to be filled with oil in both, then the pressures
     const double room = vapour_.void_volume(volume, y) + line.state.room;
     const double p_h = vapour_.is_in(volume, y) ? floor_ : y[volume];
     const double p_line = std::max(0.5 * (line.state.c_h + line.state.c_m), vapour_pressure_of(floor_));
@@ -75,7 +75,7 @@ void Circuit::lump_line(int actuator, double* y) noexcept {
   }
 }
 
-// (2) at the piston's end, which the partner is told now, and the line of the coming step
+// (2) at the piston's end, which the partner receives now, and the line of the next step
 void Circuit::end_line_step(const double* y, std::span<const double> mean_pressure) noexcept {
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     LineChamber& line = lines_[i];
@@ -85,20 +85,20 @@ void Circuit::end_line_step(const double* y, std::span<const double> mean_pressu
     state.c_m_next = std::max(c_m, vapour_pressure_of(floor_));
     state.held = state.c_m_next - c_m;
     const double p = std::max(0.5 * (state.c_h + state.c_m), vapour_pressure_of(floor_));
-    // room is as soft as vapour: filling it takes the pressure of the floor
+    // room is as soft as vapour: it fills at the pressure of the floor
     const double C = line_capacity(line, std::max(p, floor_), y[line.position]) + state.room / floor_;
     state.Z_next = line.delay / C;
   }
 }
 
-// (2) at the volume's end and (3), from the way that the piston went
+// (2) at the volume's end and (3), from the piston's displacement
 bool Circuit::move_lines(const double* x_new) noexcept {
   bool is_within = true;
   for (LineChamber& line : lines_) {
     if (!line.is_line) continue;
     LineState& state = line.state;
     const double dx = x_new[line.position - volume_count()] - state.x;
-    // oil that came in, from mean(p_h) = (c_h + c_m+)/2, less the room that was there and that the piston made
+    // inflow of oil, from mean(p_h) = (c_h + c_m+)/2, less the room present and the room made by the piston
     const double inflow = 0.5 * line.delay * (state.c_m_next - state.held - state.c_h) / state.Z;
     const double oil = inflow - line.slope * dx - state.room;
     const double p_before = std::max(0.5 * (state.c_h + state.c_m), vapour_pressure_of(floor_));
@@ -120,15 +120,15 @@ bool Circuit::move_lines(const double* x_new) noexcept {
   return is_within;
 }
 
-// (3): the line's pressure after so much oil more, from p on.
+// (3): the line's pressure after an inflow `oil`, starting at p.
 double Circuit::filled_pressure(const LineChamber& line, double oil, double dx, double p) const noexcept {
   const double change = std::fabs(oil) / line_capacity(line, std::max(p, floor_), line.state.x) / std::max(p, floor_);
   const double wanted = std::ceil(change / kPartChange);
   const int parts = static_cast<int>(std::clamp(wanted, double{kOilParts}, double{kMostOilParts}));
   for (int part = 0; part < parts; ++part) {
-    const double h = oil / parts, way = dx / parts, x = line.state.x + part * way;
+    const double h = oil / parts, part_dx = dx / parts, x = line.state.x + part * part_dx;
     const auto rate = [&](double q, double share) {
-      return 1 / line_capacity(line, std::max(q, floor_), x + share * way);
+      return 1 / line_capacity(line, std::max(q, floor_), x + share * part_dx);
     };
     const double k_1 = rate(p, 0), k_2 = rate(p + 0.5 * h * k_1, 0.5), k_3 = rate(p + 0.5 * h * k_2, 0.5);
     p += h / 6 * (k_1 + 2 * k_2 + 2 * k_3 + rate(p + h * k_3, 1));
@@ -139,7 +139,7 @@ double Circuit::filled_pressure(const LineChamber& line, double oil, double dx, 
 LineThrust Circuit::line_thrust(int actuator, const double* y) const noexcept {
   LineThrust thrust;
   for (const LineChamber& line : lines_of(actuator)) {
-    // a chamber on a fixed volume has its pressure and no line
+    // a chamber on a fixed volume takes its pressure and has no line
     const double Z = line.is_line ? line.state.Z_next : 0;
     const double c = line.is_line ? line.state.c_m_next : pressure(line.volume, y).value;
     thrust.damping += line.slope * line.slope * Z;

@@ -8,7 +8,7 @@ namespace slew::hydraulics {
 namespace {
 
 constexpr double kHighestPressure = 4e9;  // Pa; beyond, kappa keeps its last value
-constexpr double kLowestFraction = 1e-3;  // of the floor: the table's lower end
+constexpr double kLowestFraction = 1e-3;  // share of the floor: the table's lower end
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Compressibility of oil with entrained air. What a volume does below the cavitation floor p_f is in vapour.h.
+// Compressibility of oil with entrained air. vapour.h describes a volume below the cavitation floor p_f.
 //
 //   V(p)/V_0 = exp(-(p - p_0)/B) + alpha (p_0/p)^(1/n)                                          (1)
 //   kappa(p) = -V'/V                                  1/Pa, the inverse bulk modulus            (2)
@@ -38,13 +38,13 @@ class OilCompressibility {
     if (t > 1) return {((c[3] + c[2]) + c[1]) + c[0], 0};
     return {((c[3] * t + c[2]) * t + c[1]) * t + c[0], ((3 * c[3] * t + 2 * c[2]) * t + c[1]) * s.inverse_width};
   }
-  // (2), (3) evaluated directly; what the table is made from.
+  // (2), (3) evaluated directly, to build the table.
   [[nodiscard]] ValueSlope exact(double p) const noexcept;
 
-  // What (1) and (3) are good for [Pa absolute]: beyond, kappa goes on or keeps its value, and steps are flagged.
+  // Limit of validity of (1) and (3) [Pa absolute]: beyond it kappa is continued or held, and steps are flagged.
   static constexpr double kHighest = 1000e5;
 
-  // Beginning of the table: pressures that cannot stand for vapour are held there.
+  // Start of the table: pressures of volumes without vapour are held there.
   [[nodiscard]] double lowest_pressure() const noexcept { return lowest_; }
 
  private:
@@ -59,7 +59,7 @@ class OilCompressibility {
 
   struct Segment {
     double start, inverse_width;        // Pa, 1/Pa
-    std::array<double, 4> coefficient;  // of powers of t = (p - start) inverse_width
+    std::array<double, 4> coefficient;  // coefficients of the powers of t = (p - start) inverse_width
   };
 
   OilLaw law_;

@@ -1,8 +1,8 @@
-// The seam through which a partner's model of the mechanics moves the pistons inside the circuit's integration.
+// The interface by which a partner's model of the mechanics moves the pistons inside the circuit's integration.
 //
 // The circuit integrates x' = v, v' = a(F, x, v) together with its pressures, F = p_A A_A - p_B A_B per actuator. A
-// subsystem fills a(...) with what it knows of its partner, e.g. the reduced model a_free + W F_line(F, x, v) with
-// friction and end stops inside (slopes up to 4e4 1/s are no difficulty), or nothing (held speed).
+// subsystem implements a(...) by its model of the partner, e.g. the reduced model a_free + W F_line(F, x, v) with
+// friction and end stops inside (slopes up to 4e4 1/s are handled), or zero (held speed).
 // Plain arrays in actuator order; matrices m x m, row-major. Nothing here may allocate, lock or throw.
 #pragma once
 
@@ -19,15 +19,15 @@ class PistonMotion {
   // da/dF [1/kg], da/dx [1/s2], da/dv [1/s]; every element is written.
   virtual void slopes(const double* F, const double* x, const double* v, double* da_dF, double* da_dx,
                       double* da_dv) const noexcept = 0;
-  // Time to the edge of the steep part of a piston's friction about rest, from speeds v, accelerations a and their
-  // rates j [m/s3]: to just before it, from there to just behind it [s].
+  // Time [s] to the edge of the steep part of a piston's friction about rest, from speeds v, accelerations a and their
+  // rates j [m/s3]: first to just before the edge, from there to just behind it.
   [[nodiscard]] virtual double time_to_rest(const double* /*v*/, const double* /*a*/,
                                             const double* /*j*/) const noexcept {
     return std::numeric_limits<double>::infinity();
   }
 };
 
-// Pistons keep the speed they have: test rigs.
+// Pistons with held speed, for test rigs.
 class HeldSpeed final : public PistonMotion {
  public:
   explicit HeldSpeed(std::size_t actuators) noexcept : m_(actuators) {}

@@ -1,11 +1,11 @@
-// Pumps whose line nothing relieves.
+// Warns about pumps whose line has no relief.
 //
-// A pump's line is its outlet and every volume that is connected with it whatever the control signals are: through
-// orifices, bleeds, laminar restrictions, compensated orifices, and four-way valves without gain; by orifices and
-// bleeds only where they pass what the pump delivers below the end of the oil's law. It is relieved where a relief
-// valve that is set below that end or a shock valve stands on it, or where it reaches a fixed volume. Leaks relieve
-// nothing: they pass what a pump delivers at pressures far beyond any. A pressure controller of the pump is no relief
-// either: it ends where it is set, and after its delay.
+// A pump's line is its outlet and every volume connected to it at any control signal: through orifices, bleeds, laminar
+// restrictions, compensated orifices, and four-way valves without gain; by orifices and bleeds only if they pass the
+// pump's flow below the end of the oil law. It is relieved where a relief valve that is set below that end or a shock
+// valve stands on it, or where it reaches a fixed volume. Leaks do not count: they pass the pump's flow only at
+// pressures far beyond any limit. A pressure controller of the pump does not count either: it acts at its setting and
+// after its delay.
 #pragma once
 
 #include <limits>

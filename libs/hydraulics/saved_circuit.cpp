@@ -21,7 +21,7 @@ void Circuit::visit(Self& self, Bytes& bytes) {
   bytes.numbers(self.ls_);
   for (auto& line : self.lines_) {
     auto& state = line.state;
-    // 0: no line, 1: a line, 2: one that counts room without oil
+    // 0: no line, 1: a line, 2: a line with room without oil
     const bool counts_room = state.held != 0 || state.room != 0;
     auto kind = static_cast<std::uint8_t>(!line.is_line ? 0 : counts_room ? 2 : 1);
     bytes.number(kind);
@@ -38,7 +38,7 @@ void Circuit::visit(Self& self, Bytes& bytes) {
     }
     if constexpr (Bytes::kIsReading) {
       if (!line.is_line) continue;
-      // of a chamber alone
+      // fields of a chamber alone
       if (line.slope == 0 || self.is_fixed(line.volume)) return bytes.refuse();
       self.pieces_[line.piece].lumped = kLumpedShare;
     }
@@ -54,7 +54,7 @@ void Circuit::load(StateReader& bytes) noexcept {
   visit(*this, bytes);
 }
 
-// Of the volumes that cavitate at y; of the others they follow from y.
+// Capacities of the volumes that cavitate at y; those of the others follow from y.
 void Circuit::save_vapour(StateWriter& bytes, const double* y) const {
   for (std::size_t i = 0; i < volumes_.size(); ++i) {
     if (vapour_.is_in(i, y)) bytes.number(vapour_.capacity[i]);
@@ -106,7 +106,7 @@ void CircuitIntegrator::load(StateReader& bytes) {
   if (bytes.is_sound()) list_quasi_static();
   circuit_.load_vapour(bytes, y_.data());
   solver_->load(bytes);
-  // nothing else can be inconsistent
+  // no other field can be inconsistent
   if (!is_consistent_ && quasi_static_.empty()) bytes.refuse();
 }
 

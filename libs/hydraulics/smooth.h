@@ -5,7 +5,7 @@
 //   root(d, d_t) = d / (d^2 + d_t^2)^(1/4)                                                                      (2)
 //     sgn(d) sqrt|d| for |d| >> d_t, d / sqrt(d_t) for |d| << d_t
 //   least(a, b, w) = a - ramp(a - b, w_a),  w_a = a - a^2/(4 w) for a < 2 w, else w                             (3)
-//     lower of a, b >= 0 as smooth_min, with a width that shrinks with a: 0 where either is 0
+//     lower of a, b >= 0 as smooth_min, with a width that shrinks with a: 0 if either is 0
 #pragma once
 
 #include <cmath>

@@ -9,9 +9,9 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr double kStep = 10e-3;    // s, of the looks at the pressures
-constexpr int kQuietSteps = 50;    // so many without a change: longer than pumps and spools take to answer
-constexpr double kUnchanged = 50;  // Pa in a step
+constexpr double kStep = 10e-3;    // s, interval between two checks of the pressures
+constexpr int kQuietSteps = 50;    // steps without a change: longer than the response of pumps and spools
+constexpr double kUnchanged = 50;  // Pa per step
 
 }  // namespace
 

@@ -1,9 +1,8 @@
-// What a circuit presses with when its pistons cannot move: the pressures at which every flow has ended.
+// Stall pressures of a circuit: the pistons cannot move and every flow has ended.
 //
 // The pistons are held at their strokes, all chambers begin without load, one control signal is held, and the circuit
-// runs until no pressure changes any more. What limits the pressure then is what limits it in the machine: relief
-// valves, load-sensing limits, pump settings, leaks, whatever components the circuit has. Not covered: pressures that a
-// load from outside makes.
+// runs until no pressure changes any more. The limits are those of the machine: relief valves, load-sensing limits,
+// pump settings, leaks and any other component. Not covered: pressures caused by an external load.
 #pragma once
 
 #include <span>

@@ -13,7 +13,7 @@
 namespace slew::hydraulics {
 namespace {
 
-// Field::member takes the Def's address without const; nothing is written through it here.
+// Field::member takes the Def's address without const; it is only read here.
 template <typename T>
 const T& member(const Field& row, const void* def) {
   return *static_cast<const T*>(row.member(const_cast<void*>(def)));
@@ -24,7 +24,7 @@ std::string interval(const Range& range) {
                      range.max_is_open ? ')' : ']');
 }
 
-// Values of one element against its field table: numbers in range, required texts present.
+// Checks one element against its field table: numbers in range, required texts present.
 void check_fields(const std::string& element, std::span<const Field> fields, const void* def, Problems& errors) {
   for (const Field& row : fields) {
     const std::string path = element + "." + std::string(row.key);
@@ -52,7 +52,7 @@ bool has_volume(const HydraulicsDef& def, std::string_view name) {
   return std::any_of(def.volumes.begin(), def.volumes.end(), [&](const VolumeDef& v) { return v.name == name; });
 }
 
-// Names that a component refers to exist, by the kind of element in its table.
+// Checks that referenced names exist, by the kind of element in the field table.
 void check_references(const HydraulicsDef& def, const ComponentDef& component, const ComponentType& type,
                       const void* address, Problems& errors) {
   for (const Field& row : type.fields) {
@@ -110,7 +110,7 @@ void check_curve(const CurveDef& curve, Problems& errors) {
   }
 }
 
-// Volumes that some hose or chamber fills.
+// Volumes filled by a hose or chamber.
 bool has_content(const HydraulicsDef& def, const VolumeDef& volume) {
   if (volume.fixed || volume.rigid_volume > 0) return true;
   for (const auto& component : def.components) {
@@ -123,7 +123,7 @@ bool has_content(const HydraulicsDef& def, const VolumeDef& volume) {
   return false;
 }
 
-// Algebraic pressures need a solver that takes them, and no piston may stand on one: its stiffness would be infinite.
+// Algebraic pressures need a solver that supports them. No piston may act on one: its stiffness would be infinite.
 bool takes_quasi_static(Solver solver) {
   return solver == Solver::rodas3 || solver == Solver::implicit_euler;
 }
@@ -160,7 +160,7 @@ void check_volumes(const HydraulicsDef& def, Problems& errors) {
   }
 }
 
-// Components that this one takes load-sensing pressures from, with the key that names each.
+// Components that supply load-sensing pressures to this one, with the key that names each.
 std::vector<std::pair<std::string_view, std::string_view>> ls_references(ComponentDef& component) {
   std::vector<std::pair<std::string_view, std::string_view>> names;
   for (const Field& row : find_component_type(component.type_name())->fields) {
@@ -257,7 +257,7 @@ const ComponentDef* find_chamber(const HydraulicsDef& def, const VolumeDef& volu
 
 namespace {
 
-// The solver's elimination takes so many unknowns; the others' matrices are dense, and a step would take seconds.
+// Limit of the unknowns for the solver's elimination; other solvers use dense matrices, with steps of seconds.
 std::size_t most_unknowns(Solver solver) {
   constexpr std::size_t kMostDense = 1000;
   return solver == Solver::rodas3 || solver == Solver::implicit_euler ? math::PatternLu::kMostUnknowns : kMostDense;

@@ -1,5 +1,4 @@
-// The circuit's part of cavitation: pressures that components see, capacities at the floor, pistons that move through
-// it.
+// The circuit's part of cavitation: pressures for components, capacities at the floor, piston motion through the floor.
 #include "hydraulics/vapour.h"
 
 #include <algorithm>
@@ -11,9 +10,9 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr int kLiquidParts = 4;          // of Runge-Kutta, for the liquid part of a way through the floor
-constexpr double kClosed = 1e-12;        // of what the pistons sweep: rounding of a sum of flows
-constexpr double kLargestChange = 0.02;  // of a pressure, per part of a piston's way
+constexpr int kLiquidParts = 4;          // Runge-Kutta parts, for the liquid part of a displacement through the floor
+constexpr double kClosed = 1e-12;        // share of the flow swept by the pistons: rounding of a sum of flows
+constexpr double kLargestChange = 0.02;  // share of a pressure, per part of a piston's displacement
 constexpr int kMostParts = 64;
 
 }  // namespace
@@ -60,28 +59,29 @@ void Circuit::follow_vapour(const double* y) noexcept {
   }
 }
 
-// Growth of a volume by its chambers along the whole way [m3]; a line's oil follows in move_lines().
+// Growth of a volume by its chambers over the whole displacement [m3]; a line's oil follows in move_lines().
 double Circuit::chamber_growth(std::size_t volume) const noexcept {
   double dV = 0;
   for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
     const Piece& piece = pieces_[k];
     if (piece.position >= 0 && piece.lumped == 1)
-      dV += piece.slope * way_[static_cast<std::size_t>(piece.position - volume_count())];
+      dV += piece.slope * displacement_[static_cast<std::size_t>(piece.position - volume_count())];
   }
   return dV;
 }
 
-// A share of the way, the pistons still at its beginning, with the volume's oil kept exactly; dV: the room that it
-// makes [m3]. (3) below the floor, and above it  du/ds = -dV/C  up from the floor, or  ds/du = -C/dV  down to it.
+// Advances a volume over a share of the displacement, with the pistons at its beginning and the oil kept exactly; dV:
+// growth of the volume [m3]. (3) below the floor, and above it du/ds = -dV/C up from the floor, or ds/du = -C/dV down
+// to it.
 void Circuit::move_through_floor(std::size_t volume, double dV, double share, double* y) noexcept {
   const double floor = vapour_.begins_below[volume];
   const auto go_to = [&](double s) {
     for (int j = 0; j < actuator_count(); ++j) {
       const auto x = static_cast<std::size_t>(position(j));
-      moved_[x] = y[x] + s * share * way_[static_cast<std::size_t>(j)];
+      moved_[x] = y[x] + s * share * displacement_[static_cast<std::size_t>(j)];
     }
   };
-  const auto capacity_on_way = [&](double u, double s) {
+  const auto capacity_along = [&](double u, double s) {
     go_to(s);
     moved_[volume] = std::max(u, floor);
     return capacity_at(volume, moved_.data());
@@ -94,7 +94,7 @@ void Circuit::move_through_floor(std::size_t volume, double dV, double share, do
     s = std::clamp(C * (u - floor) / dV, 0.0, 1.0), u = floor;
     const double h = (1 - s) / kLiquidParts;
     for (int part = 0; part < kLiquidParts; ++part, s += h) {
-      const auto rate = [&](double p, double at) { return -dV / capacity_on_way(p, at); };
+      const auto rate = [&](double p, double at) { return -dV / capacity_along(p, at); };
       const double k_1 = rate(u, s), k_2 = rate(u + 0.5 * h * k_1, s + 0.5 * h);
       const double k_3 = rate(u + 0.5 * h * k_2, s + 0.5 * h), k_4 = rate(u + h * k_3, s + h);
       u += h / 6 * (k_1 + 2 * k_2 + 2 * k_3 + k_4);
@@ -104,7 +104,7 @@ void Circuit::move_through_floor(std::size_t volume, double dV, double share, do
   }
   const double h = (floor - u) / kLiquidParts;
   for (int part = 0; part < kLiquidParts; ++part, u += h) {
-    const auto rate = [&](double p, double at) { return -capacity_on_way(p, at) / dV; };
+    const auto rate = [&](double p, double at) { return -capacity_along(p, at) / dV; };
     const double k_1 = rate(u, s), k_2 = rate(u + 0.5 * h, s + 0.5 * h * k_1);
     const double k_3 = rate(u + 0.5 * h, s + 0.5 * h * k_2), k_4 = rate(u + h, s + h * k_3);
     s += h / 6 * (k_1 + 2 * k_2 + 2 * k_3 + k_4);
@@ -115,7 +115,7 @@ void Circuit::move_through_floor(std::size_t volume, double dV, double share, do
   y[volume] = floor - (1 - s) * dV / vapour_.capacity[volume];
 }
 
-// Whether pistons and lines make up all the flows that change a volume at y, with rates f.
+// True if pistons and lines cause all flows that change a volume at y, with rates f.
 bool Circuit::is_closed(std::size_t volume, const double* y, const double* f) const noexcept {
   double sum = capacity_at(volume, y) * f[volume], size = 0;
   for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
@@ -134,7 +134,7 @@ bool Circuit::is_closed(std::size_t volume, const double* y, const double* f) co
   return std::fabs(sum) <= kClosed * size;
 }
 
-// What the lines of a volume took in a sub-step [m3].
+// Oil taken by the lines of a volume in a sub-step [m3].
 double Circuit::intake_of_lines(std::size_t volume, double h, std::span<const double> pressures) const noexcept {
   double sum = 0;
   for (std::size_t i = 0; i < lines_.size(); ++i) {
@@ -146,7 +146,7 @@ double Circuit::intake_of_lines(std::size_t volume, double h, std::span<const do
   return sum;
 }
 
-// State of one volume at the end of way_ from y_start on, which takes dV of oil from it; as move_pistons().
+// State of one volume after displacement_ from y_start, which removes dV of oil; as move_pistons().
 double Circuit::moved_alone(std::size_t volume, double dV, const double* y_start) noexcept {
   std::copy(y_start, y_start + size_, kept_.begin());
   const double change = vapour_.is_in(volume, y_start)
@@ -159,7 +159,7 @@ double Circuit::moved_alone(std::size_t volume, double dV, const double* y_start
     const auto rate = [&](double at_u, double s) {
       for (int j = 0; j < actuator_count(); ++j) {
         const auto x = static_cast<std::size_t>(position(j));
-        moved_[x] = kept_[x] + s * h * way_[static_cast<std::size_t>(j)];
+        moved_[x] = kept_[x] + s * h * displacement_[static_cast<std::size_t>(j)];
       }
       moved_[volume] = at_u;
       return -dV / capacity_at(volume, moved_.data());
@@ -172,7 +172,7 @@ double Circuit::moved_alone(std::size_t volume, double dV, const double* y_start
       kept_[volume] = moved;
     }
     for (int j = 0; j < actuator_count(); ++j) {
-      kept_[static_cast<std::size_t>(position(j))] += h * way_[static_cast<std::size_t>(j)];
+      kept_[static_cast<std::size_t>(position(j))] += h * displacement_[static_cast<std::size_t>(j)];
     }
   }
   return kept_[volume];
@@ -187,7 +187,7 @@ void Circuit::keep_closed_oil(double h, const double* y_before, const double* f_
     if (!is_looked_at) {
       rates(y, kept_rates_.data());
       for (int j = 0; j < actuator_count(); ++j) {
-        way_[static_cast<std::size_t>(j)] = y[position(j)] - y_before[position(j)];
+        displacement_[static_cast<std::size_t>(j)] = y[position(j)] - y_before[position(j)];
       }
       is_looked_at = true;
     }

@@ -1,14 +1,14 @@
-// Cavitation of a volume: what its state means below the cavitation floor.
+// Cavitation of a volume: the meaning of its state below the cavitation floor.
 //
-// A volume's state u [Pa] is its pressure down to the floor p_f. Below, it is the pressure that oil in tension would
-// have, and stands for the room that the oil does not fill:
+// A volume's state u [Pa] is its pressure down to the floor p_f. Below, it is the pressure of oil in tension and
+// measures the room without oil:
 //   p = u                                        u >= p_f                                            (1)
 //   p = p_f/2 (1 + exp(2 (u - p_f)/p_f))         u <  p_f, slope 1 at the floor                       (2)
 //   V_void = C_f (p_f - u),  V_void' = -sum Q    u <  p_f                                             (3)
-// C_f is the volume's capacity at the floor when it got there, and constant until the oil has filled the room again:
-// (3) is linear in u and in the strokes, so that every integration method keeps the oil of a closed volume to rounding,
-// whatever its tolerance, and u runs through the floor without a bend. The pressure alone cannot do that: between p_f
-// and zero it is one number for any amount of vapour. Not covered: dissolved air, inertia of collapsing bubbles.
+// C_f is the volume's capacity on reaching the floor, constant until the oil has filled the room again: (3) is linear
+// in u and in the strokes, so that every integration method keeps the oil of a closed volume to rounding at any
+// tolerance, and u passes the floor without a bend. The pressure alone cannot serve as the state: between p_f and zero
+// it has one value for any amount of vapour. Not covered: dissolved air, inertia of collapsing bubbles.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@
 
 namespace slew::hydraulics {
 
-// What (2) goes to: the pressure of much vapour.
+// Limit of (2): the pressure at much vapour.
 [[nodiscard]] inline double vapour_pressure_of(double floor) noexcept {
   return 0.5 * floor;
 }
@@ -29,9 +29,9 @@ namespace slew::hydraulics {
   return {0.5 * floor * (1 + slope), slope};
 }
 
-// Of all volumes of a circuit.
+// Cavitation data of all volumes of a circuit.
 struct Vapour {
-  std::vector<double> begins_below;  // Pa; -infinity: this volume takes up no vapour
+  std::vector<double> begins_below;  // Pa; -infinity: this volume does not cavitate
   std::vector<double> capacity;      // C_f [m3/Pa]
 
   [[nodiscard]] bool is_in(std::size_t volume, const double* y) const noexcept {

@@ -161,11 +161,11 @@ BlockLdl::BlockLdl(const BlockPattern& pattern) : nodes_(pattern.nodes), rank_(p
 
 // ---- the plan -------------------------------------------------------------------------------------------------
 
-// fewest neighbours first, of equal ones the first; what a node's elimination couples are its neighbours
+// fewest neighbours first, then the lowest index; eliminating a node couples its neighbours
 void BlockLdl::plan(const BlockPattern& pattern) {
   Neighbours left = neighbours_of(pattern);
   std::vector<bool> is_done(nodes_.size());
-  std::vector<int> unclosed(nodes_.size());  // regular nodes that a closing one waits for
+  std::vector<int> unclosed(nodes_.size());  // count of regular nodes that a closing node waits for
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (nodes_[i].kind == BlockKind::closing) unclosed[i] = static_cast<int>(left[i].size());
   }
@@ -282,7 +282,7 @@ double BlockLdl::root_of_determinant(int node) const noexcept {
   return product;
 }
 
-// Inverse over the independent rows, zero in the others: the largest pivot, by what was put into its row, first.
+// Inverse over the independent rows, zero in the others. Pivots are taken by size relative to the scale of their row.
 void BlockLdl::invert_closing(int node, double tolerance) noexcept {
   const int size = nodes_[at(node)].size, row = first_row_[at(node)];
   Block a{};
@@ -325,7 +325,7 @@ bool BlockLdl::factorize(double tolerance) noexcept {
     } else {
       is_regular = (kind == BlockKind::regular ? invert_regular(node) : factorize_definite(node)) && is_regular;
     }
-    // L of this column beside what it came from; below a definite node C of A = C C^T takes the place of both
+    // L of this column beside its source; below a definite node, C of A = C C^T replaces both
     double* L = scaled_.data();
     for (int i = first_below_[k]; i < first_below_[k + 1]; ++i) {
       const int rows = nodes_[at(below_[at(i)].row)].size;

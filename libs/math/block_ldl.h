@@ -4,18 +4,18 @@
 //       [ G   0  ]     G the rows of constraints                                                    (1)
 //
 // A `regular` node holds unknowns whose own block is regular: a body, or a body with the rows of the joint that hangs
-// it on another one. A `definite` node holds unknowns whose own block is positive definite even when what was
-// eliminated before is taken from it: all nodes of a matrix that is positive definite as a whole. It is factorised by
-// Cholesky, so that stiff and soft unknowns may stand in one block. A `closing` node holds rows that close a loop.
-// Nodes are eliminated one after the other, K = L D L^T with D block-diagonal: of those that may go the one with the
-// fewest neighbours, a closing node after everything that it closes. So the cost of a tree grows linearly with its
-// size, and a loop adds the fill along itself. (A body and its joint go together, not one after the other as in Baraff
-// 1996: -G M^-1 G^T alone would square the condition of M.)
+// it on another one. A `definite` node holds unknowns whose own block stays positive definite after the elimination of
+// earlier nodes: all nodes of a matrix that is positive definite as a whole. It is factorised by Cholesky, so that
+// stiff and soft unknowns may stand in one block. A `closing` node holds rows that close a loop. Nodes are eliminated
+// one after the other, K = L D L^T with D block-diagonal. The next node is the eligible node with the fewest
+// neighbours; a closing node follows all nodes that it closes. So the cost of a tree grows linearly with its size, and
+// a loop adds the fill along itself. (A body and its joint go together, not one after the other as in Baraff 1996: -G
+// M^-1 G^T alone would square the condition of M.)
 //
 // Rows of a closing node that depend on rows eliminated before are found by the pivots of its block and left out: their
 // unknowns become zero, the others solve the rest exactly when the right-hand side is consistent. is_redundant() names
-// them. The plan depends on the pattern alone, the order of all sums on the plan: the same bits wherever it runs.
-// Nothing here allocates after the constructor.
+// them. The plan depends on the pattern alone, the order of all sums on the plan: results are bit-equal on every
+// machine. Nothing here allocates after the constructor.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ struct BlockNode {
 
 struct BlockPattern {
   std::vector<BlockNode> nodes;
-  std::vector<std::pair<int, int>> couplings;  // of two different nodes, each once
+  std::vector<std::pair<int, int>> couplings;  // pairs of different nodes, each once
 };
 
 class BlockLdl {
@@ -54,29 +54,30 @@ class BlockLdl {
   // Adds to the block at (row node, column node) of a coupling: row-major, size of row x size of column.
   void add_coupling(int row, int column, std::span<const double> block) noexcept;
 
-  // What a pivot of a closing row is compared with at least, beside what was summed up to it: of a row that may vanish.
+  // Lower bound of the scale that a closing row's pivot is compared with, beside the sum of its terms; for rows that
+  // may vanish.
   void set_reference(int node, int row, double reference) noexcept {
     reference_[at(first_row_[at(node)] + row)] = reference;
   }
 
-  // A closing row whose pivot is below `tolerance` times what it is compared with is redundant. False when a regular
-  // node is singular to working precision, or a definite one is not definite.
+  // A closing row is redundant if its pivot is below `tolerance` times its scale. False when a regular node is singular
+  // to working precision, or a definite one is not definite.
   [[nodiscard]] bool factorize(double tolerance) noexcept;
   [[nodiscard]] bool is_redundant(int node, int row) const noexcept {
     return is_redundant_[at(first_row_[at(node)] + row)] != 0;
   }
-  // Of all closing rows: pivot over what it is compared with, at most 1. Small near a singular matrix.
+  // Smallest ratio of pivot to scale over all closing rows, at most 1. Small near a singular matrix.
   [[nodiscard]] double smallest_pivot() const noexcept { return smallest_pivot_; }
-  // As a factorisation of another time left it, for who goes by the last one.
+  // Restores the value of an earlier factorisation, for callers that depend on the last one.
   void set_smallest_pivot(double pivot) noexcept { smallest_pivot_ = pivot; }
   [[nodiscard]] int redundant_rows() const noexcept { return redundant_rows_; }
-  // Of a definite node: root of the determinant of what is left of its block when it is eliminated.
+  // Root of the determinant of a definite node's remaining block at its elimination.
   [[nodiscard]] double root_of_determinant(int node) const noexcept;
 
   // K x = b in place; b by first_row().
   void solve(std::span<double> b) const noexcept;
 
-  // Blocks below the diagonal of L, fill included: what a solution costs.
+  // Number of blocks below the diagonal of L, fill included: a measure of the cost of a solution.
   [[nodiscard]] int coupling_count() const noexcept { return static_cast<int>(below_.size()); }
 
  private:
@@ -106,12 +107,13 @@ class BlockLdl {
   std::vector<int> first_below_;  // by place in the order
   std::vector<Update> updates_;   // by column
   std::vector<int> first_update_;
-  std::vector<int> first_value_;   // of diagonal blocks, by node
+  std::vector<int> first_value_;   // first value of the diagonal blocks, by node
   std::vector<double> values_;     // A, then L below the diagonal; below a definite node L times its factor
-  std::vector<double> inverse_;    // of the diagonal blocks, by first_value_; of a definite one Cholesky's factor
-  std::vector<double> scaled_;     // L of the column under way
-  std::vector<double> reference_;  // of each closing row's pivot
-  std::vector<double> scale_;      // of each closing row's pivot, reference included
+  std::vector<double> inverse_;    // inverses of the diagonal blocks, by first_value_; definite nodes: Cholesky's
+                                   // factor
+  std::vector<double> scaled_;     // L of the current column
+  std::vector<double> reference_;  // lower bound of each closing row's scale
+  std::vector<double> scale_;      // scale of each closing row's pivot, reference included
   double smallest_pivot_ = 1;
   std::vector<std::uint8_t> is_redundant_;
   int redundant_rows_ = 0;

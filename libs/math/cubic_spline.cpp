@@ -45,10 +45,10 @@ void find_seconds(std::vector<SplinePoint>& points, SplineEnds ends) {
   }
 }
 
-// straight on from an end
+// straight continuation beyond an end
 SplineValue beyond(const SplinePoint& end, double slope, double x) noexcept {
-  const double way = x - end.x;
-  return {end.y + slope * way, slope, 0, end.integral + way * (end.y + 0.5 * slope * way)};
+  const double dx = x - end.x;
+  return {end.y + slope * dx, slope, 0, end.integral + dx * (end.y + 0.5 * slope * dx)};
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace slew::math {
 namespace {
 
 constexpr std::uint32_t kMostSteps = 100'000;  // within one interval
-constexpr double kJump = 1e-3;                 // of a state's size: beyond, a move of y is an event
+constexpr double kJump = 1e-3;                 // share of a state's size above which a move of y is an event
 
 void ignore_message(int, const char*, const char*, char*, void*) {}
 
@@ -27,7 +27,7 @@ struct CvodeStepper::Memory {
   SUNMatrix matrix = nullptr;
   SUNLinearSolver solver = nullptr;
   void* cvode = nullptr;
-  // what the callbacks see
+  // data of the callbacks
   StiffSystem* system = nullptr;
   const StiffOptions* options = nullptr;
   std::size_t stride = 0;
@@ -114,7 +114,7 @@ CvodeStepper::CvodeStepper(std::size_t jacobian_stride, StiffOptions options)
   SLEW_CHECK(CVodeSetLinearSolver(m.cvode, m.solver, m.matrix) == CV_SUCCESS);
   SLEW_CHECK(CVodeSetJacFn(m.cvode, Memory::jacobian) == CV_SUCCESS);
   SLEW_CHECK(CVodeSetErrHandlerFn(m.cvode, ignore_message, nullptr) == CV_SUCCESS);
-  // one step of nothing: CVODE takes the rest of its memory in its first
+  // one empty step: CVODE allocates the rest of its memory in its first step
   realtype reached = 0;
   SLEW_CHECK(CVode(m.cvode, 1, m.z, &reached, CV_ONE_STEP) >= 0);
 }
@@ -145,7 +145,7 @@ void CvodeStepper::take_along(std::span<const double> y, StiffReport& report) no
   for (std::size_t i = 0; i < y.size(); ++i) memory_->offset[i] += y[i] - reached_[i];
 }
 
-// What accepted() made of a step, as an offset (1); false: too much for one.
+// The change of y by accepted() as an offset (1); false: too large for an offset.
 bool CvodeStepper::take_correction() noexcept {
   for (std::size_t i = 0; i < new_.size(); ++i) {
     if (std::fabs(new_[i] - given_[i]) > kJump * options_.size_of(i, new_[i])) return false;
@@ -159,8 +159,8 @@ StiffReport CvodeStepper::advance(StiffSystem& system, std::span<double> y, doub
   StiffReport report;
   m.system = &system;
   take_along(y, report);
-  double done = 0;    // of the interval, before the last restart in it
-  double begin = t_;  // of the time since then
+  double done = 0;    // part of the interval before its last restart
+  double begin = t_;  // start of the part after it
   bool is_fresh = report.restarts > 0;
   long failures_before = 0, failures = 0;
   CVodeGetNumErrTestFails(m.cvode, &failures_before);
@@ -172,7 +172,7 @@ StiffReport CvodeStepper::advance(StiffSystem& system, std::span<double> y, doub
     int flag = CVodeSetStopTime(m.cvode, t_end);
     if (flag == CV_SUCCESS) flag = CVode(m.cvode, t_end, m.z, &reached, CV_ONE_STEP);
     if (flag < 0) {
-      // once more from here without the past, then no more
+      // retry once from here without the past
       if (is_fresh) break;
       done += t_ - begin;
       begin_at(y, report);

@@ -1,10 +1,10 @@
 // SUNDIALS CVODE (variable-order BDF, Newton with the system's own Jacobian, dense LU) as a StiffIntegrator.
 //
-// It keeps its past over intervals as long as the motion is smooth: restarting every interval costs ten times the
-// accuracy. It starts anew when inputs_jumped(), and when the caller moved y by more than 1e-3 of a state's size since
-// the last interval ended. Smaller moves (a coupling that sets positions right) are taken along: with
+// Keeps its history over intervals while the motion is smooth: restarting every interval costs ten times the accuracy.
+// Restarts after inputs_jumped(), and if the caller moved y by more than 1e-3 of a state's size since the last interval
+// ended. Smaller moves (position corrections of a coupling) become an offset: with
 //   y = z + o,   z' = f(z + o),   o <- o + (y_given - y_reached)                                             (1)
-// z is continuous, and the small jump left in z' is for the error test to judge. Errors per step are held below
+// z is continuous, and the error test judges the small remaining jump in z'. Errors per step are held below
 // rtol (s_i + r_i |y_i|), root mean square. Each interval ends exactly, by CVODE's stop time.
 //
 // The same calls give the same bits. Source: Hindmarsh et al. 2005, ACM TOMS 31, 363. Memory is taken at build; the

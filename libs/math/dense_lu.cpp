@@ -15,7 +15,7 @@ void DenseLu::swap_rows(std::size_t i, std::size_t k) noexcept {
 
 bool DenseLu::factorise() noexcept {
   for (std::size_t k = 0; k < size_; ++k) {
-    // largest element of the column below; the first of equals
+    // largest element of the column below; the first if several are equal
     std::size_t pivot = k;
     for (std::size_t i = k + 1; i < size_; ++i) {
       if (std::fabs(a_[i * size_ + k]) > std::fabs(a_[pivot * size_ + k])) pivot = i;

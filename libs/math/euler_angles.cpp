@@ -7,7 +7,7 @@
 namespace slew::math {
 namespace {
 
-// below it rounding decides the direction of what is left of the axis
+// below it, rounding decides the direction of the remaining axis
 constexpr double kLocked = 1e-15;
 
 double angle_about_z(const Mat3& R) noexcept {

@@ -1,7 +1,7 @@
 // Euler angles of a rotation matrix: the inverses of rotation_zxz and rotation_xyz.
 //
-// The third angle is taken from what the first two leave over, so that the product of the three is R to rounding also
-// where the first two are not unique (gimbal lock); the first is then 0.
+// The third angle is taken from the rotation that remains after the first two, so that the product of the three is R to
+// rounding also where the first two are not unique (gimbal lock); the first is then 0.
 #pragma once
 
 #include <array>

@@ -10,7 +10,7 @@ namespace slew::math {
 namespace {
 
 constexpr int kMostIterations = 12;  // quadratic from a guess one sub-step away; kinks cost a few more
-constexpr double kConverged = 0.1;   // of the tolerance: the iteration's error stays below the method's
+constexpr double kConverged = 0.1;   // share of the tolerance: the iteration's error stays below the method's
 
 }  // namespace
 
@@ -25,7 +25,7 @@ ImplicitEuler::ImplicitEuler(const SparsityPattern& pattern, std::size_t jacobia
   SLEW_CHECK(options_.scale.size() == size_ && options_.relative.size() == size_);
 }
 
-// d_ of (2) in place of its right-hand side.
+// Replaces d_, the right-hand side of (2), by the solution.
 bool ImplicitEuler::solve(const double* J, double c, StiffReport& report) noexcept {
   const bool is_regular = matrix_.factorise(J, c);
   if (matrix_.is_dense()) ++report.dense_factorisations;

@@ -1,12 +1,12 @@
-// Implicit Euler with a fixed sub-step: order 1, L-stable, never blows up, damps what it should not.
+// Implicit Euler with a fixed sub-step: order 1, L-stable, with strong numerical damping.
 //
 //   M (y_new - y) / h = f(y_new)                                                                            (1)
 //   (M/h - J) d = f(y_k) - M (y_k - y)/h,  y_k+1 = y_k + d                                     Newton       (2)
 //
 // h is the interval over the smallest whole number that brings it to maximum_step or below. Newton takes a fresh
 // Jacobian each iteration and ends when max |d_i| / (rtol (s_i + r_i |y_i|)) <= 0.1. A sub-step whose iteration does
-// not end is tried again with half its length (counted as rejected) down to minimum_step, where it is accepted and
-// said. Source: Hairer and Wanner 1996, IV.8. Real-time safe.
+// not converge is repeated with half its length (counted as rejected) down to minimum_step, where it is accepted and
+// reported. Source: Hairer and Wanner 1996, IV.8. Real-time safe.
 #pragma once
 
 #include "math/stage_matrix.h"

@@ -4,7 +4,7 @@
 // On an interval of width h with t = (x - x_i)/h, u = 1 - t and slopes m at the points
 //   y = u^2 (1 + 2t) y_i + t^2 (3 - 2t) y_i+1 + t u h (u m_i - t m_i+1)                              (1)
 // Slopes: weighted harmonic mean of the neighbouring intervals, zero at an extremum of the points (Fritsch and Carlson
-// 1980); two points give a straight line. Beyond the points the curve goes on as Ends says.
+// 1980); two points give a straight line. Ends selects the continuation beyond the points.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct CurvePoint {
 
 struct MonotoneCubic {
   std::vector<CurvePoint> points;  // empty: no curve
-  double slope_before = 0;         // beyond the ends
+  double slope_before = 0;         // slopes beyond the ends
   double slope_behind = 0;
   double zero_integral = 0;  // from the first point to x = 0
 
@@ -42,7 +42,7 @@ struct MonotoneCubic {
 // An empty table gives an empty curve; else the pre-condition of monotone_slopes(). Allocates.
 [[nodiscard]] MonotoneCubic monotone_cubic(const Table& points, Ends ends);
 
-// At any finite x, of a curve that is not empty; at most log2(points) comparisons.
+// Value at any finite x of a non-empty curve; at most log2(points) comparisons.
 [[nodiscard]] double value_at(const MonotoneCubic& curve, double x) noexcept;
 [[nodiscard]] double slope_at(const MonotoneCubic& curve, double x) noexcept;
 [[nodiscard]] double integral_to(const MonotoneCubic& curve, double x) noexcept;  // from 0 to x

@@ -148,7 +148,7 @@ bool PatternLu::factorise(const double* J, double c) noexcept {
   return true;
 }
 
-// Unknowns of a factor with a diagonal of ones, in work_.
+// Substitution with a factor whose diagonal is one, in work_.
 void PatternLu::substitute(const std::vector<Row>& rows, const Slot* column, const double* entry) noexcept {
   double* const w = work_.data();
   for (const Row& row : rows) {

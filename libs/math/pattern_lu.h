@@ -3,9 +3,9 @@
 //
 // The order is the greedy Markowitz order (fewest operations next, the lowest index of equals); the elimination becomes
 // flat lists of slots, so a factorisation is a few hundred multiply-adds without index search. Factors are stored
-// column by column: a solution subtracts each known unknown from the rows that need it, which do not wait for one
+// column by column: a solution subtracts each computed unknown from the rows that need it, which do not depend on one
 // another. Diagonal pivots are safe for the matrices of stiff integrators as long as they stay near or above c;
-// factorise() says when one does not, and the caller then pivots densely (DenseLu).
+// factorise() reports a pivot that does not, and the caller then pivots densely (DenseLu).
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ class SparsityPattern {
 
 class PatternLu {
  public:
-  // so many unknowns fill no more slots than a Slot counts, whatever their pattern
+  // limit of the unknowns: a Slot can count their entries for any pattern
   static constexpr std::size_t kMostUnknowns = 200;
 
   // J will be handed over row-major with this many columns (>= pattern.size()).
@@ -51,7 +51,7 @@ class PatternLu {
     std::uint32_t source;  // in J
     Slot slot;
   };
-  struct Elimination {  // of one entry (i, k) of L
+  struct Elimination {  // elimination of one entry (i, k) of L
     Slot entry;
     Slot updates;  // how many of update_ follow
   };
@@ -72,14 +72,14 @@ class PatternLu {
   std::size_t size_;
   std::size_t stride_;
   std::vector<std::size_t> order_;  // order_[k]: index eliminated k-th
-  std::vector<Slot> slot_;          // of entry (i, k) in elimination order, while the lists are made
+  std::vector<Slot> slot_;          // slot of entry (i, k) in elimination order, while the lists are built
   std::vector<Gather> gather_;
   std::vector<Slot> fill_;          // slots that only the elimination fills
   std::vector<Slot> eliminations_;  // how many of elimination_ belong to pivot k
   std::vector<Elimination> elimination_;
   std::vector<Update> update_;
   std::vector<Row> lower_row_, upper_row_;         // ascending; descending
-  std::vector<Slot> lower_column_, upper_column_;  // of each entry, row by row
+  std::vector<Slot> lower_column_, upper_column_;  // column of each entry, row by row
   std::vector<double> mass_;                       // by pivot
   std::vector<double> value_;                      // diagonal | L by rows ascending | U by rows descending
   std::vector<double> inverse_pivot_;

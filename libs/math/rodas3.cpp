@@ -12,22 +12,22 @@ namespace {
 
 constexpr double kGamma = 0.5;
 constexpr double kC21 = 4, kC31 = 1, kC32 = -1, kC41 = 1, kC42 = -1, kC43 = -8.0 / 3;
-constexpr double kSafety = 0.9;  // below the size that the error estimate would just allow
+constexpr double kSafety = 0.9;  // factor on the size that the error estimate just allows
 constexpr double kShrink = 0.2;  // bounds on the change of the step size from one step to the next
 constexpr double kGrow = 6;
-constexpr double kFirstFraction = 0.1;  // of the interval, first step ever
+constexpr double kFirstFraction = 0.1;  // share of the interval, for the first step
 constexpr double kStretch = 1e-9;       // relative: a rest this small is taken with the step before it
-constexpr int kUncheckedSteps = 10;     // for the rest of an interval once the budget is used up
+constexpr int kUncheckedSteps = 10;     // steps for the rest of an interval after the budget is used up
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLowestOrder = 0.1;  // that two rejections may show
+constexpr double kLowestOrder = 0.1;  // lower bound of the order estimated from two rejections
 
 // A step that was not accepted.
 struct Rejected {
   double h = 0, error = 0;  // s; 0: none
 };
 
-// Of a second rejection: a very stiff transient lets the error fall far slower than h^3, by the order k that both show
-// (Gustafsson 1994), and the next size is h err^(-1/k).
+// Step size after a second rejection: in a very stiff transient the error falls far slower than h^3. Its order k
+// follows from both rejections (Gustafsson 1994), and the next size is h err^(-1/k).
 double shorter(const Rejected& before, const Rejected& now, double factor) noexcept {
   if (!(before.h > now.h) || !(before.error < kInfinity) || !(now.error < kInfinity)) return factor;
   const double order = std::log(before.error / now.error) / std::log(before.h / now.h);
@@ -103,7 +103,7 @@ double Rodas3::integral(const StateFunction& g, std::size_t state, double h, con
   return 2 * q1 + q3 + q4;
 }
 
-// In the derivative at the step's start, else in the new state.
+// First non-finite state: in the derivative at the step's start, else in the new state.
 std::int32_t Rodas3::first_non_finite() const noexcept {
   for (std::size_t i = 0; i < size_; ++i) {
     if (!std::isfinite(f_[i])) return static_cast<std::int32_t>(i);
@@ -128,7 +128,7 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
   const double* J = nullptr;
   Rejected rejected;
   while (rest > 0) {
-    // budget used up: a few more steps, whatever their error
+    // budget used up: a few more steps, with any error
     if (!report.is_over_budget && report.accepted + report.rejected >= options_.substep_budget) {
       report.is_over_budget = true;
       h = std::max(options_.minimum_step, rest / kUncheckedSteps);
@@ -169,7 +169,7 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
     J = nullptr;
     rejected = {};
     rest = reaches_end && !ends_at_bend ? 0 : rest - used;
-    // behind a bend the size before it is tried again
+    // after a bend the step size before it is tried again
     if (!report.is_over_budget && !ends_at_bend) h = next_step(h, used, factor, duration);
   }
   step_size_ = report.is_over_budget ? options_.minimum_step : h;

@@ -5,7 +5,7 @@
 //   c_21 = 4;  c_31 = 1, c_32 = -1;  c_41 = 1, c_42 = -1, c_43 = -8/3                                        (3)
 //   y_new = y + 2 K_1 + K_3 + K_4,   error = K_4                                                             (4)
 // A step needs three f, one J, one LU and four solves. A step is accepted when max |K_4,i| / (rtol (s_i + r_i |y_i|))
-// <= 1; the next size is h clip(0.9 err^(-1/3), 0.2, 6), after two rejections by the order that they show.
+// <= 1; the next size is h clip(0.9 err^(-1/3), 0.2, 6), after two rejections by the order estimated from them.
 //
 // Sources: K. Gustafsson 1994, ACM Trans. Math. Softw. 20, 496 (rejections); A. Sandu et al. 1997, Atmos. Environ. 31,
 // 3459 (RODAS3); form (1) as in Hairer and Wanner 1996, IV.7. M = I unless set_mass() makes rows algebraic: the method
@@ -47,7 +47,7 @@ class Rodas3 final : public StiffIntegrator {
   std::size_t size_;
   StiffOptions options_;
   StageMatrix matrix_;
-  std::int32_t worst_ = -1;  // of the last step tried
+  std::int32_t worst_ = -1;  // worst state of the last step tried
   double step_size_ = 0;
   std::vector<double> f_, k1_, k2_, k3_, k4_, stage_, new_;
 };

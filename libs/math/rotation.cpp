@@ -57,7 +57,7 @@ Quaternion derivative(const Quaternion& q, Vec3 w_A) noexcept {
 }
 
 Quaternion turn_by(Vec3 turn_A) noexcept {
-  // below, for the square of half the angle, the series are right to all digits
+  // limit of the square of half the angle, below which the series are exact to all digits
   constexpr double kSmall = 1e-3;
   const double z = 0.25 * dot(turn_A, turn_A);
   double ratio, cosine;  // sin(half)/half

@@ -12,7 +12,7 @@ struct SinCos {
 // Sine and cosine by one call of the C library, so that every build type runs the same code.
 [[nodiscard]] SinCos sin_cos(double angle) noexcept;
 
-// w + x i + y j + z k; the rotation that it stands for does not depend on its length.
+// w + x i + y j + z k; its rotation does not depend on its length.
 struct Quaternion {
   double w = 1, x = 0, y = 0, z = 0;
 };

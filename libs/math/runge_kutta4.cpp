@@ -7,10 +7,10 @@
 namespace slew::math {
 namespace {
 
-constexpr int kFirstIterations = 60;  // from an arbitrary vector, and where something is suspicious
-constexpr double kGrossError = 0.1;   // of a state and its scale, in one sub-step
-constexpr int kMostSuspicions = 4;    // looked into per interval
-constexpr int kNextIterations = 4;    // from the vector of the interval before
+constexpr int kFirstIterations = 60;  // iterations from an arbitrary vector, and at suspicious sub-steps
+constexpr double kGrossError = 0.1;   // share of a state and its scale, in one sub-step
+constexpr int kMostSuspicions = 4;    // suspicious sub-steps examined per interval
+constexpr int kNextIterations = 4;    // iterations from the vector of the previous interval
 
 }  // namespace
 
@@ -52,8 +52,8 @@ bool RungeKutta4::is_suspicious() const noexcept {
   return 4 * later > kExplicitLimit * kExplicitLimit * earlier;
 }
 
-// The last two stages differ by the third order of the step: where that is a good part of a state, the step is too long
-// for what happens in it, whether it grows or not.
+// The last two stages differ by a term of the third order of the step. If the term is a large part of a state, the step
+// is too long, stable or not.
 void RungeKutta4::watch_error(const double* y, double h, StiffReport& report) const noexcept {
   for (std::size_t i = 0; i < f_.size(); ++i) {
     const double share =

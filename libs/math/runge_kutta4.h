@@ -3,11 +3,11 @@
 //   y_new = y + h/6 (k_1 + 2 k_2 + 2 k_3 + k_4)                                                             (1)
 //
 // h is the interval over the smallest whole number that brings it to maximum_step or below. There is no error control;
-// what is watched is stability: h |lambda|_max by power iteration on the Jacobian has to stay below 2 (the method's
-// limit: 2.79 on the real axis, 2.83 on the imaginary one), at the start of every interval and at sub-steps, four an
-// interval at most, where the stages themselves are suspicious:
+// stability is checked: h |lambda|_max by power iteration on the Jacobian has to stay below 2 (the method's limit: 2.79
+// on the real axis, 2.83 on the imaginary one), at the start of every interval and at sub-steps, at most four an
+// interval, whose stages are suspicious:
 //   2 |k_3 - k_2| / |k_2 - k_1| > 2                       h times the growth of J along k_2 - k_1               (2)
-// A sub-step that is too long for what happens in it without growing, such as a jump of a pressure, shows in
+// A sub-step that is stable and still too long, such as over a jump of a pressure, is detected by
 //   h/6 |k_4 - k_3| > 0.1 (scale + max |y|, |y_new|)      of any state                                          (3)
 // Source: Hairer, Norsett and Wanner 1993, II.1; limits: Hairer and Wanner 1996, IV.2. Real-time safe.
 #pragma once
@@ -17,7 +17,7 @@
 
 namespace slew::math {
 
-inline constexpr double kExplicitLimit = 2;  // of h |lambda|_max
+inline constexpr double kExplicitLimit = 2;  // limit of h |lambda|_max
 
 class RungeKutta4 final : public StiffIntegrator {
  public:

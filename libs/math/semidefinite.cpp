@@ -10,7 +10,7 @@ namespace slew::math {
 
 namespace {
 
-// the columns of every row of L before its diagonal: what reaches the row over rows that are eliminated before
+// the columns of every row of L before its diagonal: all rows coupled to it through rows eliminated before
 std::vector<std::vector<int>> columns_with_fill(const std::vector<std::vector<int>>& coupled) {
   const std::size_t n = coupled.size();
   std::vector<std::vector<int>> columns(n);

@@ -2,13 +2,12 @@
 //
 //   A x = b,   A = L D L^T over the rows that are independent of those before them                    (1)
 // A row whose pivot is below `tolerance` times its scale depends on the rows before it: it is redundant, its unknown
-// becomes zero, and the others solve all equations when b is consistent. So it is always the later row that is named,
-// and the same one wherever it runs. A row's scale is its diagonal element, or a reference where that is larger.
+// becomes zero, and the others solve all equations when b is consistent. So the later row is always named, and the same
+// one on every machine. A row's scale is its diagonal element, or a reference where that is larger.
 //
-// Of a sparse A only the entries that are not zero by structure are given, and of L those and the fill: (k, j) where a
-// path of couplings leads from j to k over rows before j. The order stays that of the rows, so every result has the
-// bits of the dense factorisation. Rows that nothing couples cost nothing together. Nothing here allocates after the
-// constructor.
+// For a sparse A only the structural non-zeros are given; L holds these and the fill: (k, j) where a path of couplings
+// leads from j to k over rows before j. The order stays that of the rows, so every result has the bits of the dense
+// factorisation. Uncoupled rows add no cost to each other. Nothing here allocates after the constructor.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +26,7 @@ class Semidefinite {
   explicit Semidefinite(const std::vector<std::vector<int>>& coupled);
 
   [[nodiscard]] int size() const noexcept { return static_cast<int>(pivot_.size()); }
-  // Of the vector that factorize() takes, and the place of (row, column <= row) in it; -1: zero by structure.
+  // Size of the vector that factorize() takes, and the place of (row, column <= row) in it; -1: zero by structure.
   [[nodiscard]] int entry_count() const noexcept { return static_cast<int>(lower_.size()); }
   [[nodiscard]] int entry(int row, int column) const noexcept;
 
@@ -35,12 +34,12 @@ class Semidefinite {
   void factorize(std::span<const double> a, std::span<const double> reference, double tolerance) noexcept;
   [[nodiscard]] bool is_redundant(int row) const noexcept { return is_redundant_[static_cast<std::size_t>(row)] != 0; }
   [[nodiscard]] int rank() const noexcept { return rank_; }
-  // Of all rows, redundant ones too: pivot over scale, at most 1. Small near a singular matrix.
+  // Smallest ratio of pivot to scale over all rows, redundant ones included, at most 1. Small near a singular matrix.
   [[nodiscard]] double smallest_pivot() const noexcept { return smallest_pivot_; }
 
-  // b in place.
+  // Replaces b by the solution.
   void solve(std::span<double> b) const noexcept;
-  // The same for some rows alone, ascending, that nothing couples to the others.
+  // The same for some rows alone, ascending, that are not coupled to the others.
   void solve(std::span<const int> rows, std::span<double> b) const noexcept;
 
  private:
@@ -49,10 +48,10 @@ class Semidefinite {
     std::size_t begin = 0, end = 0, offset = 0;
   };
   struct Row {
-    std::size_t run = 0, run_end = 0;  // of runs_
-    std::size_t diagonal = 0;          // its entry
+    std::size_t run = 0, run_end = 0;  // indices into runs_
+    std::size_t diagonal = 0;          // entry of the diagonal
   };
-  // Which columns the rows have: where it is all, two loops do not pay for what many leave out.
+  // Columns of the rows; the dense case has loops of its own without the cost of the sparse ones.
   enum class Columns { all, some };
   template <Columns kColumns, typename Visit>
   void for_each_run(std::size_t row, Visit&& visit) const noexcept {
@@ -72,10 +71,10 @@ class Semidefinite {
 
   Columns columns_ = Columns::all;
   std::vector<Row> rows_;
-  std::vector<Run> runs_;      // of rows that have some columns
+  std::vector<Run> runs_;      // runs of columns, row by row
   std::vector<double> lower_;  // L below its diagonal, by entry()
   std::vector<double> pivot_;  // 1 / D
-  std::vector<double> row_;    // of the row under way: L D, then zero again
+  std::vector<double> row_;    // current row: L D, then zero again
   std::vector<std::uint8_t> is_redundant_;
   int rank_ = 0;
   double smallest_pivot_ = 1;

@@ -1,13 +1,13 @@
 // Cholesky's factorisation of small symmetric positive definite matrices, and substitutions with the factor: A = C C^T.
-// Row-major, the factor in the lower triangle; nothing above the diagonal is read. Backward stable: what a matrix of
-// large and small eigenvalues loses is their ratio times the rounding, where an explicit inverse loses its square.
+// Row-major, the factor in the lower triangle; nothing above the diagonal is read. Backward stable: the relative error
+// is the ratio of the eigenvalues times the rounding; an explicit inverse has the square of the ratio.
 #pragma once
 
 #include <cmath>
 
 namespace slew::math {
 
-// In place. False when a pivot is not positive, the rest is then undefined.
+// Factorises in place. False if a pivot is not positive; the rest is then undefined.
 [[nodiscard]] inline bool factorize_cholesky(double* a, int size) noexcept {
   for (int c = 0; c < size; ++c) {
     double pivot = a[c * size + c];

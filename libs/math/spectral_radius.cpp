@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kFresh = 0.05;  // share of the start in the vector of every update
 
-// No two alike nearby: a start that is orthogonal to the wanted vector is not to be expected.
+// Neighbouring values differ, so that the start is unlikely to be orthogonal to the wanted vector.
 double start_of(std::size_t i) noexcept {
   return 1 + 0.1 * static_cast<double>(i % 7);
 }
@@ -23,7 +23,7 @@ void SpectralRadius::restart() noexcept {
   for (std::size_t i = 0; i < v_.size(); ++i) v_[i] = start_of(i);
 }
 
-// v = A_s v / |v|; |A_s v| of the unit vector.
+// v = A_s v / |v|; returns |A_s v| of the unit vector.
 double SpectralRadius::multiply(const double* A) noexcept {
   const std::size_t n = v_.size();
   double norm = 0;
@@ -43,7 +43,7 @@ double SpectralRadius::multiply(const double* A) noexcept {
 }
 
 double SpectralRadius::update(const double* A, int iterations) noexcept {
-  // a part of the start keeps all directions in the vector: one that was slow until now would be missed
+  // a part of the start keeps all directions in the vector, so that a growing one is not missed
   for (std::size_t i = 0; i < v_.size(); ++i) v_[i] += kFresh * start_of(i);
   double length = 0;
   for (const double x : v_) length += x * x;

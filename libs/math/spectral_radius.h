@@ -1,11 +1,11 @@
-// Largest |eigenvalue| of a square matrix by power iteration, and the state that owns it.
+// Largest |eigenvalue| of a square matrix by power iteration, and the state with the largest part in it.
 //
 //   w = D^-1 A D v / |v|,   |lambda|_max ~ sqrt(|A_s v_k+1| |A_s v_k|),  A_s = D^-1 A D                       (1)
 //
 // D holds the typical sizes of the states, so that pressures and positions weigh alike; the mean over two iterations
 // follows a complex pair. The vector is kept between calls: a matrix that changes slowly needs few iterations each.
-// Source: Golub and Van Loan 2013, Matrix Computations, section 7.3. The estimate approaches the value from below
-// when two owners are nearly equal, and may exceed it for strongly non-normal matrices. Real-time safe.
+// Source: Golub and Van Loan 2013, Matrix Computations, section 7.3. The estimate approaches the value from below when
+// two eigenvalues are nearly equal, and may exceed it for strongly non-normal matrices. Real-time safe.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ class SpectralRadius {
   // The state with the largest part in the last vector.
   [[nodiscard]] std::int32_t owner() const noexcept;
   void restart() noexcept;
-  // The vector, for an update to go on from.
+  // The iteration vector, as the start of an update.
   void save(StateWriter& bytes) const { bytes.numbers(v_); }
   void load(StateReader& bytes) noexcept { bytes.numbers(v_); }
 

@@ -1,5 +1,5 @@
-// The matrix c M - J of an implicit stage, factorised sparsely with pivots on the diagonal, and densely where one of
-// them nearly vanishes. Real-time safe.
+// The matrix c M - J of an implicit stage, factorised sparsely with pivots on the diagonal, or densely if one of them
+// nearly vanishes. Real-time safe.
 #pragma once
 
 #include <cstddef>

@@ -2,8 +2,9 @@
 //
 //   M y' = f(y),  M diagonal of ones and zeros                                                        (1)
 //
-// A zero in M makes its row algebraic, 0 = f_i(y), of index 1: df_i/dy_i stays away from zero. Integrators that do not
-// take algebraic rows say so. All of them cover an interval exactly, sub-step inside it, and call accepted() after
+// A zero in M makes its row algebraic, 0 = f_i(y), of index 1: df_i/dy_i stays away from zero. takes_algebraic_rows()
+// reports whether an integrator accepts them. All of them cover an interval exactly, sub-step inside it, and call
+// accepted() after
 // each sub-step. Deterministic: the same system, state and history give the same bits.
 #pragma once
 
@@ -31,9 +32,9 @@ class StiffSystem {
     derivative(y, f);
     return jacobian(y, f);
   }
-  // Time from y, with f = f(y) and J there, to where a law has a sharp bend, as far as can be told [s]; a sub-step that
-  // jumps over a bend into something much stiffer is found out by its error and taken again several times. An adaptive
-  // method ends a sub-step there; what is accepted is still decided by the error.
+  // Estimated time [s] from y, with f = f(y) and J, to a sharp bend of a law. A sub-step that jumps over a bend into a
+  // much stiffer region is rejected by its error several times. An adaptive method therefore ends a sub-step at the
+  // bend; the error still decides on acceptance.
   [[nodiscard]] virtual double time_to_bend(const double* /*y*/, const double* /*f*/, const double* /*J*/) noexcept {
     return std::numeric_limits<double>::infinity();
   }
@@ -41,16 +42,15 @@ class StiffSystem {
   virtual void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept = 0;
 };
 
-// What the integrators judge errors and residuals by: the size of state i is s_i + r_i |y_i|, with an r_i of its own
-// below zero.
+// Scales of errors and residuals: the size of state i is s_i + r_i |y_i|, with a separate r_i below zero.
 struct StiffOptions {
   double relative_tolerance = 1e-4;
   double minimum_step = 1e-6;                    // s
-  double maximum_step = 1e-4;                    // s, sub-step of the integrators with a fixed one
+  double maximum_step = 1e-4;                    // s, sub-step of the fixed-step integrators
   std::uint32_t substep_budget = 200;            // accepted and rejected sub-steps per interval
   std::vector<double> scale;                     // s_i of the error measure, one per state, > 0
   std::vector<double> relative;                  // r_i: 1, or 0 for a state whose zero is arbitrary (a position)
-  std::vector<double> relative_below_zero = {};  // r_i of y_i < 0; empty: the same
+  std::vector<double> relative_below_zero = {};  // r_i for y_i < 0; empty: the same
 
   [[nodiscard]] double size_of(std::size_t i, double y) const noexcept {
     return scale[i] + (y < 0 && !relative_below_zero.empty() ? relative_below_zero : relative)[i] * std::fabs(y);
@@ -60,18 +60,19 @@ struct StiffOptions {
 struct StiffReport {
   std::uint32_t accepted = 0;
   std::uint32_t rejected = 0;
-  std::uint32_t dense_factorisations = 0;  // when a diagonal pivot was too small
-  std::uint32_t restarts = 0;              // of a method with a memory
+  std::uint32_t dense_factorisations = 0;  // factorisations with dense pivoting, since a diagonal pivot was too small
+  std::uint32_t restarts = 0;              // restarts of a multistep method
   bool is_over_budget = false;             // rodas3: the rest of the interval was accepted with its error;
                                            // implicit Euler: more halved sub-steps than the budget
   bool is_at_minimum_step = false;         // a step was accepted with its error because it could not be shorter
   bool is_unstable = false;                // an explicit method's sub-step is beyond its stability limit
   bool is_finite = true;                   // false: y is the last finite state, the interval is not finished
-  double largest_error = 0;                // of the accepted steps, 1 = tolerance; explicit: h |lambda|_max / limit
+  double largest_error = 0;                // largest error of the accepted steps, 1 = tolerance; explicit: h
+                                           // |lambda|_max / limit
   std::int32_t worst_state = -1;           // the state with that error; when not finite: the first such state
 };
 
-// Of one state: g(y_i) and its slope.
+// A function of one state: g(y_i) and its slope.
 class StateFunction {
  public:
   struct Value {
@@ -88,25 +89,25 @@ class StiffIntegrator {
   // Advances y by `duration` seconds.
   virtual StiffReport advance(StiffSystem& system, std::span<double> y, double duration) noexcept = 0;
 
-  // The inputs of the system changed by a step since the last interval. Methods without a memory need not know.
+  // Announces a jump of the system's inputs since the last interval. One-step methods ignore it.
   virtual void inputs_jumped() noexcept {}
   // Forgets the past: a new start.
   virtual void restart() noexcept = 0;
 
-  // Size that the next sub-step would like to have; a guess that may be set.
+  // Proposed size of the next sub-step; may be set.
   [[nodiscard]] virtual double step_size() const noexcept = 0;
   virtual void set_step_size(double h) noexcept = 0;
-  // Raw bits of all that the future depends on beside y.
+  // Raw bits of the state beside y that influences later results.
   virtual void add_to(StateHash& hash) const noexcept { hash.add(step_size()); }
-  // The same, to be put back; the interval to come is then the one that would have come.
-  // False: of a method whose past cannot be put back.
+  // The same state as bytes, for a restart with identical results.
+  // False: the method's history cannot be restored.
   [[nodiscard]] virtual bool can_save() const noexcept { return true; }
   virtual void save(StateWriter& bytes) const { static_cast<void>(bytes); }
   virtual void load(StateReader& bytes) noexcept { static_cast<void>(bytes); }
 
-  // Integral of g(y_i), i = state, over the sub-step that is being accepted; for StiffSystem::accepted() only. As the
-  // method itself would integrate it where that differs from a parabola: what flows out of one state and into another
-  // is the same.
+  // Integral of g(y_i), i = state, over the sub-step that is being accepted; for StiffSystem::accepted() only.
+  // Integrated as the method itself does where that differs from a parabola, so that an outflow of one state equals the
+  // inflow of another.
   [[nodiscard]] virtual double integral(const StateFunction& g, std::size_t state, double h, const double* y_before,
                                         const double* f_before, const double* y) const noexcept {
     const StateFunction::Value before = g.at(y_before[state]);

@@ -11,7 +11,7 @@ struct StopForce {
 };
 
 [[nodiscard]] inline StopForce stop_force(double x, double v, double x_min, double x_max, double k, double c) noexcept {
-  // the sign in which depth and its rate grow
+  // sign of the direction in which depth and its rate grow
   const double side = x < x_min ? -1.0 : x > x_max ? 1.0 : 0.0;
   if (side == 0) return {};
   const double push = k * (side < 0 ? x_min - x : x - x_max) + side * c * v;

@@ -169,7 +169,7 @@ struct Mat3 {
           Vec3(a.c[0].lanes * y - a.c[1].lanes * x)};
 }
 
-// Inverse of a symmetric positive definite matrix by cofactors; the caller knows that it is one.
+// Inverse of a symmetric matrix by cofactors. Pre-condition: positive definite.
 [[nodiscard]] inline Mat3 inverse_symmetric(const Mat3& a) noexcept {
   const Vec3 c0 = cross(a.c[1], a.c[2]), c1 = cross(a.c[2], a.c[0]), c2 = cross(a.c[0], a.c[1]);
   const double scale = 1 / dot(a.c[0], c0);

@@ -17,8 +17,8 @@ namespace {
 using multibody::kBody;
 using multibody::RowValue;
 
-// Tolerances of the multipliers in the iteration: lambda's of its size, at least 1, mu's in m/s and rad/s. They have no
-// part in the error of a step, and rounding in g over the step is what they are known to.
+// Tolerances of the multipliers in the iteration: for lambda relative to its size, at least 1, for mu in m/s and rad/s.
+// They take no part in the error of a step; their accuracy is rounding in g over the step.
 constexpr double kMultiplierTolerance = 1e-3;
 
 // (1); y: q, u, bristles, lambda, mu
@@ -89,7 +89,7 @@ class BodyEquations final : public AlgebraicEquation {
     multibody::read_bodies(body_, bws_.ldl, bws_.solution, {r + q, u});
     for (std::size_t j = 0; j < u; ++j) r[q + j] = -r[q + j];
     add_multipliers(lambda, {r + q, u});
-    // coordinates follow the speeds and what mu adds to them
+    // coordinates follow the speeds and the correction by mu
     pushed_.q.assign(y, y + q);
     pushed_.u = bodies_.u;
     add_multipliers(mu, pushed_.u);
@@ -103,7 +103,7 @@ class BodyEquations final : public AlgebraicEquation {
     }
   }
 
-  // the state that the solver's values stand for, in joint coordinates
+  // the state of the solver's values, in joint coordinates
   const multibody::State& take(const double* y) noexcept {
     std::copy_n(y, bodies_.q.size(), bodies_.q.begin());
     std::copy_n(y + bodies_.q.size(), bodies_.u.size(), bodies_.u.begin());
@@ -136,7 +136,7 @@ class BodyEquations final : public AlgebraicEquation {
     return bristle_rates_;
   }
 
-  // of the last solution, by row
+  // multipliers of the last solution, by row
   [[nodiscard]] std::vector<double> multipliers() const {
     std::vector<double> lambda(rows_);
     for (std::size_t i = 1; i < body_.joints.size(); ++i) {

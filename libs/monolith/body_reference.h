@@ -5,11 +5,11 @@
 //   q' = rates(q, u + G^T mu)
 //   M u' + G^T lambda = Q(q, u),   g(q) = 0,   G u = 0                                                (1)
 // the stabilised form of index 2 of Gear, Leimkuhler and Gupta 1985: positions and speeds stay on the joints by
-// themselves, and mu stays at the size of the error. Nothing is projected, nothing is started anew. Bristles of joints
-// are variables of their own. In common with the other reference are the laws of the elements and the rows;
-// coordinates, equations, linear algebra and solver are others.
+// themselves, and mu stays at the size of the error. There is no projection and no restart. Bristles of joints are
+// variables of their own. This reference shares the laws of the elements and the rows with the other one; coordinates,
+// equations, linear algebra and solver differ.
 //
-// What it does not cover: contacts, and singular positions, in which (1) has no unique multipliers: IDA then gives up.
+// Not covered: contacts, and singular positions, in which (1) has no unique multipliers: IDA then gives up.
 #pragma once
 
 #include "monolith/mechanics_reference.h"

@@ -14,15 +14,15 @@
 namespace slew::monolith {
 namespace {
 
-constexpr double kFirstStep = 0.1;      // s, times the root of the tolerance: what the first order is good for
+constexpr double kFirstStep = 0.1;      // s, times the root of the tolerance: the accuracy of the first order
 constexpr long kMostSteps = 2'000'000;  // within one advance
 
-// increments of difference quotients: of y and 1, the variables being of the order of a metre, a second, a turn; of the
-// rates, in which a mechanism is linear
+// increments of difference quotients: for y relative to y and 1, since the variables are of the order of a metre, a
+// second, a turn; for the rates, in which a mechanism is linear
 const double kIncrement = std::sqrt(2.2e-16);
 constexpr double kRateIncrement = 1;
 
-// the equation, and how often its Jacobian asked for residuals
+// the equation, and the count of residuals for its Jacobian
 struct Counted {
   AlgebraicEquation& equation;
   long residuals_of_jacobians = 0;
@@ -111,7 +111,8 @@ DaeSolver::DaeSolver(AlgebraicEquation& equation, double t, const DaeVariables& 
   SLEW_CHECK(IDASetId(m.ida, m.kind) == IDA_SUCCESS);
   SLEW_CHECK(IDASetSuppressAlg(m.ida, SUNTRUE) == IDA_SUCCESS);
   SLEW_CHECK(IDASetMaxNumSteps(m.ida, kMostSteps) == IDA_SUCCESS);
-  // IDA's own first step goes with the tolerance itself; multipliers, which are differences over the step, drown then
+  // IDA's own first step scales with the tolerance itself; multipliers, which are differences over the step, would then
+  // be lost in rounding
   SLEW_CHECK(IDASetInitStep(m.ida, kFirstStep * std::sqrt(relative)) == IDA_SUCCESS);
   SLEW_CHECK(IDASetErrHandlerFn(m.ida, ignore_message, nullptr) == IDA_SUCCESS);
 }

@@ -18,13 +18,13 @@ namespace slew::monolith {
 class AlgebraicEquation {
  public:
   virtual ~AlgebraicEquation() = default;
-  // F into r: as many as y.
+  // Writes F into r, of the size of y.
   virtual void residual(double t, const double* y, const double* y_rate, double* r) noexcept = 0;
 };
 
 enum class VariableKind : unsigned char { algebraic, differential };
 
-// By variable.
+// Values by variable.
 struct DaeVariables {
   std::vector<double> start, start_rate;  // consistent: F = 0
   std::vector<double> absolute;           // tolerances
@@ -39,7 +39,7 @@ class DaeSolver {
   DaeSolver(const DaeSolver&) = delete;
   DaeSolver& operator=(const DaeSolver&) = delete;
 
-  // To exactly t_end > t. Empty: done; else what IDA says.
+  // Advances to exactly t_end > t. Empty: done; else IDA's message.
   [[nodiscard]] std::string advance(double t_end);
 
   [[nodiscard]] std::span<const double> y() const noexcept;

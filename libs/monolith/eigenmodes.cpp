@@ -16,10 +16,10 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 
-// eigenvalues that differ by less than this part are one: differences of the equations are right to 1e-8
+// relative difference below which eigenvalues are equal: differences of the equations are accurate to 1e-8
 constexpr double kEqual = 1e-6;
 constexpr int kBalancingPasses = 20;
-// a growth that rounding makes of none
+// growth below which rounding is the cause
 constexpr double kNoGrowth = 1e-9;
 
 // rows and columns of like size by powers of two (Osborne 1960)
@@ -48,7 +48,7 @@ bool are_equal(std::complex<double> a, std::complex<double> b) {
   return std::abs(a - b) <= kEqual * std::max(std::abs(a), std::abs(b));
 }
 
-// columns of the vectors whose values are nearest to one value
+// columns of the vectors with the values nearest to one value
 MatrixXcd nearest(const VectorXcd& values, const MatrixXcd& vectors, std::complex<double> value, std::size_t count) {
   std::vector<Index> order(static_cast<std::size_t>(values.size()));
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);

@@ -6,7 +6,7 @@
 namespace slew::monolith {
 namespace {
 
-// of each state's scale: 1e-7 rad, 10 Pa; far inside the smoothing of every law, far above rounding
+// share of each state's scale: 1e-7 rad, 10 Pa; far inside the smoothing of every law, far above rounding
 constexpr double kDifference = 1e-5;
 
 std::vector<std::size_t> free_states(const SceneEquations& equations, Part part) {
@@ -44,7 +44,7 @@ Status find_modes(SceneEquations& equations, double t, std::span<const double> y
   const std::size_t n = states.size();
   result.states = static_cast<int>(n);
   std::vector<double> moved(y.begin(), y.end()), above(y.size()), below(y.size()), A(n * n);
-  // the forces to hold are those of y
+  // the held forces are those of y
   equations.rates(t, y.data(), above.data());
   if (part == Part::mechanics_with_held_rows) equations.set_row_forces(RowForces::held);
   bool is_finite = true;

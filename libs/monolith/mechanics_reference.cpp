@@ -14,7 +14,7 @@
 namespace slew::monolith {
 namespace {
 
-// loops are closed in the solver's values so often [s]: what it violates grows with the square of the time
+// interval [s] for closing loops in the solver's values: the violation grows with the square of the time
 constexpr double kClosingWindow = 0.05;
 
 // (1)
@@ -41,12 +41,12 @@ class MechanicsEquations final : public DifferentialEquation {
     for (std::size_t k = 0; k < state_.bristles.size(); ++k) {
       f[coordinates + speeds + k] = multibody::joint_bristle_rate(model_, k, ws_.row_v, state_.bristles[k]);
     }
-    // with the solver's own quaternions, whose length the rates keep
+    // use the solver's own quaternions, whose length the rates keep
     multibody::coordinate_rates(model_, ws_, {y, coordinates}, state_.u, {f, coordinates});
     multibody::accelerations(model_, ws_, forces_, {f + coordinates, speeds});
   }
 
-  // the state that the solver's values stand for; whether its loops are closed
+  // the state of the solver's values; true if its loops are closed
   bool take(double t, const double* y) noexcept {
     state_.time = t;
     std::copy_n(y, state_.q.size(), state_.q.begin());
@@ -94,12 +94,12 @@ Status integrate_mechanics(const multibody::MechanicsDef& mechanics, std::span<c
   for (const double time : times) {
     SLEW_CHECK(time >= solver.time());
     bool is_closed = equations.take(solver.time(), solver.y().data());
-    const double begin = solver.time(), way = time - begin;
-    const int windows = !(way > 0)                         ? 0
+    const double begin = solver.time(), span = time - begin;
+    const int windows = !(span > 0)                        ? 0
                         : !result.model.has_closing_rows() ? 1
-                                                           : static_cast<int>(std::ceil(way / kClosingWindow));
+                                                           : static_cast<int>(std::ceil(span / kClosingWindow));
     for (int k = 1; k <= windows; ++k) {
-      const double next = k == windows ? time : begin + way * k / windows;
+      const double next = k == windows ? time : begin + span * k / windows;
       const std::string failure = solver.advance(next);
       result.statistics = solver.statistics();
       if (!failure.empty()) return give_up(failure);

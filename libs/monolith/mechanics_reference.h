@@ -1,14 +1,14 @@
-// Mechanics alone, to tight tolerances: what a formulation, an integrator and a step are judged against.
+// Mechanics alone, to tight tolerances: the reference for formulations, integrators and steps.
 //
 //   q' = coordinate rates,   u' = f(P(q, u)),   P: nearest state on the loops                                (1)
 // in joint coordinates under CVODE's BDF (stiff_solver.h). Joints of the tree hold by themselves; cut joints are closed
-// by P (multibody::project) before every evaluation, and every 50 ms in the solver's own values, from which it then
-// goes on anew. Forces are those of the elements, and friction and limits of joints; their corners cost many small
-// steps. Bristles of joint friction are states, with the rates of joint_law.h. Not for real time.
+// by P (multibody::project) before every evaluation, and every 50 ms in the solver's own values, with a restart. Forces
+// are those of the elements, and friction and limits of joints; their corners cost many small steps. Bristles of joint
+// friction are states, with the rates of joint_law.h. Not for real time.
 // A second reference shares neither coordinates nor equations nor solver with this one: body_reference.h.
 //
-// What it does not cover: hydraulics and their ports (monolith.h), formulations and steps of the scene, contacts: what
-// they remember (impact speeds, bristles that go from point to point) changes at the ends of steps.
+// Not covered: hydraulics and their ports (monolith.h), formulations and steps of the scene, contacts: their memory
+// (impact speeds, bristles that move from point to point) changes at the ends of steps.
 #pragma once
 
 #include <span>
@@ -41,7 +41,7 @@ struct MechanicsReference {
 
 // States of the mechanism at the given times [s, rising, the first at least 0 = the scene's start]. Pre-condition:
 // validate() found nothing. Errors: a pair of shapes is tested for contact (bad_input); the solver gave up (diverged),
-// with the time: the states before are there.
+// with the time; earlier states are kept.
 [[nodiscard]] Status integrate_mechanics(const multibody::MechanicsDef& mechanics, std::span<const double> times,
                                          const MechanicsReferenceOptions& options, MechanicsReference& result);
 

@@ -10,7 +10,7 @@
 namespace slew::monolith {
 namespace {
 
-// loops are closed in the solver's values so often: what it violates grows with the square of the time
+// interval for closing loops in the solver's values: the violation grows with the square of the time
 constexpr SimDuration kWindow = {50'000'000};
 
 std::vector<double> tolerances(const SceneEquations& equations, double factor) {
@@ -79,7 +79,7 @@ Status Monolith::advance_to(SimTime t, std::span<const double> controls_begin, s
   bool has_kink = must_restart_;
   for (std::size_t i = 0; i < slope_.size(); ++i) {
     slope_[i] = (controls_end[i] - controls_begin[i]) / duration;
-    // a ramp that goes on may differ by rounding
+    // a continued ramp may differ by rounding
     const double rounding = 1e-9 * std::max(std::fabs(slope_[i]), std::fabs(slope_now_[i]));
     has_kink = has_kink || controls_begin[i] != control_end_[i] || std::fabs(slope_[i] - slope_now_[i]) > rounding;
     control_end_[i] = controls_end[i];
@@ -98,7 +98,7 @@ Status Monolith::advance_to(SimTime t, std::span<const double> controls_begin, s
   return Status::error(ExitCode::diverged, "the reference integration ended at " + std::to_string(solver_.time()) +
                                                " s (" + failure + "); it could not follow " +
                                                equations_.state_name(solver_.worst_state()) +
-                                               "; look at what happens there, or ask for another tolerance");
+                                               "; check the scene at that time, or set another tolerance");
 }
 
 Status Monolith::set_parameter(std::string_view path, double value) {

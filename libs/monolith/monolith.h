@@ -3,9 +3,9 @@
 // A co-simulation is judged against it: same laws, same start, same controls, no coupling. BDF at rtol 1e-9 with
 // absolute tolerances of 1e-9 of each state's scale (0.01 rad, m, rad/s, m/s; pressure scale of the scene; 1 kJ); the
 // integration restarts at every change of a control, of its slope, or of a parameter, and quaternions are normalised
-// there; with joints that are cut also every 50 ms, where these are closed. Controls are what the components receive
-// (after dead zone, ramp and scale), by channel index; they are held over a call of advance_to, as a tick holds them
-// over a communication step, or go linearly over it.
+// there; with joints that are cut also every 50 ms, where these are closed. Controls are the values that the components
+// receive (after dead zone, ramp and scale), by channel index; they are held over a call of advance_to, as a tick holds
+// them over a communication step, or go linearly over it.
 //
 // Card: docs/models/coupling_reference_monolith.md. Not for real time: it allocates and its cost is not bounded.
 #pragma once
@@ -27,7 +27,7 @@ namespace slew::monolith {
 
 struct MonolithOptions {
   double relative_tolerance = 1e-9;
-  double absolute_tolerance = 1e-9;  // of each state's scale
+  double absolute_tolerance = 1e-9;  // tolerance in units of each state's scale
 };
 
 class Monolith final : private DifferentialEquation {
@@ -39,15 +39,15 @@ class Monolith final : private DifferentialEquation {
   Status start();
 
   // Continues to t > time(). controls: held; controls_begin, controls_end: linear in between. One value per channel.
-  // Error (diverged): CVODE gave up, with the time and the state that it could not follow; the state is the one there.
+  // Error (diverged): CVODE gave up, with the time and the failing state; the state stays at that time.
   Status advance_to(SimTime t, std::span<const double> controls);
   Status advance_to(SimTime t, std::span<const double> controls_begin, std::span<const double> controls_end);
 
-  // A live parameter jumps to its new SI value now.
+  // Sets a live parameter to its new SI value at once.
   Status set_parameter(std::string_view path, double value);
   [[nodiscard]] std::optional<double> parameter(std::string_view path) const { return equations_.parameter(path); }
 
-  // At time(), after start() or advance_to()
+  // Values at time(), after start() or advance_to()
   [[nodiscard]] SimTime time() const noexcept { return time_; }
   [[nodiscard]] std::span<const PortState> ports() const noexcept { return equations_.ports(); }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept { return equations_.variables(); }

@@ -14,7 +14,7 @@
 namespace slew::monolith {
 namespace {
 
-constexpr double kAngleScale = 0.01;           // rad: with 1e-9 an error of about 1e-3 N of a stiff oil spring
+constexpr double kAngleScale = 0.01;           // rad: with 1e-9 an error of about 1e-3 N in a stiff oil spring
 constexpr double kLengthScale = 0.01;          // m
 constexpr double kMechanismSpeedScale = 0.01;  // rad/s, m/s
 constexpr double kWorkScale = 1e3;             // J
@@ -77,7 +77,7 @@ std::vector<double> SceneEquations::absolute_scales() const {
   }
   std::fill(scale.begin() + static_cast<std::ptrdiff_t>(u_), scale.begin() + static_cast<std::ptrdiff_t>(z_),
             kMechanismSpeedScale);
-  // bristles: the bending at which they slide
+  // scale of bristles: the bending at which they slide
   for (std::size_t k = 0; k < state_.bristles.size(); ++k) {
     if (k < ports_.size()) continue;
     const multibody::JointLaw& law = multibody::law_of(model_, k);
@@ -228,7 +228,7 @@ Status SceneEquations::set_parameter(std::string_view path, double value) {
     if (index >= 0 && circuit_->set_parameter(index, value) == hydraulics::ParameterResult::ok) return Status::ok();
     if (index >= 0) return Status::error(ExitCode::bad_input, std::string(path) + ": the value is out of its range");
   }
-  // how the machine is split says nothing about the undivided one
+  // settings of the split have no effect on the undivided machine
   if (levels_.change(path, value)) return Status::ok();
   return Status::error(ExitCode::bad_input, std::string(path) + ": there is no live parameter of this name");
 }

@@ -1,4 +1,4 @@
-// All physics of a scene as one system of ordinary differential equations y' = f(t, y), nothing split.
+// All physics of a scene as one undivided system of ordinary differential equations y' = f(t, y).
 //
 //   y = [ q | u | z | p of all volumes | component states | work and impulse of all ports ]          (1)
 //   q' = multibody coordinate rates,   u' = u'_free + M^-1 J^T r                                     (2)
@@ -10,12 +10,12 @@
 //   control(t) = control_0 + (t - t_0) slope                                                         (7)
 //
 // q and u hold the modes of flexible bodies and the coordinates between segments beside those of joints; z are bristles
-// of joint friction, one a row, none in a scene without. Joints that are cut are closed by projecting q and u onto them
-// before every evaluation (multibody/constraints/loops.h); what y itself violates meanwhile is close()'s to take away.
+// of joint friction, one a row, none in a scene without. Cut joints are closed by projecting q and u onto them before
+// every evaluation (multibody/constraints/loops.h); close() removes the violation of y itself.
 //
-// The laws are the very code that the split simulation runs: multibody dynamics, coupling::LineForceLaw (3),
-// multibody::JointLaw (4), hydraulics::Circuit::rates (5). What differs is only that nothing is held, extrapolated or
-// replaced by a reduced model. Not covered: contact.
+// The laws are the code of the split simulation: multibody dynamics, coupling::LineForceLaw (3), multibody::JointLaw
+// (4), hydraulics::Circuit::rates (5). The only difference: no value is held, extrapolated or replaced by a reduced
+// model. Not covered: contact.
 #pragma once
 
 #include <memory>
@@ -41,14 +41,14 @@ struct PortState {
   double x = 0, v = 0;    // stroke [m], speed [m/s]
   double a = 0;           // m/s2
   double F = 0;           // pressure force [N]
-  double line_force = 0;  // less friction plus end stop [N]
+  double line_force = 0;  // pressure force less friction plus end stop [N]
   double friction = 0;    // N
   double stop = 0;        // N
   double work = 0;        // integral of F v dt since the start [J]
   double impulse = 0;     // integral of F dt since the start [N s]
 };
 
-// Whom a state belongs to: "joint Body_Pillar", "mode 2 of Boom", "volume Vol_LiftCyl_A", "component L90Lift".
+// Owner of a state: "joint Body_Pillar", "mode 2 of Boom", "volume Vol_LiftCyl_A", "component L90Lift".
 struct StateOwner {
   enum class Kind : unsigned char { joint, mode, volume, component, port };
   Kind kind = Kind::joint;
@@ -56,7 +56,7 @@ struct StateOwner {
   bool operator==(const StateOwner&) const = default;
 };
 
-// Forces of cylinders, and of joints' friction and limits: as the state says, or as they were.
+// Forces of cylinders, and of joints' friction and limits: from the state, or held.
 enum class RowForces : unsigned char { follow, held };
 
 class SceneEquations {
@@ -67,25 +67,26 @@ class SceneEquations {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t port_count() const noexcept { return ports_.size(); }
   [[nodiscard]] const std::string& port_name(std::size_t port) const { return ports_[port].name; }
-  // Sizes by which an error counts as small: y_i matters down to 1e-9 absolute_scale_i or so.
+  // Scales of errors: y_i is significant down to about 1e-9 absolute_scale_i.
   [[nodiscard]] std::vector<double> absolute_scales() const;
-  // What y_i is, for messages.
+  // Name of y_i, for messages.
   [[nodiscard]] std::string state_name(std::size_t index) const;
 
   [[nodiscard]] StateOwner owner(std::size_t index) const;
-  // Not free: a fixed volume's pressure, a prescribed coordinate, work and impulse of a port, what has no bristles.
+  // False for a fixed volume's pressure, a prescribed coordinate, work and impulse of a port, and rows without
+  // bristles.
   [[nodiscard]] bool is_held(std::size_t index) const noexcept;
 
-  // The instant that a co-simulation of the same scene has reached, with its live parameters: y without the work.
-  // circuit: null where the scene has none; circuit_y: its state.
+  // Takes the instant of a co-simulation of the same scene, with its live parameters: y without the work. circuit: null
+  // if the scene has none; circuit_y: its state.
   void take(const multibody::Model& model, const multibody::State& state, const hydraulics::Circuit* circuit,
             std::span<const double> circuit_y, std::span<double> y);
-  // No more friction of cylinders, no Coulomb friction and no bristles of joints.
+  // Removes friction of cylinders, Coulomb friction and bristles of joints.
   void neglect_dry_friction();
-  // What rates() does with the rows' forces; held: those of the last rates() before.
+  // Treatment of the rows' forces in rates(); held: those of the previous rates().
   void set_row_forces(RowForces forces) noexcept { row_forces_ = forces; }
 
-  // Start state of the scene: mechanism as the scene poses it, circuit from the static forces that hold the ports.
+  // Start state of the scene: mechanism in the scene's pose, circuit from the static forces that hold the ports.
   Status start(std::span<double> y);
 
   // Input channels over the time from t_0 on, (7); both by channel index.
@@ -93,14 +94,14 @@ class SceneEquations {
 
   // Error: no live parameter of that path, or a value out of range.
   Status set_parameter(std::string_view path, double value);
-  // Its value now, SI; none: no live parameter of that path.
+  // Present value, SI; none: no live parameter of that path.
   [[nodiscard]] std::optional<double> parameter(std::string_view path) const;
 
   // (2) to (6)
   void rates(double t, const double* y, double* f) noexcept;
   // Unit quaternions, as the multibody steps leave them.
   void normalize(std::span<double> y) const noexcept;
-  // Whether some joint is cut, and y onto these joints; false: they cannot be closed.
+  // True if some joint is cut; and projection of y onto these joints, false if they cannot be closed.
   [[nodiscard]] bool has_loops() const noexcept { return model_.has_closing_rows(); }
   [[nodiscard]] bool close(double t, std::span<double> y) noexcept;
 
@@ -110,7 +111,7 @@ class SceneEquations {
   [[nodiscard]] std::span<const PortState> ports() const noexcept { return port_states_; }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept { return variables_; }
   void read_variables(std::span<double> values);
-  // The pair whose shapes touch; empty when none does. What contacts remember is not integrated here.
+  // The pair whose shapes touch; empty without contact. The memory of contacts is not integrated here.
   [[nodiscard]] std::string touching_pair() const;
   [[nodiscard]] const multibody::Model& model() const noexcept { return model_; }
   [[nodiscard]] const multibody::State& mechanism_state() const noexcept { return state_; }
@@ -141,7 +142,7 @@ class SceneEquations {
   std::unique_ptr<hydraulics::Circuit> circuit_;  // null: none in the scene
   hydraulics::StartState start_ = hydraulics::StartState::equilibrium;
   std::vector<Port> ports_;
-  coupling::PortLevels levels_;          // taken and without effect
+  coupling::PortLevels levels_;          // accepted, without effect
   std::vector<int> control_of_channel_;  // -1: the channel is not for this circuit
   std::vector<int> load_of_channel_;     // -1: it drives no point force or torque
   double control_time_ = 0;

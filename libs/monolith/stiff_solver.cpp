@@ -98,7 +98,7 @@ std::span<const double> StiffSolver::y() const noexcept {
 
 std::size_t StiffSolver::worst_state() const {
   const auto n = static_cast<std::size_t>(N_VGetLength(memory_->y));
-  // the solver's own weights, of relative and absolute tolerance together
+  // the solver's own weights, from relative and absolute tolerance
   const std::unique_ptr<_generic_N_Vector, void (*)(N_Vector)> weights(N_VClone(memory_->work), N_VDestroy);
   if (weights == nullptr || CVodeGetEstLocalErrors(memory_->cvode, memory_->work) != CV_SUCCESS ||
       CVodeGetErrWeights(memory_->cvode, weights.get()) != CV_SUCCESS) {

@@ -35,9 +35,9 @@ class StiffSolver {
   StiffSolver(const StiffSolver&) = delete;
   StiffSolver& operator=(const StiffSolver&) = delete;
 
-  // From y at t, forgetting the past: after every jump of y or of the equation.
+  // Restarts from y at t without history: after every jump of y or of the equation.
   void restart(double t, std::span<const double> y);
-  // To exactly t_end > t. Empty: done; else what CVODE says.
+  // Advances to exactly t_end > t. Empty: done; else CVODE's message.
   [[nodiscard]] std::string advance(double t_end);
 
   [[nodiscard]] std::span<const double> y() const noexcept;
@@ -52,7 +52,7 @@ class StiffSolver {
   DifferentialEquation& equation_;
   std::unique_ptr<Memory> memory_;
   double t_ = 0;
-  SolverStatistics closed_;  // of the runs before the last restart
+  SolverStatistics closed_;  // statistics of the runs before the last restart
 };
 
 }  // namespace slew::monolith

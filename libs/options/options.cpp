@@ -19,7 +19,7 @@ CLI::Validator finite_between(double least, double most) {
   const std::string range = fmt::format("from {:.12g} to {:.12g}", least, most);
   const auto problem = [least, most, range](const std::string& text) {
     double number = 0;
-    // nan is in no order: only what is inside is let through
+    // nan compares with nothing: accept only values inside the range
     const bool is_inside = CLI::detail::lexical_cast(text, number) && number >= least && number <= most;
     return is_inside ? std::string() : fmt::format("'{}' is no number {}", text, range);
   };
@@ -37,7 +37,7 @@ const CLI::App& used_command(const CLI::App& root, std::string& name) {
   return *used;
 }
 
-// A word where a verb should stand is the likelier mistake than a verb that is missing.
+// A wrong word in the place of a verb is more likely than a missing verb.
 std::string what_is_wrong(const CLI::App& used, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> verbs = used.get_subcommands([](const CLI::App*) { return true; });
   const std::vector<std::string> rest = used.remaining();
@@ -48,7 +48,7 @@ std::string what_is_wrong(const CLI::App& used, const CLI::ParseError& error) {
   return "there is no '" + rest.front() + "' here" + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
 }
 
-// One line with the command whose --help lists what there is.
+// One line that names the command whose --help lists the options.
 std::string problem_text(const CLI::App& root, const CLI::ParseError& error) {
   std::string command;
   const CLI::App& used = used_command(root, command);

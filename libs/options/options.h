@@ -2,12 +2,12 @@
 //
 //   options::Program program("slewring", "what it is for");
 //   options::Command verb = program.command("run", "run a scene");
-//   verb.option("--step", wish.step, "communication step").value_name("TIME").group("Scene");
-//   verb.action([wish] { return run(*wish); });
+//   verb.option("--step", options.step, "communication step").value_name("TIME").group("Scene");
+//   verb.action([options] { return run(*options); });
 //   if (!program.parse(argc, argv, exit_code)) return exit_code;
 //   return static_cast<int>(program.run());
 //
-// Handles are small and are copied; they and the targets of options must not outlive the program. The header stands for
+// Handles are small and are copied; they and the targets of options must not outlive the program. The header hides
 // CLI11, which one unit compiles.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 #include "core/status.h"
 
-// of CLI11, which nothing outside this library includes
+// types of CLI11, which only this library includes
 namespace CLI {
 class App;
 class Option;
@@ -29,29 +29,29 @@ namespace slew::options {
 
 using Action = std::function<ExitCode()>;
 
-// Text of a value -> what is wrong with it; empty: nothing.
+// Text of a value -> its error; empty: none.
 using Check = std::function<std::string(const std::string&)>;
 
 class Option {
  public:
   explicit Option(CLI::Option* option) noexcept : option_(option) {}
 
-  // ---- as --help shows it
+  // ---- display in --help
   Option& value_name(const std::string& name);
   Option& description(const std::string& text);
   Option& group(const std::string& heading);
   Option& show_default();
 
-  // ---- which values it takes
+  // ---- accepted values
   Option& between(int least, int most);
   Option& between(std::int64_t least, std::int64_t most);
   Option& between(std::uint32_t least, std::uint32_t most);
-  Option& between(double least, double most);  // finite; for options that are a number with a fraction
+  Option& between(double least, double most);  // finite; for options with a fractional number
   Option& not_negative();
   Option& one_of(std::vector<std::string> choices);
   Option& check(const Check& problem_of, const std::string& what);
 
-  // ---- how often, and beside what
+  // ---- repetition and combination
   Option& required();
   Option& values(int least, int most);  // words behind one occurrence
   Option& repeatable();                 // a list that is shown like an option of one value
@@ -82,16 +82,16 @@ class Command {
 
   Command command(const std::string& name, const std::string& description);
   void require_command();
-  void hide();                           // from the list of commands in --help
-  void footer(const std::string& text);  // below the options in --help
-  void action(Action action);            // what the program does when this is the command that was given
+  void hide();                           // removes it from the list of commands in --help
+  void footer(const std::string& text);  // text below the options in --help
+  void action(Action action);            // action of the program if the user gives this command
 
  private:
   friend class Program;
   Command(CLI::App* app, Action* chosen) noexcept : app_(app), chosen_(chosen) {}
 
   CLI::App* app_;
-  Action* chosen_;  // of the program
+  Action* chosen_;  // the program's chosen action
 };
 
 class Program : public Command {
@@ -104,8 +104,8 @@ class Program : public Command {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   void version(const std::string& text);  // --version
 
-  // True when the program goes on. Otherwise the exit code is 0 (help, version) or that of bad input, which is one line
-  // on standard error.
+  // True if the program is to continue. Otherwise the exit code is 0 (help, version) or bad_input, with one line on
+  // standard error.
   [[nodiscard]] bool parse(int argc, const char* const* argv, int& exit_code);
   // The same for tests: throws Failure (bad_input) with that line.
   void parse(const std::vector<std::string>& arguments);

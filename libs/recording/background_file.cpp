@@ -26,7 +26,7 @@ Status BackgroundFile::create(const std::filesystem::path& path) {
   return status;
 }
 
-// what a failure leaves: nothing waits, and the file is as long as it is
+// state after a failure: no block waits, and the size is that of the file
 Status BackgroundFile::take_failure(std::unique_lock<std::mutex>&) {
   if (failure_.is_ok()) return failure_;
   size_ = file_.size();

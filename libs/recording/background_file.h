@@ -1,10 +1,9 @@
-// The file that a recording is written to, by a thread of its own: a slow disk holds up the writing, not whoever
-// records.
+// The file of a recording, written by a thread of its own: a slow disk delays the writing thread, not the recorder.
 //
-// Takes whole records like OutputFile and tells size and checksum as if they were written. What waits is bounded: a
-// block that does not fit makes append() wait until it does. After a failed write nothing that waited is written; the
-// next call tells, and size and checksum are those of the file again.
-// With a backlog of 0 there is no thread and every call writes at once.
+// Takes whole records like OutputFile and returns size and checksum as if they were written. The backlog is bounded:
+// append() waits until its block fits. After a failed write the waiting blocks are dropped; the next call reports the
+// failure, and size and checksum are those of the file again. With a backlog of 0 there is no thread and every call
+// writes at once.
 #pragma once
 
 #include <condition_variable>
@@ -26,11 +25,11 @@ class BackgroundFile {
   BackgroundFile(const BackgroundFile&) = delete;
   BackgroundFile& operator=(const BackgroundFile&) = delete;
 
-  // As of OutputFile. append_marked lets the buffer grow by the Mark.
+  // As in OutputFile. append_marked extends the buffer by the Mark.
   [[nodiscard]] Status create(const std::filesystem::path& path);
   [[nodiscard]] Status append(ByteSpan records, std::uint64_t room_behind = 0);
   [[nodiscard]] Status append_marked(Bytes& records, std::uint64_t room_behind = 0);
-  // Waits until everything is written. Errors: storage, the first failure since the last call that told one.
+  // Waits until everything is written. Errors: storage, the first failure since the last reported one.
   [[nodiscard]] Status drain();
   [[nodiscard]] Status close();
 
@@ -38,7 +37,7 @@ class BackgroundFile {
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
   [[nodiscard]] std::uint32_t crc() const noexcept { return crc_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return file_.path(); }
-  // Bytes that wait, and bytes of the file that are written.
+  // Waiting bytes, and written bytes of the file.
   [[nodiscard]] std::size_t backlog() const;
   [[nodiscard]] std::uint64_t written() const;
 
@@ -46,7 +45,7 @@ class BackgroundFile {
   void run();
   [[nodiscard]] Status take_failure(std::unique_lock<std::mutex>& lock);
 
-  OutputFile file_;  // of the thread while blocks wait
+  OutputFile file_;  // owned by the thread while blocks wait
   std::size_t most_;
   std::uint64_t size_ = 0;
   std::uint32_t crc_ = 0;

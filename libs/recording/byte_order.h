@@ -1,4 +1,4 @@
-// Little-endian byte strings: appending to a buffer, and reading from one that may hold anything.
+// Little-endian byte strings: appending to a buffer, and reading from an untrusted one.
 //
 // MCAP serialisation: integers little-endian; String = uint32 length + bytes; Map = uint32 byte length + entries.
 #pragma once
@@ -41,7 +41,7 @@ inline void put_string(Bytes& out, std::string_view text) {
   put_bytes(out, as_byte_span(text));
 }
 
-// Overwrites an integer that was put before.
+// Overwrites an integer that was appended before.
 template <typename T>
 requires std::is_integral_v<T>
 void put_at(Bytes& out, std::size_t position, T value) noexcept {

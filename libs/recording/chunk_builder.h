@@ -19,7 +19,7 @@ inline constexpr std::string_view kZstd = "zstd";
 class ChunkBuilder {
  public:
   // expected_bytes: size at which the owner closes a chunk; the buffers are sized for it.
-  // level: of zstd, 1 (fast) to 19.
+  // level: compression level of zstd, 1 (fast) to 19.
   ChunkBuilder(std::size_t expected_bytes, int level);
   ~ChunkBuilder();
 
@@ -29,7 +29,7 @@ class ChunkBuilder {
   [[nodiscard]] bool is_empty() const noexcept { return records_.empty(); }
 
   // Appends the chunk record and its message indexes to out, for a file that ends at file_size; fills the entry for
-  // the summary and starts an empty chunk. Errors: resources, when zstd fails: nothing is appended.
+  // the summary and starts an empty chunk. Errors: resources, if zstd fails; then no bytes are appended.
   [[nodiscard]] Status finish(Bytes& out, std::uint64_t file_size, ChunkIndexRecord& index);
 
  private:
@@ -42,7 +42,7 @@ class ChunkBuilder {
   std::unique_ptr<ZSTD_CCtx_s, FreeContext> context_;
   Bytes records_;
   std::vector<std::vector<MessageIndexEntry>> entries_;  // by channel
-  std::vector<std::uint16_t> channels_;                  // with messages in this chunk
+  std::vector<std::uint16_t> channels_;                  // channels with messages in this chunk
   std::uint64_t start_time_ = 0;
   std::uint64_t end_time_ = 0;
 };

@@ -23,7 +23,7 @@ bool ChunkReader::unpack(const ChunkRecord& chunk, Bytes& records, std::string& 
   if (chunk.compression.empty()) {
     records.assign(chunk.records.begin(), chunk.records.end());
   } else if (chunk.compression == kZstd) {
-    // the frame says its size again: no memory for a claim that it does not bear out
+    // the frame repeats its size: no memory is allocated for a contradicted claim
     const unsigned long long size_in_frame = ZSTD_getFrameContentSize(chunk.records.data(), chunk.records.size());
     if (size_in_frame != chunk.uncompressed_size && size_in_frame != ZSTD_CONTENTSIZE_UNKNOWN) {
       problem = "the chunk cannot be decompressed: its size is not that in its header";
@@ -39,11 +39,11 @@ bool ChunkReader::unpack(const ChunkRecord& chunk, Bytes& records, std::string& 
     }
     records.resize(size);
   } else {
-    problem = "the chunk is compressed in a way that is not read here; zstd is";
+    problem = "the chunk has a compression that is not supported; expected zstd";
     return false;
   }
   if (records.size() != chunk.uncompressed_size) {
-    problem = fmt::format("the chunk has {} uncompressed bytes where its header says {}", records.size(),
+    problem = fmt::format("the chunk has {} uncompressed bytes, its header states {}", records.size(),
                           chunk.uncompressed_size);
     return false;
   }

@@ -1,4 +1,4 @@
-// Takes the messages out of a chunk, trusting nothing in it.
+// Extracts the messages of an untrusted chunk.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ class ChunkRecords {
   ByteSource source_;
 };
 
-// What the messages of a chunk say, to be compared with what its header and the index say.
+// Counts and times of a chunk's messages, for comparison with its header and the index.
 struct ChunkContents {
   std::uint64_t start_time = 0;
   std::uint64_t end_time = 0;

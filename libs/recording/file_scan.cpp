@@ -18,7 +18,7 @@ class Scanner {
     while (status.is_ok() && !scan_.damage && !scan_.has_data_end) status = read_record();
     if (!status.is_ok()) return status;
     if (scan_.damage) {
-      // a wrong length shows only at some later byte
+      // a wrong length is detected only at a later byte
       scan_.damage->offset = std::min(scan_.damage->offset, unproved_at_);
       keep_only_proved();
     } else {
@@ -87,7 +87,7 @@ class Scanner {
     return status;
   }
 
-  // sets is_proved_ when nothing in front of the end of this record is left to be confirmed
+  // sets is_proved_ if all bytes up to the end of this record are confirmed
   void take_record(Opcode opcode) {
     const bool was_proved = unproved_at_ == at_;
     is_proved_ = false;
@@ -111,7 +111,7 @@ class Scanner {
         scan_.has_data_end = !scan_.damage;
         return;
       default:
-        return;  // header, message indexes, what a later version adds: confirmed by the next Mark
+        return;  // header, message indexes, records of later versions: confirmed by the next Mark
     }
   }
 
@@ -168,9 +168,9 @@ class Scanner {
   // a Mark and Data End hold the checksum of everything in front of them
   void check_mark() {
     std::uint32_t crc = 0;
-    // longer content would be a wrong length that swallows what follows
+    // longer content would mean a wrong length that covers the following records
     if (content_.size() != sizeof crc || !decode_crc(content_, crc) || crc != crc_) {
-      // also a chunk whose messages are right may hold the changed byte
+      // even a chunk with correct messages may contain the changed byte
       return damage(confirmed_at_, "the bytes from here on differ from what was written");
     }
     is_proved_ = true;
@@ -208,11 +208,11 @@ class Scanner {
   Bytes head_;
   Bytes content_;
   Bytes unpacked_;
-  std::uint64_t at_ = 0;            // of the record being read
-  std::uint64_t unproved_at_ = 0;   // of the first record that no checksum has confirmed
-  std::uint64_t confirmed_at_ = 0;  // behind the last Mark that was right
+  std::uint64_t at_ = 0;            // offset of the record being read
+  std::uint64_t unproved_at_ = 0;   // offset of the first record without a confirming checksum
+  std::uint64_t confirmed_at_ = 0;  // offset after the last correct Mark
   bool is_proved_ = false;
-  std::uint32_t crc_ = 0;  // of the bytes in front of at_
+  std::uint32_t crc_ = 0;  // checksum of the bytes in front of at_
   Proved proved_;
 };
 

@@ -16,7 +16,7 @@ class InputFile {
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
-  // Errors: bad_input when there is no such regular file, storage when it cannot be read.
+  // Errors: bad_input if the regular file does not exist, storage if it cannot be read.
   [[nodiscard]] Status open(const std::filesystem::path& path);
 
   // Reads exactly size bytes into out, which is resized. Ranges beyond the end are an error and allocate nothing.

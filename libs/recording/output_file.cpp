@@ -16,7 +16,7 @@
 namespace slew::recording {
 namespace {
 
-// what the user can do about a failed write
+// remedy for a failed write
 const char* remedy_of(int error) noexcept {
   switch (error) {
     case ENOSPC:
@@ -98,7 +98,7 @@ Status OutputFile::append(ByteSpan records, std::uint64_t room_behind) {
   return write_all(records, crc32_of(records, crc_));
 }
 
-// back to the last whole record; if even that fails, the reader stops at the same place
+// truncate to the last whole record; if that fails, the reader stops at the same place
 Status OutputFile::failed(int error, std::size_t bytes, std::uint64_t at) {
   const bool is_cut_back = at == size_ || calls_.truncate(descriptor_, size_) == 0;
   return Status::error(
@@ -135,7 +135,7 @@ Status OutputFile::write_all(ByteSpan bytes, std::uint32_t crc_after) {
 
 Status OutputFile::close() {
   if (!is_open()) return Status::ok();
-  if (has_reserved_) std::ignore = calls_.truncate(descriptor_, size_);  // gives back what was reserved
+  if (has_reserved_) std::ignore = calls_.truncate(descriptor_, size_);  // releases the reserved space
   const bool is_synchronised = calls_.synchronise(descriptor_) == 0;
   const int sync_error = errno;
   const bool is_closed = calls_.close(descriptor_) == 0;

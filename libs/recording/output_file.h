@@ -1,8 +1,8 @@
 // The file that a recording is written to: whole records only, with the checksum of everything written so far.
 //
 // When a write fails the file is cut back to the last whole record, so that it stays readable, and no further byte is
-// written until the failure was told. Nothing is synchronised to the disk before close(): what was handed over
-// survives the death of the process, not a power cut (docs/recording-format.md).
+// written until the failure is reported. The file is not synchronised to the disk before close(): written records
+// survive the death of the process, not a power cut (docs/recording-format.md).
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,18 @@
 
 namespace slew::recording {
 
-// What a recording asks of the operating system, as pwrite, ftruncate, fdatasync and close have it. Tests put a disk in
-// their place that fails.
+// System calls of a recording, with the semantics of pwrite, ftruncate, fdatasync and close. Tests replace them by a
+// failing disk.
 class FileCalls {
  public:
   virtual ~FileCalls() = default;
   [[nodiscard]] virtual std::int64_t write(int descriptor, ByteSpan bytes, std::uint64_t offset);
   [[nodiscard]] virtual int truncate(int descriptor, std::uint64_t size);
-  // Sees to it that so many bytes can be written there, beyond the file's end too, whose size stays as it is.
+  // Reserves space for so many bytes at the offset, also beyond the file's end; the size of the file does not change.
   [[nodiscard]] virtual int reserve(int descriptor, std::uint64_t offset, std::uint64_t size);
   [[nodiscard]] virtual int synchronise(int descriptor);
   [[nodiscard]] virtual int close(int descriptor);
-  // Room on the file system of a path for this user; all there is when that cannot be known.
+  // Room on the file system of a path for this user; the largest value if it is unknown.
   [[nodiscard]] virtual std::uint64_t free_bytes(const std::filesystem::path& path);
 };
 [[nodiscard]] FileCalls& system_file_calls() noexcept;
@@ -40,14 +40,14 @@ class OutputFile {
   [[nodiscard]] Status create(const std::filesystem::path& path);
 
   // Appends whole records. Errors: storage; the file then ends where it ended before.
-  // room_behind: bytes for which there must be room behind them; without it the records are not written. A file system
-  // that cannot reserve is taken at its word.
+  // room_behind: bytes that must have room behind the records; otherwise the records are not written. If the file
+  // system cannot reserve space, its free space is used.
   [[nodiscard]] Status append(ByteSpan records, std::uint64_t room_behind = 0);
 
-  // The same, and a Mark behind them; the buffer grows by the Mark.
+  // The same, followed by a Mark; the buffer grows by the Mark.
   [[nodiscard]] Status append_marked(Bytes& records);
 
-  // Hands everything to the disk and closes. Errors: storage.
+  // Flushes to the disk and closes. Errors: storage.
   [[nodiscard]] Status close();
 
   [[nodiscard]] bool is_open() const noexcept { return descriptor_ >= 0; }

@@ -7,7 +7,7 @@
 namespace slew::recording {
 namespace {
 
-// Content of the record at a place that an index names; false when there is no such record.
+// Content of the record at an offset from the index; false if the record is not there.
 bool read_record(const InputFile& file, std::uint64_t offset, std::uint64_t length, Opcode expected, Bytes& record,
                  ByteSpan& content, Status& status) {
   if (length < kRecordHeadBytes || offset > file.size() || length > file.size() - offset) return false;
@@ -22,8 +22,8 @@ bool read_record(const InputFile& file, std::uint64_t offset, std::uint64_t leng
 
 constexpr std::uint64_t kMarkBytes = kRecordHeadBytes + sizeof(std::uint32_t);
 
-// The Marks in front of and behind a record prove it: what the first one says, continued over the record, is what the
-// second one says. The file is not read from its beginning.
+// The Marks in front of and behind a record prove it: the checksum of the first, continued over the record, equals that
+// of the second. The file is not read from its beginning.
 bool is_between_marks(const InputFile& file, std::uint64_t offset, std::uint64_t length, Status& status) {
   if (offset < kMarkBytes || offset > file.size() || length > file.size() - offset - kMarkBytes) return false;
   Bytes bytes;
@@ -65,7 +65,7 @@ Status Reader::load() {
                       find_metadata(kIdentityName) != nullptr &&
                       (!damage_ || from_entries(*find_metadata(kIdentityName), identity_, problem));
   if (!status.is_ok()) return status;
-  // no usable end: look at every byte
+  // no usable end: scan every byte
   if (!has_all_messages_) {
     FileScan scan;
     status = scan_file(file_, scan);
@@ -77,7 +77,7 @@ Status Reader::load() {
     if (!status.is_ok()) return status;
     if (!is_loaded || find_metadata(kIdentityName) == nullptr) {
       return not_a_recording(damage_ ? fmt::format("at byte {} {}", damage_->offset, damage_->text)
-                                     : "it does not say which session it holds");
+                                     : "the identity of its session is missing");
     }
   }
   if (!from_entries(*find_metadata(kIdentityName), identity_, problem)) {
@@ -199,7 +199,7 @@ MessageCursor::MessageCursor(const Reader& reader, const MessageFilter& filter)
 
 bool MessageCursor::is_wanted(const ChunkIndexRecord& chunk) const {
   if (chunk.end_time < from_ns_ || chunk.start_time > to_ns_) return false;
-  if (chunk.message_index_offsets.empty()) return true;  // not known
+  if (chunk.message_index_offsets.empty()) return true;  // unknown
   return std::any_of(chunk.message_index_offsets.begin(), chunk.message_index_offsets.end(), [this](const auto& entry) {
     // an undeclared channel is not skipped here: reading the chunk names it
     return entry.first >= is_channel_wanted_.size() || is_channel_wanted_[entry.first];

@@ -1,9 +1,9 @@
 // Reads a recording: whole, cut at any byte, or damaged.
 //
-// A whole file is read through the index at its end. Otherwise it is scanned from the start, and what is there is the
-// longest prefix that can be trusted; damage() says where it ends and why. No input makes the reader crash: every
-// length is checked against the file, and memory is bounded by the file's size and by kMaxChunkBytes.
-// Reads what Writer has written; other MCAP files are refused unless they hold the identity record.
+// A whole file is read through the index at its end. Otherwise it is scanned from the start, and its content is the
+// longest trusted prefix; damage() gives its end and the reason. No input makes the reader crash: every length is
+// checked against the file, and memory is bounded by the file's size and by kMaxChunkBytes. Reads files of Writer;
+// other MCAP files are refused unless they hold the identity record.
 #pragma once
 
 #include <cstdint>
@@ -62,25 +62,25 @@ class Reader {
   [[nodiscard]] const RecordedChannel* find_channel(std::string_view topic) const noexcept;  // nullptr: none
 
   [[nodiscard]] const std::vector<AttachmentIndexRecord>& attachments() const noexcept { return index_.attachments; }
-  // Errors: bad_input when there is none of that name or its checksum differs; storage.
+  // Errors: bad_input if the name does not exist or its checksum differs; storage.
   [[nodiscard]] Status read_attachment(std::string_view name, Bytes& content) const;
 
   // All metadata records in the order of the file; the last one of a name, or nullptr.
   [[nodiscard]] const std::vector<MetadataRecord>& metadata() const noexcept { return metadata_; }
   [[nodiscard]] const TextMap* find_metadata(std::string_view name) const noexcept;
 
-  // Messages, chunks and times of what can be read.
+  // Messages, chunks and times of the readable part.
   [[nodiscard]] const StatisticsRecord& statistics() const noexcept { return index_.statistics; }
 
-  // Where and why reading ends before the file does; none for a file with an intact end (verify() looks at every byte).
+  // Place and reason of an early end of reading; none for a file with an intact end (verify() checks every byte).
   [[nodiscard]] const std::optional<Damage>& damage() const noexcept { return damage_; }
-  // The session was recorded to its end: no message is missing behind what can be read.
+  // True if the session was recorded to its end: no message is missing after the readable part.
   [[nodiscard]] bool has_all_messages() const noexcept { return has_all_messages_; }
   // One sentence for the user, empty when there is no damage.
   [[nodiscard]] std::string damage_text() const;
 
-  // Visits the messages in the order of the file, which is (epoch, step, channel, sequence) but for late ones.
-  // visit returns whether to go on. Errors: bad_input at a damaged chunk, after the messages in front of it; storage.
+  // Visits the messages in the order of the file: (epoch, step, channel, sequence), except late ones. visit returns
+  // true to continue. Errors: bad_input at a damaged chunk, after the messages in front of it; storage.
   enum class Visit { go_on, stop };
   [[nodiscard]] Status for_each(const MessageFilter& filter,
                                 const std::function<Visit(const RecordedMessage&)>& visit) const;
@@ -102,17 +102,17 @@ class Reader {
   std::vector<MetadataRecord> metadata_;
   SessionIdentity identity_;
   std::vector<RecordedChannel> channels_;
-  std::vector<const RecordedChannel*> channel_of_id_;  // nullptr where there is none
+  std::vector<const RecordedChannel*> channel_of_id_;  // nullptr: no channel
   std::optional<Damage> damage_;
   bool has_all_messages_ = false;
 };
 
-// Gives the messages of a reader one by one; for a replay that takes them at its own pace. The reader must outlive it.
+// Returns the messages of a reader one by one, for a replay at its own pace. The reader must outlive it.
 class MessageCursor {
  public:
   MessageCursor(const Reader& reader, const MessageFilter& filter);
 
-  // False at the end, or when status() holds an error as for Reader::for_each.
+  // False at the end, or if status() holds an error as in Reader::for_each.
   [[nodiscard]] bool next(RecordedMessage& message);
   [[nodiscard]] const Status& status() const noexcept { return status_; }
 

@@ -73,7 +73,7 @@ std::uint32_t crc32_of(ByteSpan bytes, std::uint32_t former) noexcept {
 
 bool is_length_borne_out(Opcode opcode, ByteSpan front, std::uint64_t length) noexcept {
   ByteSource source(front);
-  std::uint64_t behind = 0;  // of the bytes that the inner length counts
+  std::uint64_t behind = 0;  // offset behind the bytes that the inner length counts
   switch (opcode) {
     case Opcode::chunk:
       std::ignore = source.take_bytes(3 * sizeof(std::uint64_t) + sizeof(std::uint32_t));

@@ -1,14 +1,14 @@
 // The records of an MCAP file (https://mcap.dev/spec, version 0) that a recording uses, as structs, with their bytes.
 //
 // A record is  <opcode: 1 byte> <length of content: uint64> <content>. encode_* append a whole record to a buffer;
-// decode_* read the content of one, return false when it is not well formed and never read outside of it. Content
-// may be longer than what is known here: newer fields are ignored. Not so in chunks and attachments, which prove
-// themselves by their own checksum: bytes behind it would be bytes that a wrong length swallowed.
+// decode_* read the content of one, return false if it is malformed and never read outside of it. Content may be longer
+// than the known fields: newer fields are ignored. Chunks and attachments may not be longer: they carry their own
+// checksum, and bytes behind it would mean a wrong length.
 //
 // One record is our own, from the range that the specification leaves to applications:
 //   Mark (0x80): uint32 CRC32 of every byte of the file in front of the record.
-// It follows every record, or group of records, that carries no checksum of its own, so that any changed bit is found
-// and its place named without a summary. Readers of others skip it.
+// It follows every record, or group of records, that carries no checksum of its own, so that any changed bit is located
+// without a summary. Other MCAP readers skip it.
 #pragma once
 
 #include <array>
@@ -95,8 +95,8 @@ struct MessageIndexEntry {
 struct ChunkIndexRecord {
   std::uint64_t start_time = 0;
   std::uint64_t end_time = 0;
-  std::uint64_t offset = 0;  // of the chunk record in the file
-  std::uint64_t length = 0;  // of the chunk record with its opcode and length
+  std::uint64_t offset = 0;  // offset of the chunk record in the file
+  std::uint64_t length = 0;  // length of the chunk record with its opcode and length
   std::map<std::uint16_t, std::uint64_t> message_index_offsets;
   std::uint64_t message_index_length = 0;
   std::string compression;
@@ -157,12 +157,12 @@ struct FooterRecord {
   std::uint32_t summary_crc = 0;
 };
 
-// Largest content of a record without a length field of its own that could bear it out: header, schema, channel,
-// metadata and what is not known.
+// Largest content of a record without an inner length field to confirm it: header, schema, channel, metadata and
+// unknown records.
 inline constexpr std::uint64_t kMaxPlainBytes = 64u << 20;
 
-// A record's length before anything of that size is read: whether the lengths inside of it agree. front: the first
-// bytes of the content, kFrontBytes of them or all.
+// Checks a record's length against its inner lengths before reading that many bytes. front: the first bytes of the
+// content, kFrontBytes of them or all.
 inline constexpr std::uint64_t kFrontBytes = 64 * 1024;
 [[nodiscard]] bool is_length_borne_out(Opcode opcode, ByteSpan front, std::uint64_t length) noexcept;
 

@@ -41,7 +41,7 @@ class Copy {
       case Opcode::chunk:
         return take_chunk(content);
       default:
-        return Status::ok();  // the header is written anew
+        return Status::ok();  // the header is rewritten
     }
   }
 
@@ -67,13 +67,13 @@ class Copy {
   [[nodiscard]] std::size_t lost_channels() const noexcept { return lost_channels_; }
 
  private:
-  // what a session says of its end, and an earlier recovery, is not true of this file
+  // the end of the session and an earlier recovery do not apply to this file
   Status take_metadata(ByteSpan content) {
     MetadataRecord record;
     if (!decode_metadata(content, record) || record.name == kSummaryName || record.name == kRecoveryName) {
       return Status::ok();
     }
-    // of several the first is the one that was read
+    // the first of several records is the one read
     if (record.name == kIdentityName && std::exchange(has_identity_, true)) return Status::ok();
     index_.metadata.push_back({to_.size(), buffer_.size(), record.name});
     return to_.append_marked(buffer_);
@@ -176,7 +176,7 @@ class Copy {
   std::size_t lost_channels_ = 0;
 };
 
-// The record that says which session it is, and the library that wrote it.
+// The record with the session's identity, and the library that wrote it.
 Status read_identity(const InputFile& file, const Salvage& salvage, SessionIdentity& identity, std::string& library) {
   library = "slewring";
   Bytes bytes;
@@ -195,10 +195,11 @@ Status read_identity(const InputFile& file, const Salvage& salvage, SessionIdent
     return Status::error(ExitCode::bad_input, fmt::format("{}: {}", file.path().string(), problem));
   }
   const std::uint64_t at = salvage.lost.empty() ? file.size() : salvage.lost.front().offset;
-  return Status::error(ExitCode::bad_input,
-                       fmt::format("{}: nothing can be recovered: from byte {} of {} on the record is lost that says "
-                                   "which session it holds; nothing was written; look for an intact copy of the file",
-                                   file.path().string(), at, file.size()));
+  return Status::error(
+      ExitCode::bad_input,
+      fmt::format("{}: recovery is not possible: from byte {} of {} on the record with the identity of "
+                  "its session is lost; nothing was written; look for an intact copy of the file",
+                  file.path().string(), at, file.size()));
 }
 
 TextMap entries_of(const Recovery& recovery, const InputFile& from) {

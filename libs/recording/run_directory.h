@@ -12,7 +12,7 @@ namespace slew::recording {
 
 inline constexpr const char* kRecordingFileName = "session.mcap";
 
-// A scene's name as the beginning of a file's: characters other than letters, digits, '.', '_' and '-' become '_'.
+// A scene's name as the start of a file name: characters other than letters, digits, '.', '_' and '-' become '_'.
 [[nodiscard]] std::string file_name(std::string_view scene);
 
 // "<file_name(scene)>-<YYYYMMDD>-<HHMMSS>" in local time.

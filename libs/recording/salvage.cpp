@@ -13,8 +13,8 @@ namespace {
 
 constexpr const char* kRefuted = "the bytes differ from what was written";
 constexpr std::uint64_t kChunkHeadBytes = kRecordHeadBytes + 40;  // up to the length of its compressed records
-constexpr std::uint64_t kFirstSearchBytes = 4 * 1024;             // that are looked through at once: the next place
-constexpr std::uint64_t kSearchBytes = 1u << 20;                  // to go on at is near or far
+constexpr std::uint64_t kFirstSearchBytes = 4 * 1024;             // bytes searched at once: the next place
+constexpr std::uint64_t kSearchBytes = 1u << 20;                  // to continue is near or far
 
 class Salvager {
  public:
@@ -48,7 +48,7 @@ class Salvager {
     salvage_.lost.push_back({offset, end - offset, text});
   }
 
-  // What no Mark has confirmed. Indexes of chunks are built anew and are no loss.
+  // Reports the bytes not confirmed by a Mark as lost. Indexes of chunks are rebuilt and are no loss.
   void drop_pending() {
     for (const ProvedRecord& record : pending_) {
       if (record.opcode == Opcode::message_index) continue;
@@ -57,7 +57,7 @@ class Salvager {
     pending_.clear();
   }
 
-  // The record at at_, at_ then behind it; or what is wrong with it.
+  // Reads the record at at_ and moves at_ behind it; returns its problem, if any.
   Status take_record(std::string& problem) {
     problem = "the file ends inside a record";
     const std::uint64_t left = file_.size() - at_;
@@ -115,10 +115,10 @@ class Salvager {
     ChunkContents contents;
     const auto is_any = [](std::uint16_t) { return true; };
     if (!reader_.unpack(chunk, unpacked_, problem) || !examine(unpacked_, is_any, contents, problem)) return problem;
-    return {};  // the times in its head are those of its messages and can be had from them
+    return {};  // the times in its head follow from its messages
   }
 
-  // A Mark or Data End: confirms what is in front of it, or is where the sum begins anew.
+  // A Mark or Data End: confirms the bytes in front of it, or restarts the checksum.
   std::string take_mark(Opcode opcode) {
     std::uint32_t crc = 0;
     if (content_.size() != sizeof crc || !decode_crc(content_, crc)) return "a mark is not well formed";
@@ -134,9 +134,9 @@ class Salvager {
     return {};
   }
 
-  // ---- behind a damage ----------------------------------------------------------------------------------------
+  // ---- after damage ----------------------------------------------------------------------------------------
 
-  // A wrong length may have swallowed good records: the search begins behind what is proved.
+  // A wrong length may have covered good records: the search begins after the last proved record.
   Status go_on_behind(const std::string& problem) {
     salvage_.is_damaged = true;
     const std::uint64_t damaged_from = proved_to_;
@@ -160,7 +160,7 @@ class Salvager {
     return status;
   }
 
-  // Moves on to what looks like a Mark, Data End or a chunk; to the end of the file when there is none.
+  // Moves to the next candidate for a Mark, Data End or chunk, or to the end of the file.
   Status find(std::uint64_t& from) {
     std::uint64_t block = kFirstSearchBytes;
     for (; from < file_.size(); from += block, block = std::min(2 * block, kSearchBytes)) {
@@ -198,10 +198,10 @@ class Salvager {
   Bytes content_;
   Bytes unpacked_;
   Bytes searched_;
-  std::uint64_t at_ = 0;               // of the record being read
-  std::uint64_t proved_to_ = 0;        // behind the last record that proved itself, or was confirmed
-  std::optional<std::uint32_t> crc_;   // that a Mark at at_ must hold; none: not known behind a damage
-  std::vector<ProvedRecord> pending_;  // to be confirmed by the next Mark
+  std::uint64_t at_ = 0;               // offset of the record being read
+  std::uint64_t proved_to_ = 0;        // offset after the last proved or confirmed record
+  std::optional<std::uint32_t> crc_;   // checksum that a Mark at at_ must hold; none: unknown after damage
+  std::vector<ProvedRecord> pending_;  // records that await the next Mark
 };
 
 }  // namespace

@@ -1,9 +1,9 @@
-// Finds everything in a damaged recording that proves itself, also behind a damage.
+// Finds all proved records of a damaged recording, also after the damage.
 //
-// Chunks and attachments prove themselves by their checksum. The other records are proved by the Marks around them:
-// what the one in front says, continued over the records, is what the one behind says. So one Mark is enough to go on
-// from behind a damage, and the search for it, or for a whole chunk, looks at every byte. Index and summary at the
-// end of the file are never looked at.
+// Chunks and attachments prove themselves by their checksum. The other records are proved by the Marks around them: the
+// checksum of the Mark in front, continued over the records, equals that of the Mark behind. So one Mark suffices to
+// continue after damage. The search for a Mark, or for a whole chunk, tests every byte. Index and summary at the end of
+// the file are not used.
 #pragma once
 
 #include <string>
@@ -18,20 +18,20 @@ namespace slew::recording {
 struct ProvedRecord {
   Opcode opcode = Opcode::invalid;
   std::uint64_t offset = 0;
-  std::uint64_t length = 0;  // with opcode and length
+  std::uint64_t length = 0;  // length with opcode and length field
 };
 
 struct LostBytes {
   std::uint64_t offset = 0;
   std::uint64_t size = 0;
-  std::string text;  // what is wrong there
+  std::string text;  // problem at this place
 };
 
 struct Salvage {
   std::vector<ProvedRecord> records;  // header, metadata, attachments, schemas, channels, chunks; in the file's order
   std::vector<LostBytes> lost;        // ascending, in front of Data End
-  bool is_damaged = false;            // in front of Data End; also where nothing is lost by it
-  bool has_data_end = false;          // nothing was cut off
+  bool is_damaged = false;            // damage in front of Data End, even without lost records
+  bool has_data_end = false;          // true: the file was not cut
 };
 
 // Errors: storage. A damaged file is not an error.

@@ -1,4 +1,4 @@
-// What a recording says about itself: the Metadata record "slewring.recording", the first one behind the Header.
+// Identity of a recording: the Metadata record "slewring.recording", the first one behind the Header.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace slew::recording {
 
-// Version of the layout described in docs/recording-format.md. A reader refuses a newer one by name.
+// Version of the layout described in docs/recording-format.md. A reader refuses a newer version and names it.
 inline constexpr int kFormatVersion = 1;
 
 inline constexpr const char* kProfile = "slewring";
@@ -25,14 +25,14 @@ struct SessionIdentity {
   std::string scene;  // name of the scene
   std::string session_name;
   std::string session_id;          // 128 bits, hexadecimal
-  std::string build;               // of the program that records
+  std::string build;               // build of the recording program
   SimDuration communication_step;  // H, ns, at least 1
   std::int64_t started_ns = 0;     // wall clock since 1970
-  TextMap more;                    // further entries, by keys that are none of the above
+  TextMap more;                    // further entries, with other keys
 };
 
-// To and from the entries of the Metadata record. from_entries gives false and names the problem when the record is
-// of a newer version or lacks the communication step.
+// Conversion to and from the entries of the Metadata record. from_entries returns false and names the problem if the
+// record has a newer version or lacks the communication step.
 [[nodiscard]] TextMap to_entries(const SessionIdentity& identity);
 [[nodiscard]] bool from_entries(const TextMap& entries, SessionIdentity& identity, std::string& problem);
 

@@ -6,7 +6,7 @@
 namespace slew::recording {
 namespace {
 
-constexpr std::size_t kAlignment = 8;  // of blocks; the head of a block fills it
+constexpr std::size_t kAlignment = 8;  // alignment of blocks; the head of a block fills it
 
 constexpr std::size_t rounded_up(std::size_t size) noexcept {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
@@ -25,7 +25,7 @@ bool SortWindow::is_later(const WindowEntry& a, const WindowEntry& b) const noex
     return std::tie(e.stamp.epoch, e.stamp.step, e.channel, e.stamp.sequence);
   };
   if (const auto order = key(a) <=> key(b); order != 0) return order > 0;
-  // two publishers with the same sequence on one channel: the content decides, not the arrival
+  // two publishers with the same sequence on one channel: order by content, not by arrival
   const ByteSpan payload_a = payload_of(a);
   const ByteSpan payload_b = payload_of(b);
   const int bytes = std::memcmp(payload_a.data(), payload_b.data(), std::min(payload_a.size(), payload_b.size()));
@@ -52,7 +52,7 @@ SortWindow::PushResult SortWindow::push(const MessageStamp& stamp, std::uint16_t
 bool SortWindow::is_first_due() const noexcept {
   if (is_empty()) return false;
   const MessageStamp& stamp = first().stamp;
-  // a former epoch ends as many steps after the reset as a step is held back
+  // a former epoch ends after the reset plus the held span of steps
   if (stamp.epoch < newest_epoch_) return newest_step_ >= steps_;
   return stamp.step <= newest_step_ - steps_;
 }
@@ -88,7 +88,7 @@ bool SortWindow::allocate(std::size_t size, std::size_t& block) noexcept {
   const std::size_t behind = ring_.size() - end_;
   const std::size_t skipped = needed > behind ? behind : 0;
   if (needed + skipped > ring_.size() - used_) return false;
-  // the rest in front of the wrap becomes a block that nobody uses
+  // the rest before the wrap becomes an unused block
   if (skipped > 0) {
     set_head(end_, {static_cast<std::uint32_t>(skipped), 0});
     used_ += skipped;
@@ -103,7 +103,7 @@ bool SortWindow::allocate(std::size_t size, std::size_t& block) noexcept {
 
 void SortWindow::release(std::size_t block) noexcept {
   set_head(block, {head_at(block).size, 0});
-  // the ring gives back from its oldest block on
+  // the ring releases blocks from its oldest on
   while (used_ > 0 && head_at(tail_).is_live == 0) {
     const std::size_t size = head_at(tail_).size;
     used_ -= size;

@@ -1,4 +1,4 @@
-// Puts messages into the order of steps before they are written, whatever order they arrived in.
+// Sorts messages into the order of steps before they are written, for any order of arrival.
 //
 // Order: (epoch, step, channel, sequence), then the payload's bytes, then arrival; so the same messages leave in the
 // same order in every run. The memory is fixed at construction: a ring of bytes for the payloads and an array for
@@ -13,7 +13,7 @@
 
 namespace slew::recording {
 
-// Where a message belongs in logical time. Epochs count the resets of a session.
+// Place of a message in logical time. Epochs count the resets of a session.
 struct MessageStamp {
   std::uint32_t epoch = 0;
   StepIndex step = 0;
@@ -24,27 +24,27 @@ struct MessageStamp {
 struct WindowEntry {
   MessageStamp stamp;
   std::uint16_t channel = 0;
-  std::uint32_t size = 0;     // of the payload
+  std::uint32_t size = 0;     // size of the payload
   std::uint64_t arrival = 0;  // running number
   std::size_t block = 0;      // place of the payload's block in the ring
 };
 
 class SortWindow {
  public:
-  // steps: span of steps that is held back; bytes, messages: capacity.
+  // steps: span of held steps; bytes, messages: capacity.
   SortWindow(StepIndex steps, std::size_t bytes, std::size_t messages);
 
   enum class PushResult {
     taken,
     full,      // pop the first entries and try again
-    too_large  // does not fit into the empty window
+    too_large  // exceeds the empty window
   };
   [[nodiscard]] PushResult push(const MessageStamp& stamp, std::uint16_t channel, ByteSpan payload) noexcept;
 
   [[nodiscard]] bool is_empty() const noexcept { return entries_.empty(); }
-  // The first entry has left the span of steps behind the newest one.
+  // True if the first entry is older than the span of steps behind the newest one.
   [[nodiscard]] bool is_first_due() const noexcept;
-  // The first entry belongs to this epoch and step, or to an earlier one.
+  // True if the first entry belongs to this epoch and step, or to an earlier one.
   [[nodiscard]] bool is_first_up_to(std::uint32_t epoch, StepIndex step) const noexcept;
 
   [[nodiscard]] const WindowEntry& first() const noexcept { return entries_.front(); }
@@ -57,7 +57,7 @@ class SortWindow {
  private:
   // head of a block in the ring; the payload follows
   struct BlockHead {
-    std::uint32_t size = 0;  // of the block with this head, a multiple of 8
+    std::uint32_t size = 0;  // size of the block with this head, a multiple of 8
     std::uint32_t is_live = 0;
   };
 
@@ -72,7 +72,7 @@ class SortWindow {
   std::size_t capacity_;
   Bytes ring_;
   std::size_t tail_ = 0;  // oldest block
-  std::size_t end_ = 0;   // where the next block goes
+  std::size_t end_ = 0;   // place of the next block
   std::size_t used_ = 0;
   std::uint64_t arrivals_ = 0;
   std::uint32_t newest_epoch_ = 0;

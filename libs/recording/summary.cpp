@@ -39,7 +39,7 @@ bool decode_summary_record(Opcode opcode, ByteSpan content, FileIndex& index) {
     case Opcode::statistics:
       return decode_statistics(content, index.statistics);
     default:
-      return opcode != Opcode::invalid;  // summary offsets, and what a later version adds
+      return opcode != Opcode::invalid;  // summary offsets, and records of later versions
   }
 }
 
@@ -91,7 +91,7 @@ void encode_end(Bytes& out, std::uint64_t file_size, std::uint32_t data_section_
   const std::size_t offsets_at = out.size();
   for (const SummaryOffsetRecord& group : groups) encode_summary_offset(out, group);
 
-  // the summary's checksum reaches into the footer, up to itself
+  // the summary's checksum covers the footer up to the checksum itself
   const std::size_t footer_at = begin_record(out, Opcode::footer);
   put(out, file_size + summary_at);
   put(out, file_size + offsets_at);
@@ -130,7 +130,7 @@ bool read_summary(const InputFile& file, FileIndex& index, Damage& damage, Statu
     damage = {footer_at, "the footer points outside of the file"};
     return false;
   }
-  // what the footer points to follows Data End: nothing is read before that is sure
+  // the footer must point behind Data End: this is checked before reading
   constexpr std::size_t kDataEndBytes = kRecordHeadBytes + sizeof(std::uint32_t);
   Bytes data_end;
   if (footer.summary_start < kMagic.size() + kDataEndBytes) {

@@ -11,7 +11,7 @@
 
 namespace slew::recording {
 
-// Where everything is in a file. Built by the writer as it writes, read from the summary, or rebuilt by a scan.
+// Index of a file. Built by the writer as it writes, read from the summary, or rebuilt by a scan.
 struct FileIndex {
   std::vector<SchemaRecord> schemas;
   std::vector<ChannelRecord> channels;
@@ -21,21 +21,21 @@ struct FileIndex {
   StatisticsRecord statistics;
 };
 
-// Counts of the lists and the span of times; message counts by channel are the owner's.
+// Counts of the lists and the span of times; the owner keeps message counts by channel.
 void complete_statistics(FileIndex& index);
 
 // Appends Data End, summary, footer and magic for a file that ends at file_size.
 // data_section_crc: CRC32 of the file so far.
 void encode_end(Bytes& out, std::uint64_t file_size, std::uint32_t data_section_crc, const FileIndex& index);
 
-// Where the bytes end that are proved to be as they were written, and in words what is wrong behind them.
+// End of the proved bytes, and the problem behind them in words.
 struct Damage {
   std::uint64_t offset = 0;
   std::string text;
 };
 
-// Takes the index from the end of the file. False, with the damage named, when there is no end or its checksum
-// differs. Errors of the disk are in status.
+// Reads the index from the end of the file. False, with the damage, if the end is missing or its checksum differs.
+// Errors of the disk are in status.
 [[nodiscard]] bool read_summary(const InputFile& file, FileIndex& index, Damage& damage, Status& status);
 
 }  // namespace slew::recording

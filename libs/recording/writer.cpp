@@ -64,7 +64,7 @@ Status Writer::append_marked(std::uint64_t room_behind) {
   return remember(file_.append_marked(buffer_, room_behind));
 }
 
-// An upper bound: what the last chunk leaves no room for is an end that a full disk would cost.
+// Upper bound of the end's size: a full disk must leave room for the end behind the last chunk.
 std::uint64_t Writer::room_for_end() const noexcept {
   constexpr std::uint64_t kSummaryBytes = 16 * 1024;  // metadata, statistics, offsets, footer
   const std::uint64_t chunk_index = 128 + 10 * index_.channels.size();
@@ -157,7 +157,7 @@ Status Writer::write(ChannelId channel, const MessageStamp& stamp, ByteSpan payl
     result = window_.push(stamp, id, payload);
   }
   if (result != SortWindow::PushResult::taken) {
-    // larger than the whole window, which is empty now; or the recording has just failed
+    // the message exceeds the empty window, or the recording has just failed
     if (status.is_ok()) return emit(stamp, id, payload);
     ++counts_.lost_messages;
   }
@@ -227,7 +227,7 @@ void Writer::forget_written() {
   while (!handed_over_.empty() && handed_over_.front().end <= written) handed_over_.pop_front();
 }
 
-// what was handed over and did not come into the file
+// messages that were handed over and did not reach the file
 void Writer::roll_back() {
   forget_written();
   for (const HandedOver& chunk : handed_over_) {
@@ -250,7 +250,7 @@ void Writer::roll_back() {
 
 void Writer::note_lost(std::uint64_t log_time) {
   if (first_lost_step_) return;
-  // in the newest epoch that begins at or before that time
+  // place in the newest epoch that begins at or before that time
   std::uint64_t epoch_start = 0;
   for (const auto& [epoch, start] : epoch_start_) {
     if (start <= log_time) epoch_start = std::max(epoch_start, start);
@@ -270,7 +270,7 @@ Status Writer::flush_if_due(std::int64_t monotonic_ns) {
   if (!last_flush_ns_) last_flush_ns_ = monotonic_ns;
   if (monotonic_ns - *last_flush_ns_ < limits_.flush_period.ns) return Status::ok();
   last_flush_ns_ = monotonic_ns;
-  // a step that was there one period ago is complete by now
+  // a step that was present one period ago is complete now
   Status status;
   while (status.is_ok() && window_.is_first_up_to(flushed_epoch_, flushed_step_)) status = emit_first();
   flushed_epoch_ = window_.newest_epoch();
@@ -301,7 +301,7 @@ Status Writer::close(const TextMap& summary) {
 }
 
 Status Writer::write_end(const TextMap& summary) {
-  // after a failure there may be room for the end, which is small, where there was none for a chunk
+  // after a failure there may be room for the small end, even if not for a chunk
   Bytes metadata;
   if (!summary.empty()) {
     encode_metadata(metadata, {kSummaryName, summary});

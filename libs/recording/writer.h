@@ -2,7 +2,7 @@
 //
 // Layout, reasons and guarantees: docs/recording-format.md. In short: identity, attachments, schemas and channels in
 // front; then chunks of about 1 MiB of messages in the order (epoch, step, channel, sequence); index, statistics and
-// footer at the end. Whatever moment the process dies at, the file is readable up to the last chunk handed over.
+// footer at the end. If the process dies at any moment, the file is readable up to the last chunk handed over.
 //
 // log_time of a message = simulation time of its step in ns, H * max(step, 0); every reset of the session (a new epoch)
 // continues one step behind the last time written, so that it never goes backwards in the file. Messages that come
@@ -10,8 +10,8 @@
 // publish_time = wall clock at the publisher, or log_time when that is unknown.
 //
 // Not thread-safe. write() does not allocate once the first chunk is full; it compresses in the caller's thread
-// whenever a chunk is full (about 3 ms per MiB), and writes there too or, with a backlog, in a thread of its own. A
-// failure of that thread is told by the next call that writes, with everything counted as lost that had waited.
+// whenever a chunk is full (about 3 ms per MiB), and writes there too or, with a backlog, in a thread of its own. The
+// next writing call reports a failure of that thread and counts all waiting messages as lost.
 #pragma once
 
 #include <cstdint>
@@ -45,9 +45,10 @@ struct WriterLimits {
   int compression_level = 1;                     // zstd, 1 to 19
   StepIndex window_steps = 256;                  // span of steps that is sorted, 1 or more
   std::size_t window_bytes = 8u << 20;           // its memory for payloads
-  std::size_t window_messages = 32'768;          // its capacity in messages
+  std::size_t window_messages = 32'768;          // capacity of the sort window in messages
   SimDuration flush_period = milliseconds(500);  // every message is in the file after twice this time
-  std::size_t backlog_bytes = 0;                 // that may wait for a slow disk; 0: written in the caller's thread
+  std::size_t backlog_bytes = 0;                 // limit of bytes that wait for a slow disk; 0: written in the caller's
+                                                 // thread
 };
 
 struct ChannelDef {
@@ -61,7 +62,7 @@ struct WriterCounts {
   std::uint64_t messages = 0;       // in the file
   std::uint64_t payload_bytes = 0;  // taken, before compression
   std::uint64_t chunks = 0;
-  std::uint64_t late_messages = 0;  // behind a message of a later time in the file
+  std::uint64_t late_messages = 0;  // messages behind one of a later time in the file
   std::uint64_t lost_messages = 0;  // not in the file because a write failed
 };
 
@@ -72,7 +73,7 @@ class Writer {
   [[nodiscard]] static Status create(const std::filesystem::path& path, const SessionIdentity& identity,
                                      const WriterLimits& limits, std::unique_ptr<Writer>& writer,
                                      FileCalls& calls = system_file_calls());
-  // Closes as close({}) does, when nobody closed it.
+  // Closes as close({}) does, if still open.
   ~Writer();
 
   // Files beside the messages: expanded scene, manifest, build. Before the first message by convention.
@@ -89,11 +90,11 @@ class Writer {
   // out of range or a payload above kMaxMessageBytes.
   [[nodiscard]] Status write(ChannelId channel, const MessageStamp& stamp, ByteSpan payload);
 
-  // To be called about ten times a second, also while no message comes: hands to the file what is old enough.
+  // Writes messages that are old enough. Call it about ten times a second, also without new messages.
   [[nodiscard]] Status flush_if_due(std::int64_t monotonic_ns);
-  // Everything, also what might still be overtaken by an earlier step; waits until it is in the file.
+  // Writes all messages, also those that an earlier step might still precede; waits until they are in the file.
   [[nodiscard]] Status flush();
-  // Waits until all that was handed over is in the file.
+  // Waits until all messages handed over are in the file.
   [[nodiscard]] Status settle();
   // Bytes that wait for the disk.
   [[nodiscard]] std::size_t backlog_bytes() const { return file_.backlog(); }
@@ -102,9 +103,9 @@ class Writer {
   // complete the file and returns the first failure.
   [[nodiscard]] Status close(const TextMap& summary);
 
-  // Of one channel, handed to the file.
+  // Number of messages of one channel handed to the file.
   [[nodiscard]] std::uint64_t messages_in_file(ChannelId channel) const;
-  // After a failed write: every message of an earlier step that had come is in the file. None: no write has failed.
+  // After a failed write: the step before which all received messages are in the file. None: no write has failed.
   [[nodiscard]] std::optional<StepIndex> first_lost_step() const noexcept { return first_lost_step_; }
   [[nodiscard]] const WriterCounts& counts() const noexcept { return counts_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return file_.path(); }
@@ -130,12 +131,12 @@ class Writer {
   WriterLimits limits_;
   SimDuration communication_step_;
   BackgroundFile file_;
-  Bytes buffer_;  // records on their way into the file
+  Bytes buffer_;  // records not yet in the file
   SortWindow window_;
   ChunkBuilder chunk_;
 
   FileIndex index_;                            // channel id = position in index_.channels
-  std::uint64_t declared_bytes_ = 0;           // schemas and channels, which the end repeats
+  std::uint64_t declared_bytes_ = 0;           // bytes of schemas and channels, which the end repeats
   std::vector<std::uint64_t> pending_counts_;  // messages of each channel in the open chunk
 
   std::map<std::uint32_t, std::uint64_t> epoch_start_;  // ns, log time of step 0 of each epoch
@@ -147,7 +148,7 @@ class Writer {
 
   // chunks that may still wait for the disk
   struct HandedOver {
-    std::uint64_t end = 0;              // byte behind it
+    std::uint64_t end = 0;              // offset of its end
     std::uint64_t start_time = 0;       // ns
     std::vector<std::uint64_t> counts;  // by channel
   };

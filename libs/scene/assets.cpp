@@ -14,7 +14,7 @@
 namespace slew::scene {
 namespace {
 
-// Size and hash of a file, or why it cannot be read.
+// Size and hash of a file, or the reason for a failed read.
 struct Measured {
   std::optional<Asset> asset;
   std::string problem;
@@ -68,7 +68,7 @@ bool is_inside_folder(const std::string& name) {
   return true;
 }
 
-void read_assets(const Node& section, const Surroundings& surroundings, Scene& scene, Report& report) {
+void read_assets(const Node& section, const LoadContext& load_context, Scene& scene, Report& report) {
   if (section.kind != Node::Kind::sequence || section.items.size() > kMaxAssets) {
     const bool is_list = section.kind == Node::Kind::sequence;
     report.add(section.mark, "assets",
@@ -87,11 +87,11 @@ void read_assets(const Node& section, const Surroundings& surroundings, Scene& s
                   "at most " + std::to_string(kMaxAssetNameLength), ""});
       continue;
     }
-    if (!surroundings.has_folder) {
+    if (!load_context.has_folder) {
       scene.assets.push_back({.name = item.text});
       continue;
     }
-    Measured measured = measure(item.text, surroundings.path_of(item.text));
+    Measured measured = measure(item.text, load_context.path_of(item.text));
     if (measured.asset) {
       scene.assets.push_back(std::move(*measured.asset));
     } else {
@@ -101,10 +101,10 @@ void read_assets(const Node& section, const Surroundings& surroundings, Scene& s
 }
 
 Status check_assets(std::span<const Asset> manifest, const std::string& folder) {
-  const Surroundings surroundings{true, folder};
+  const LoadContext load_context{true, folder};
   std::string differences;
   for (const Asset& wanted : manifest) {
-    const Measured found = measure(wanted.name, surroundings.path_of(wanted.name));
+    const Measured found = measure(wanted.name, load_context.path_of(wanted.name));
     if (found.asset == wanted) continue;
     differences += differences.empty() ? "" : "; ";
     differences += "asset '" + wanted.name + "' ";

@@ -1,4 +1,4 @@
-// Files that belong to a scene: size and SHA-256, so that a node on another machine can tell that its copy differs.
+// Files that belong to a scene: size and SHA-256, so that a node on another machine detects a different copy.
 #pragma once
 
 #include <optional>
@@ -14,18 +14,18 @@ namespace slew::scene {
 
 inline constexpr std::size_t kMaxAssets = 256;
 
-// Names stay inside the scene's folder, so that they mean the same on every machine.
+// Names stay inside the scene's folder, so that they are valid on every machine.
 [[nodiscard]] bool is_inside_folder(const std::string& name);
 
 [[nodiscard]] Sha256 sha256_of(std::string_view bytes);
-// As 64 hexadecimal digits, and back; nothing when the text is something else.
+// As 64 hexadecimal digits, and back; nothing if the text is invalid.
 [[nodiscard]] std::string hex_text(const Sha256& sum);
 [[nodiscard]] std::optional<Sha256> read_sha256(std::string_view text);
 
-// Size and hash of a file; empty with the reason in `fault`, as what the file is or does.
+// Size and hash of a file; empty with the reason in `fault`, phrased about the file.
 [[nodiscard]] std::optional<Asset> measure_asset(const std::string& name, const std::string& path, std::string& fault);
 
-// Reads the section `assets: [file, ...]`; with surroundings every file is measured.
-void read_assets(const Node& section, const Surroundings& surroundings, Scene& scene, Report& report);
+// Reads the section `assets: [file, ...]`; with a load context every file is measured.
+void read_assets(const Node& section, const LoadContext& load_context, Scene& scene, Report& report);
 
 }  // namespace slew::scene

@@ -15,7 +15,7 @@
 namespace slew::scene {
 namespace {
 
-// words that a YAML reader of any version may take for something else than text
+// words that some YAML version does not read as text
 constexpr std::string_view kLoadedWords[] = {"true", "false", "yes", "no", "on", "off", "y", "n", "null", "nan", "inf"};
 
 bool is_word_character(char c) {
@@ -56,7 +56,7 @@ std::string point_text(const std::array<double, 2>& point) {
   return fmt::format("[{}, {}]", point[0], point[1]);
 }
 
-// The file of a table that is not in the text; null: it is.
+// The file of a table that is kept outside the text; null: it is in the text.
 const TableFile* file_of(const Scene& scene, const std::string& path) {
   for (const TableFile& table : scene.table_files) {
     if (table.path == path) return &table;
@@ -133,7 +133,7 @@ std::string value_text(const Field& field, void* def) {
       return text.empty() ? "" : yaml_text(text);
     }
     case FieldType::triple: {
-      // what is not given is infinite
+      // an omitted value is infinite
       const auto& triple = member<Triple>(field, def);
       return std::isfinite(triple[0]) ? list_text(triple, number_text) : "";
     }
@@ -191,7 +191,7 @@ std::string canonical_text(Scene& scene) {
     throw LoadError(
         {{.file = scene.name,
           .path = "",
-          .what = fmt::format("the scene with its script has {} bytes when it is sent to the nodes", text.size()),
+          .what = fmt::format("the scene with its script has {} bytes when published to the nodes", text.size()),
           .expected = fmt::format("at most {}; long tables in .csv files are not counted", kMaxExpandedBytes),
           .suggestion = ""}},
         0);

@@ -12,7 +12,7 @@ namespace slew::scene {
 // Throws LoadError when the text is longer than kMaxExpandedBytes.
 [[nodiscard]] std::string canonical_text(Scene& scene);
 
-// The value of one field as YAML; empty when it has none that a scene could hold.
+// The value of one field as YAML; empty if a scene cannot express it.
 [[nodiscard]] std::string value_text(const Field& field, void* def);
 
 // A text as a YAML scalar: plain where that is safe, else in double quotes.

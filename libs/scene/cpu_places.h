@@ -13,8 +13,8 @@ struct CpuPlace {
   int cpu = 0;       // number of the processor, from 0
 };
 
-// Reads such a list; an empty text is an empty list. A role stands there once. Whether the machine has the processors
-// is not looked at: a scene is not written for one machine. Error (bad_input): which item, and what is wrong with it.
+// Reads such a list; an empty text is an empty list. A role occurs once. The processors are not checked against this
+// machine, since a scene is not written for one machine. Error (bad_input): the item and its fault.
 [[nodiscard]] Status parse_cpu_places(const std::string& text, std::vector<CpuPlace>& places);
 
 }  // namespace slew::scene

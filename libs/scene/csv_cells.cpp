@@ -15,7 +15,7 @@ bool is_space(char c, char separator) {
   return c == ' ' || (c == '\t' && separator != '\t');
 }
 
-// By the first line, outside of quotes.
+// Separator by the first line, outside of quotes.
 char separator_of(std::string_view line) {
   bool is_quoted = false;
   std::size_t commas = 0, tabs = 0;
@@ -35,9 +35,9 @@ std::string separator_name(char separator) {
 
 }  // namespace
 
-void CsvFile::complain(const Cell& cell, Complaint complaint) {
-  ++complaints_;
-  report_.add(source_.mark_at(cell.byte), "", std::move(complaint));
+void CsvFile::report_problem(const Cell& cell, ValueProblem problem) {
+  ++problem_count_;
+  report_.add(source_.mark_at(cell.byte), "", std::move(problem));
 }
 
 // ---- lines and cells
@@ -61,7 +61,7 @@ bool CsvFile::next_line() {
   return false;
 }
 
-// Fills cells_ from a line. False after a complaint.
+// Fills cells_ from a line. False after a reported problem.
 bool CsvFile::split(std::size_t begin, std::size_t end) {
   const std::string_view text = source_.text;
   cells_.clear();
@@ -84,7 +84,8 @@ bool CsvFile::split(std::size_t begin, std::size_t end) {
   return true;
 }
 
-// The cell whose quote is at `open`; where it ends, at a separator or the line's end. npos after a complaint.
+// Reads the cell whose quote is at `open`; returns its end, at a separator or the line's end. npos after a reported
+// problem.
 std::size_t CsvFile::read_quoted(std::size_t open, std::size_t end) {
   const std::string_view text = source_.text;
   bool has_quotes = false;
@@ -96,7 +97,7 @@ std::size_t CsvFile::read_quoted(std::size_t open, std::size_t end) {
     ++close;
   }
   if (close >= end) {
-    complain({{}, open}, {"this quote is not closed in its line", "a second \"", ""});
+    report_problem({{}, open}, {"this quote is not closed in its line", "a second \"", ""});
     return std::string_view::npos;
   }
   std::string_view content = text.substr(open + 1, close - open - 1);
@@ -114,7 +115,8 @@ std::size_t CsvFile::read_quoted(std::size_t open, std::size_t end) {
   std::size_t next = close + 1;
   while (next < end && is_space(text[next], separator_)) ++next;
   if (next == end || text[next] == separator_) return next;
-  complain({{}, next}, {"text stands behind a quoted cell", separator_name(separator_) + " or the line's end", ""});
+  report_problem({{}, next},
+                 {"text stands behind a quoted cell", separator_name(separator_) + " or the line's end", ""});
   return std::string_view::npos;
 }
 
@@ -126,7 +128,7 @@ bool CsvFile::read_column_head(const Cell& cell) {
   if (open == std::string::npos) return true;
   if (!column.name.ends_with(']')) {
     if (column.name.find(']', open) != std::string::npos) return true;  // part of the name
-    complain(cell, {"this '[' is not closed", "a name with its unit, such as 'force [kN]'", ""});
+    report_problem(cell, {"this '[' is not closed", "a name with its unit, such as 'force [kN]'", ""});
     return false;
   }
   column.unit = column.name.substr(open + 1, column.name.size() - open - 2);
@@ -137,18 +139,19 @@ bool CsvFile::read_column_head(const Cell& cell) {
 
 bool CsvFile::read_head() {
   if (!next_line()) {
-    if (complaints_ == 0) complain_of_file({"the file is empty", fmt::format("a header such as '{}'", example_), ""});
+    if (problem_count_ == 0)
+      report_file_problem({"the file is empty", fmt::format("a header such as '{}'", example_), ""});
     return false;
   }
   while (cells_.size() > 1 && cells_.back().text.empty()) cells_.pop_back();
   for (const Cell& cell : cells_) {
     if (split_number(cell.text).is_number) {
-      complain(cell, {fmt::format("the file begins with the number '{}'", cell.text),
-                      fmt::format("a header such as '{}'", example_), ""});
+      report_problem(cell, {fmt::format("the file begins with the number '{}'", cell.text),
+                            fmt::format("a header such as '{}'", example_), ""});
       return false;
     }
     if (cell.text.empty()) {
-      complain(cell, {"a column has no name", "a name in every cell of the header", ""});
+      report_problem(cell, {"a column has no name", "a name in every cell of the header", ""});
       return false;
     }
   }
@@ -156,9 +159,9 @@ bool CsvFile::read_head() {
 }
 
 const std::vector<Cell>* CsvFile::next_row() {
-  if (complaints_ >= kMaxReportedProblems || !next_line()) return nullptr;
+  if (problem_count_ >= kMaxReportedProblems || !next_line()) return nullptr;
   if (++rows_ > kMaxTableRows) {
-    complain(cells_[0], {fmt::format("the file has more than {} rows", kMaxTableRows), "a shorter record", ""});
+    report_problem(cells_[0], {fmt::format("the file has more than {} rows", kMaxTableRows), "a shorter record", ""});
     line_ = source_.line_start.size();
     return nullptr;
   }
@@ -166,21 +169,22 @@ const std::vector<Cell>* CsvFile::next_row() {
   if (cells_.size() == head_.size()) return &cells_;
   // 0,5,1,2 where cells are separated by commas
   const bool may_be_decimal_commas = separator_ == ',' && cells_.size() == 2 * head_.size();
-  complain(cells_[0], {fmt::format("the line has {} cell{}", cells_.size(), cells_.size() == 1 ? "" : "s"),
-                       fmt::format("{} as in the header{}", head_.size(),
-                                   may_be_decimal_commas ? "; decimal commas need ';' or tabs between cells" : ""),
-                       ""});
+  report_problem(cells_[0],
+                 {fmt::format("the line has {} cell{}", cells_.size(), cells_.size() == 1 ? "" : "s"),
+                  fmt::format("{} as in the header{}", head_.size(),
+                              may_be_decimal_commas ? "; decimal commas need ';' or tabs between cells" : ""),
+                  ""});
   return nullptr;
 }
 
 // ---- numbers
 
-// The cell's text with a decimal point; empty after a complaint.
+// The cell's text with a decimal point; empty after a reported problem.
 std::string_view CsvFile::with_decimal_point(const Cell& cell) {
   const std::size_t at = separator_ == ',' ? cell.text.find('.') : cell.text.find_first_of(".,");
   if (at == std::string_view::npos) return cell.text;
   if (cell.text.find_first_of(".,", at + 1) != std::string_view::npos) {
-    complain(cell, {fmt::format("'{}' is not a plain number", cell.text), "one decimal mark, no thousands", ""});
+    report_problem(cell, {fmt::format("'{}' is not a plain number", cell.text), "one decimal mark, no thousands", ""});
     return {};
   }
   const char mark = cell.text[at];
@@ -188,7 +192,8 @@ std::string_view CsvFile::with_decimal_point(const Cell& cell) {
     decimal_ = mark;
     decimal_mark_ = source_.mark_at(cell.byte);
   } else if (decimal_ != mark) {
-    complain(cell, {fmt::format("'{}' has a decimal {}, the number in line {} a decimal {}", cell.text,
+    report_problem(cell,
+                   {fmt::format("'{}' has a decimal {}, the number in line {} a decimal {}", cell.text,
                                 mark == ',' ? "comma" : "point", decimal_mark_.line, mark == ',' ? "point" : "comma"),
                     "one kind of decimal mark in a file", ""});
     return {};
@@ -202,15 +207,15 @@ std::string_view CsvFile::with_decimal_point(const Cell& cell) {
 std::optional<long double> CsvFile::number(const Cell& cell) {
   const std::string_view text = with_decimal_point(cell);
   if (text.empty()) {
-    if (cell.text.empty()) complain(cell, {"the cell is empty", "a number", ""});
+    if (cell.text.empty()) report_problem(cell, {"the cell is empty", "a number", ""});
     return std::nullopt;
   }
   NumberText number = split_number(text);
   if (!number.is_number) {
-    complain(cell, std::move(number.complaint));
+    report_problem(cell, std::move(number.problem));
   } else if (!number.rest.empty()) {
-    complain(cell,
-             {fmt::format("'{}' is not a plain number", cell.text), "a number; its unit stands in the header", ""});
+    report_problem(
+        cell, {fmt::format("'{}' is not a plain number", cell.text), "a number; its unit stands in the header", ""});
   } else {
     return number.value;
   }
@@ -220,12 +225,12 @@ std::optional<long double> CsvFile::number(const Cell& cell) {
 // ---- units of columns
 
 bool ColumnScale::take(const ColumnHead& head, Dimension dimension, UnitSystem& units, Report& report) {
-  // as the programs that export write a number without unit
+  // unit names by which exporting programs mark plain numbers
   const bool is_one = is_plain_number(dimension) && (head.unit == "1" || head.unit == "-");
   if (head.unit.empty() || is_one) return true;
   UnitResult result = read_unit(head.unit, dimension, units);
   if (result.unit == nullptr) {
-    report.add(head.mark, "", std::move(result.complaint));
+    report.add(head.mark, "", std::move(result.problem));
     return false;
   }
   unit_ = *result.unit;

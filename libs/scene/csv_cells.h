@@ -1,8 +1,8 @@
-// Lines, cells and numbers of a CSV file as spreadsheets, measuring programs and this program write it.
+// Lines, cells and numbers of CSV files from spreadsheets, measuring programs and this program.
 //
-// The first line decides what separates cells: ';' where it has one, else the more frequent of tab and comma; or a line
-// "sep=;" in front of it does. Cells may stand in double quotes ("" is one of them), within a line. Blank lines and
-// lines that begin with # are skipped, empty cells behind the last column as well. Where cells are not separated by
+// The first line determines the separator: ';' if present, else the more frequent of tab and comma; a line "sep=;" in
+// front of it takes precedence. Cells may stand in double quotes ("" is a quote character), within a line. Blank lines
+// and lines that begin with # are skipped, empty cells behind the last column as well. Where cells are not separated by
 // commas a number may have a decimal comma; a file has one kind of decimal mark.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace slew::scene {
 
-inline constexpr std::size_t kMaxTableBytes = 256'000'000;  // of a CSV file
+inline constexpr std::size_t kMaxTableBytes = 256'000'000;  // limit of a CSV file
 inline constexpr std::size_t kMaxTableRows = 5'000'000;
 
 struct Cell {
@@ -30,29 +30,29 @@ struct Cell {
 // Name and unit of a column: "deflection [mm]".
 struct ColumnHead {
   std::string name;
-  std::string unit;  // empty: none is given
+  std::string unit;  // empty: no unit
   Mark mark;
 };
 
 class CsvFile {
  public:
-  // The texts must live as long as this. example: of a header, for messages.
+  // The texts must outlive the object. example: a header, for messages.
   CsvFile(const SourceText& source, std::string_view example, Report& report)
       : source_(source), example_(example), report_(report) {}
 
-  // Reads the header. False after a complaint.
+  // Reads the header. False after a reported problem.
   [[nodiscard]] bool read_head();
   [[nodiscard]] const std::vector<ColumnHead>& head() const noexcept { return head_; }
 
-  // The next line of as many cells as the header has, valid until the next call. Null at the end of the file, and after
-  // a complaint about the line or when the file has given enough of them.
+  // The next line with as many cells as the header, valid until the next call. Null at the end of the file, after a
+  // problem in the line, or after the limit of reported problems.
   [[nodiscard]] const std::vector<Cell>* next_row();
 
-  // The number in a cell; nothing after a complaint.
+  // The number in a cell; nothing after a reported problem.
   [[nodiscard]] std::optional<long double> number(const Cell& cell);
 
-  void complain(const Cell& cell, Complaint complaint);
-  void complain_of_file(Complaint complaint) { report_.add({source_.source, 1, 1}, "", std::move(complaint)); }
+  void report_problem(const Cell& cell, ValueProblem problem);
+  void report_file_problem(ValueProblem problem) { report_.add({source_.source, 1, 1}, "", std::move(problem)); }
 
  private:
   [[nodiscard]] bool next_line();
@@ -64,11 +64,11 @@ class CsvFile {
   const SourceText& source_;
   std::string_view example_;
   Report& report_;
-  std::size_t line_ = 0;  // of the next one
+  std::size_t line_ = 0;  // number of the next line
   std::size_t rows_ = 0;
-  std::size_t complaints_ = 0;
-  char separator_ = 0;  // 0: not known yet
-  char decimal_ = 0;    // mark that the file has used
+  std::size_t problem_count_ = 0;
+  char separator_ = 0;  // 0: not determined yet
+  char decimal_ = 0;    // decimal mark found in the file
   Mark decimal_mark_;
   std::vector<ColumnHead> head_;
   std::vector<Cell> cells_;
@@ -79,7 +79,7 @@ class CsvFile {
 // The values of one column in SI.
 class ColumnScale {
  public:
-  // False after a complaint: no unit of this dimension.
+  // False after a reported problem: no unit of this dimension.
   [[nodiscard]] bool take(const ColumnHead& head, Dimension dimension, UnitSystem& units, Report& report);
   [[nodiscard]] double in_si(long double number) const noexcept;
 

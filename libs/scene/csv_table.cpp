@@ -70,8 +70,8 @@ bool TimeTable::is_behind(const Cell& cell, double time) {
   const bool is_jump = time == last_time_;
   if (time < last_time_ || (is_jump && is_jump_)) {
     const char* what = is_jump ? "time '{}' stands in a third row" : "time '{}' lies before that of the row above";
-    file_.complain(cell, {fmt::format(fmt::runtime(what), cell.text),
-                          "times that do not fall; two rows at one time are a jump", ""});
+    file_.report_problem(cell, {fmt::format(fmt::runtime(what), cell.text),
+                                "times that do not fall; two rows at one time are a jump", ""});
     return false;
   }
   is_jump_ = is_jump;
@@ -85,8 +85,8 @@ void TimeTable::read_row(const std::vector<Cell>& cells) {
   if (!number) return;
   const double time = time_scale_.in_si(*number);
   if (!kTime.contains(time)) {
-    file_.complain(cells[time_], {fmt::format("time '{}' is out of range", cells[time_].text),
-                                  fmt::format("{} to {} s", kTime.min, kTime.max), ""});
+    file_.report_problem(cells[time_], {fmt::format("time '{}' is out of range", cells[time_].text),
+                                        fmt::format("{} to {} s", kTime.min, kTime.max), ""});
     return;
   }
   if (!is_behind(cells[time_], time)) return;
@@ -99,16 +99,16 @@ void TimeTable::read_row(const std::vector<Cell>& cells) {
     if (kRaw.contains(value)) {
       columns_[i].points.push_back({time, value});
     } else {
-      file_.complain(cell, {fmt::format("value '{}' is out of range", cell.text),
-                            fmt::format("{} to {}", kRaw.min, kRaw.max), ""});
+      file_.report_problem(cell, {fmt::format("value '{}' is out of range", cell.text),
+                                  fmt::format("{} to {}", kRaw.min, kRaw.max), ""});
     }
   }
 }
 
-// What a file lacks as a whole, and the time before a record began.
+// Checks the file as a whole, and fills the time before the record.
 void TimeTable::finish() {
   if (rows_ == 0) {
-    file_.complain_of_file({"the file has a header and no rows", "a line for each time", ""});
+    file_.report_file_problem({"the file has a header and no rows", "a line for each time", ""});
     return;
   }
   for (CsvColumn& column : columns_) {
@@ -121,7 +121,7 @@ void TimeTable::finish() {
     const auto [time, value] = points.front();
     column.begin = time;
     if (time == 0 || value == 0) continue;
-    // a jump there begins at 0: the first of its two values would last for no time
+    // a jump at the start begins at 0: the first of its two values would have no duration
     if (points.size() > 1 && points[1][0] == time) points.erase(points.begin());
     points.insert(points.begin(), {{0, 0}, {time, 0}});
   }

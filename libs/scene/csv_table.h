@@ -4,8 +4,8 @@
 //   0; 0; 1,25
 //   500; 100; 1,31
 //   500; -100; 1,31        a second row at one time is a jump
-// Without a unit times are in seconds and values plain numbers. An empty cell is no point of its column; before the
-// first point of a column its value is 0, behind the last one it is held. csv_cells.h describes such files.
+// Without a unit times are in seconds and values plain numbers. An empty cell gives no point; before the first point of
+// a column its value is 0, after the last one it is held. csv_cells.h describes such files.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@ namespace slew::scene {
 struct CsvColumn {
   std::size_t index = 0;  // in TimeTable::head()
   Table points;           // time [s], value -1..1; two may have the same time
-  double begin = 0;       // s, of the first value in the file; the points may begin earlier, with 0
+  double begin = 0;       // s, time of the first value in the file; the points may begin earlier, with 0
 };
 
 class TimeTable {
@@ -30,12 +30,12 @@ class TimeTable {
   TimeTable(const SourceText& source, UnitSystem& units, Report& report)
       : source_(source), units_(units), report_(report), file_(source, "time [s],Stick", report) {}
 
-  // Reads the header. False after a complaint.
+  // Reads the header. False after a reported problem.
   [[nodiscard]] bool read_head();
   [[nodiscard]] const std::vector<ColumnHead>& head() const noexcept { return file_.head(); }
   [[nodiscard]] bool is_time(std::size_t column) const noexcept { return column == time_; }
 
-  // The columns with these indices in head(). Empty after a complaint.
+  // The columns with these indices in head(). Empty after a reported problem.
   [[nodiscard]] std::vector<CsvColumn> read(const std::vector<std::size_t>& columns);
 
  private:

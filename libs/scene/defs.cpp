@@ -12,7 +12,7 @@
 namespace slew::scene {
 namespace {
 
-// a step of 1.0000001 ms is a slip of the pen, not a wish
+// a step of 1.0000001 ms counts as a typing error
 constexpr double kWholeNanosecondTolerance = 1e-3;  // ns
 
 constexpr Range kStepRange{.min = kMinStep, .max = kMaxStep, .min_is_open = false, .max_is_open = false};
@@ -70,36 +70,33 @@ constexpr Field kSessionFields[] = {
         {.dimension = Dimension::time, .range = kDurationRange, .doc = "length of a run; 0: until stopped"}),
     field<&SessionDef::pace>("pace",
                              {.choices = kPaces, .doc = "real: paced by the wall clock; free: as fast as possible"}),
-    field<&SessionDef::coupling>(
-        "coupling",
-        {.change = Change::live,
-         .choices = kLevels,
-         .doc = "how much of the partner's behaviour a node uses inside a step, at every cylinder without a level of "
-                "its own"}),
+    field<&SessionDef::coupling>("coupling", {.change = Change::live,
+                                              .choices = kLevels,
+                                              .doc = "level at which a node uses the partner's model inside a step, at "
+                                                     "every cylinder without a level of its own"}),
     field<&SessionDef::flexible>(
         "flexible",
         {.choices = kElasticExchanges,
-         .doc = "how the flex node states the elastic forces of the modes. once: at the start, nobody waits for it any "
-                "more; every_step: anew about each step's modal coordinates, and the mechanics waits; condensed: it "
-                "integrates the modes itself and states them condensed over each step (trapezoidal integrator, one "
-                "sub-step)"}),
-    field<&SessionDef::mode>(
-        "mode",
-        {.choices = kModes,
-         .doc = "what a node does without a partner's sample. lockstep: it waits, the result is the same on any "
-                "machine; free_running: it waits no longer than wait_budget, then continues its copy of the partner's "
-                "model (real pace; levels linear and two)"}),
+         .doc = "exchange of the elastic forces of the modes. once: the flex node publishes them at the start, and no "
+                "node waits for later samples; every_step: it publishes them about each step's modal coordinates, and "
+                "the mechanics waits; condensed: it integrates the modes itself and publishes them condensed over each "
+                "step (trapezoidal integrator, one sub-step)"}),
+    field<&SessionDef::mode>("mode",
+                             {.choices = kModes,
+                              .doc = "behaviour of a node without the partner's sample. lockstep: it waits, the result "
+                                     "is the same on any machine; free_running: it waits for wait_budget at most, then "
+                                     "continues its copy of the partner's model (real pace; levels linear and two)"}),
     field<&SessionDef::exchange_every>(
         "exchange_every",
         {.range = kExchangeRange,
-         .doc = "steps between two exchanges of mechanics and hydraulics; in between each continues its copy of the "
-                "other's model, while ticks and inputs come at every step"}),
+         .doc = "steps between two exchanges of mechanics and hydraulics; in between each node continues its copy of "
+                "the partner's model, while ticks and inputs arrive at every step"}),
     field<&SessionDef::coupling_alarm>(
         "coupling_alarm",
         {.choices = kCouplingAlarms,
-         .doc = "what becomes of a session whose coupling is beyond what it is good for. stop: it ends, with the port, "
-                "when level linear or two diverges, and a free-running one whose machine "
-                "swings too far in a step does not start; warn: it goes on with red lamps and flags"}),
+         .doc = "action if the coupling leaves its range of validity. stop: the session ends and names the port when "
+                "level linear or two diverges, and a free-running session above the limit of omega_H does not start; "
+                "warn: the session continues with red lamps and flags"}),
     field<&SessionDef::wait_budget>("wait_budget",
                                     {.dimension = Dimension::time,
                                      .range = kBudgetRange,
@@ -113,9 +110,8 @@ constexpr Field kSessionFields[] = {
         "rtol",
         {.range = kToleranceRange, .read_by = kReadByMonolith, .doc = "relative tolerance of a monolithic solution"}),
     field<&SessionDef::contact>(
-        "contact",
-        {.choices = kContactUses,
-         .doc = "off: the pairs of shapes in `contacts` are left out of the session, with their variables and cost"}),
+        "contact", {.choices = kContactUses,
+                    .doc = "off: the session omits the pairs of shapes in `contacts`, with their variables and cost"}),
     field<&SessionDef::window>(
         "window",
         {.range = kWindowRange,
@@ -126,11 +122,10 @@ constexpr Field kSessionFields[] = {
                                                                   .doc = "silence, or time out of step, after which a "
                                                                          "controller's channel goes to neutral"}),
     field<&SessionDef::rejoin>(
-        "rejoin",
-        {.dimension = Dimension::time,
-         .range = kRejoinRange,
-         .doc = "how long the session is held when a physics node is lost, for another process that takes its place "
-                "and goes on with the state of the last checkpoint; 0: no checkpoints, the session ends"}),
+        "rejoin", {.dimension = Dimension::time,
+                   .range = kRejoinRange,
+                   .doc = "time for which the session is held when a physics node is lost, until another process takes "
+                          "its place and continues from the last checkpoint; 0: no checkpoints, the session ends"}),
     field<&SessionDef::stall_timeout>(
         "stall_timeout",
         {.dimension = Dimension::time,
@@ -148,9 +143,8 @@ constexpr Field kSessionFields[] = {
         "overrun",
         {.choices = kOverrunPolicies,
          .read_by = kReadByRealPace,
-         .doc = "what becomes of a session in real pace that the machine cannot keep up with. slip: whole steps of "
-                "wall time are given up and counted; hold: it pauses until somebody resumes it; stop: it ends with "
-                "exit code 3"}),
+         .doc = "action if the machine cannot keep real pace. slip: whole steps of wall time are dropped and counted; "
+                "hold: the session pauses until it is resumed; stop: the session ends with exit code 3"}),
     field<&SessionDef::overrun_after>(
         "overrun_after", {.range = kOverrunAfterRange,
                           .read_by = kReadByStopping,
@@ -165,24 +159,24 @@ constexpr Field kSessionFields[] = {
         "shed",
         {.choices = kShedLoads,
          .read_by = kReadByRealPace,
-         .doc = "what a session that overruns may leave out, in this order. view: the values of the flex node's "
-                "variables; variables: those of mechanics and hydraulics too, while no controller steers; never a "
-                "step's messages"}),
+         .doc =
+             "data that a session may omit on overrun, in this order. view: the values of the flex node's variables; "
+             "variables: also those of mechanics and hydraulics, while no controller steers; never a step's messages"}),
     field<&SessionDef::start_grace>("start_grace", {.dimension = Dimension::time,
                                                     .range = kGraceRange,
                                                     .read_by = kReadByRealPace,
-                                                    .doc = "time after step 0 in which nothing is judged"}),
-    field<&SessionDef::cpus>("cpus", {.doc = "where `run` puts the nodes it starts, such as \"mechanics=1, "
-                                             "hydraulics=0\"; without it anywhere"}),
+                                                    .doc = "time after step 0 without overrun checks"}),
+    field<&SessionDef::cpus>(
+        "cpus",
+        {.doc = "processors of the nodes that `run` starts, such as \"mechanics=1, hydraulics=0\"; empty: any"}),
 };
 
 constexpr Field kInputFields[] = {
     field<&InputDef::primitive>(
-        "primitive",
-        {.presence = Presence::required,
-         .reference = "component or force",
-         .doc = "component with a control signal that gets it, or point force or torque that is multiplied by it"}),
-    field<&InputDef::sub>("sub", {.choices = kSubs, .doc = "which of the component's signals"}),
+        "primitive", {.presence = Presence::required,
+                      .reference = "component or force",
+                      .doc = "component whose control signal it sets, or point force or torque that it multiplies"}),
+    field<&InputDef::sub>("sub", {.choices = kSubs, .doc = "signal of the component"}),
     field<&InputDef::block>(
         "block", {.range = kBlockRange,
                   .doc = "I/O block: number of the joystick; an address for I/O boards, no source uses it yet"}),
@@ -190,37 +184,35 @@ constexpr Field kInputFields[] = {
         "channel",
         {.range = kChannelRange, .doc = "I/O channel: axis or button of the block; two inputs must not share one"}),
     field<&InputDef::scale>("scale", {.dimension = Dimension::electric_signal,
-                                      .doc = "control signal at full stick; negative turns the direction round"}),
+                                      .doc = "control signal at full stick; negative reverses the direction"}),
     field<&InputDef::dead_zone>(
-        "dead_zone", {.range = kDeadZoneRange, .doc = "raw values up to this are 0; it cuts, it does not rescale"}),
+        "dead_zone", {.range = kDeadZoneRange, .doc = "raw values up to this are 0; larger values are not rescaled"}),
     field<&InputDef::ramp>("ramp", {.dimension = Dimension::time,
                                     .range = kRampRange,
-                                    .doc = "time from neutral to full stick at the quickest; 0: none"}),
-    field<&InputDef::rate_limit>("rate_limit",
-                                 {.dimension = Dimension::frequency,
-                                  .range = kNotNegative,
-                                  .doc = "largest change of the raw value per second that is let in; 0: any"}),
+                                    .doc = "shortest time from neutral to full stick; 0: none"}),
+    field<&InputDef::rate_limit>("rate_limit", {.dimension = Dimension::frequency,
+                                                .range = kNotNegative,
+                                                .doc = "largest accepted change of the raw value per second; 0: any"}),
     field<&InputDef::controller>(
         "controller",
         {.choices = kControllerModes,
-         .doc = "what a tick takes from a controller of this input. sampled: the latest value there is; lockstep: the "
-                "tick waits for the value that was computed from a certain step's variables, so that the closed loop "
-                "gives the same bits on any machine; step 0 waits until a controller has the channel"}),
+         .doc = "value that a tick takes from a controller of this input. sampled: the latest value; lockstep: the "
+                "tick waits for the value computed from a certain step's variables, so that the closed loop gives the "
+                "same bits on any machine; step 0 waits until a controller has the channel"}),
     field<&InputDef::controller_delay>(
         "controller_delay",
         {.range = kDelayRange,
          .read_by = kReadByLockstep,
          .doc = "lockstep: tick n takes the value computed from the variables of step n less this, or of the last step "
                 "up to it that has variables (recording.every)"}),
-    field<&InputDef::controller_wait>(
-        "controller_wait",
-        {.dimension = Dimension::time,
-         .range = kWaitRange,
-         .read_by = kReadByLockstep,
-         .doc = "lockstep: longest time that a tick waits; then the input holds its value, and goes to neutral after "
-                "session.controller_timeout"}),
+    field<&InputDef::controller_wait>("controller_wait",
+                                      {.dimension = Dimension::time,
+                                       .range = kWaitRange,
+                                       .read_by = kReadByLockstep,
+                                       .doc = "lockstep: longest wait of a tick; then the input holds its value, and "
+                                              "goes to neutral after session.controller_timeout"}),
     field<&InputDef::supervisor>(
-        "supervisor", {.doc = "name of the controller that may take the input from its holder; without it nobody may"}),
+        "supervisor", {.doc = "name of the controller that may take the input from its holder; empty: none"}),
 };
 
 constexpr Field kScriptFields[] = {
@@ -308,7 +300,7 @@ std::span<const Field> plot_fields() noexcept {
 std::string_view obstacle_of(const SessionDef& session, coupling::Level level) noexcept {
   const bool is_free_running = session.mode == ExchangeMode::free_running;
   if (is_free_running && (level == coupling::Level::hold || level == coupling::Level::tlm)) {
-    return "a free-running node continues its partner's model, which this level does not state";
+    return "a free-running node continues its partner's model, which this level does not provide";
   }
   if (session.exchange_every > 1 && level == coupling::Level::tlm) {
     return "the waves of this level need an exchange at every step";
@@ -326,10 +318,11 @@ void validate_free_running(const SessionDef& session, Problems& errors) {
     refuse("session.pace", "a free-running session has no other clock than the wall's", "real");
   }
   if (session.flexible != coupling::ElasticExchange::once) {
-    refuse("session.flexible", "elastic forces that are stated step by step cannot be continued without them", "once");
+    refuse("session.flexible", "elastic forces that are published step by step cannot be continued without new samples",
+           "once");
   }
   if (session.exchange_every > 1) {
-    refuse("session.exchange_every", "a free-running node takes every sample that comes", "1");
+    refuse("session.exchange_every", "a free-running node uses every sample that arrives", "1");
   }
 }
 
@@ -343,11 +336,12 @@ void validate_rejoin(const SessionDef& session, Problems& errors) {
 
 std::string_view obstacle_to_saving(const SessionDef& session) noexcept {
   if (session.mode == ExchangeMode::free_running) {
-    return "in a free-running session the clock decides which samples a step uses, and a state alone does not say how "
+    return "in a free-running session the clock determines which samples a step uses, and a state alone does not "
+           "determine how "
            "it goes on";
   }
   if (session.solution == Solution::monolithic) {
-    return "a monolithic solution is CVODE's, whose history cannot be put back";
+    return "a monolithic solution is CVODE's, whose history cannot be restored";
   }
   return "";
 }
@@ -374,7 +368,7 @@ void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
                       fmt::format("at most {} ms", kMaxStep * 1e3), ""});
   }
   if (session.wait_budget > 0 && session.mode != ExchangeMode::free_running) {
-    errors.push_back({"session.wait_budget", "a session in lockstep waits as long as it takes",
+    errors.push_back({"session.wait_budget", "a session in lockstep waits without limit",
                       "session.mode: free_running beside it", ""});
   }
   if (session.solution == Solution::monolithic &&

@@ -1,4 +1,4 @@
-// What a scene says beside the physics: session, inputs, script, recording, plots.
+// Definitions of a scene beside the physics: session, inputs, script, recording, plots.
 #pragma once
 
 #include <array>
@@ -19,72 +19,72 @@ namespace slew::scene {
 
 enum class Pace : int { real, free };
 
-// What a node does when a partner's sample is not there yet.
+// Behaviour of a node until a partner's sample arrives.
 enum class ExchangeMode : int {
-  lockstep,     // it waits: the same bits on any machine
-  free_running  // it waits for a while, then continues its copy of the partner's model
+  lockstep,     // the node waits: the same bits on any machine
+  free_running  // the node waits for a limited time, then continues its copy of the partner's model
 };
 
-// What becomes of a session whose coupling makes energy, or swings too far for samples that come late.
+// Action if the coupling creates energy, or omega_H exceeds the limit for late samples.
 enum class CouplingAlarm : int {
   stop,  // refused at the start, or ended with the port's name
   warn   // lamps and flags alone
 };
 
-// How the parts of a session are solved: each node its own, coupled once a step, or all physics as one system
+// Solution of a session: each node solves its own part, coupled once a step, or all physics as one system
 // (docs/models/coupling_reference_monolith.md).
 enum class Solution : int { split, monolithic };
 
-// What io does about a session that the machine cannot keep up with, in `real` pace (docs/realtime.md).
+// Action of io if the machine cannot keep `real` pace (docs/realtime.md).
 enum class OverrunPolicy : int {
-  slip,  // gives up whole steps of wall time and goes on
-  hold,  // pauses the session until somebody resumes it
+  slip,  // drops whole steps of wall time and continues
+  hold,  // pauses the session until it is resumed
   stop   // ends it, exit code 3
 };
 
-// How much a session that overruns may leave out, in this order; never a step's messages.
+// Data that a session may omit on overrun, in this order; never a step's messages.
 enum class ShedLoad : int {
   none,
   view,      // variables of the flex node
-  variables  // and those of mechanics and hydraulics, while no controller steers
+  variables  // also those of mechanics and hydraulics, while no controller steers
 };
 
-// Whether the pairs of shapes that a scene declares are tested; `off` is the scene without them.
+// Use of the declared pairs of shapes; `off` is the scene without them.
 enum class ContactUse : int { tested, off };
 
-// How a session runs.
+// Settings of a session.
 struct SessionDef {
   double step = 1e-3;                               // s, communication step H; whole nanoseconds
   double duration = 20;                             // s; 0: until it is stopped
   Pace pace = Pace::real;                           // real: paced by the wall clock; free: as fast as possible
-  coupling::Level coupling = coupling::Level::two;  // of the ports that have no level of their own
-  coupling::ElasticExchange flexible = coupling::ElasticExchange::once;  // when elastic forces of modes are stated
+  coupling::Level coupling = coupling::Level::two;  // level of the ports without a level of their own
+  coupling::ElasticExchange flexible = coupling::ElasticExchange::once;  // publication of the elastic forces of modes
   ExchangeMode mode = ExchangeMode::lockstep;
   std::int64_t exchange_every = 1;  // steps between two exchanges of mechanics and hydraulics
   CouplingAlarm coupling_alarm = CouplingAlarm::stop;
   double wait_budget = 0;  // s, longest wait of a free-running node; 0: half a step
   Solution solution = Solution::split;
-  double rtol = 1e-9;  // of a monolithic solution: relative tolerance of its integration
+  double rtol = 1e-9;  // relative tolerance of a monolithic solution
   ContactUse contact = ContactUse::tested;
   std::int64_t window = 0;          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free, see window_steps()
-  double controller_timeout = 0.5;  // s of silence, or out of step, after which a controller's channel goes to neutral
-  double rejoin = 0;                // s that a lost physics node's place is held for another process; 0: it is not
+  double controller_timeout = 0.5;  // s without a valid value, after which a controller's channel goes to neutral
+  double rejoin = 0;                // s for which a lost physics node's place is held for another process; 0: not held
 
-  // s, longest wait for one message of a node that is heard otherwise
+  // s, longest wait for one message of a node whose other messages arrive
   double stall_timeout = 10;
   double give_up_after = 2;  // s of silence after which a node is given up
 
   OverrunPolicy overrun = OverrunPolicy::slip;
   std::int64_t overrun_after =
-      0;                      // steps in a row that overran, after which hold or stop takes effect; 0: the lag alone
+      0;                      // consecutive overruns after which hold or stop takes effect; 0: the lag alone decides
   double overrun_lag = 0.05;  // s, behind the wall clock, after which the policy takes effect
   ShedLoad shed = ShedLoad::none;
-  double start_grace = 0.5;  // s after step 0 that are not judged
-  std::string cpus;          // "mechanics=1, hydraulics=0": where `run` puts its nodes; empty: anywhere
+  double start_grace = 0.5;  // s after step 0 without overrun checks
+  std::string cpus;          // "mechanics=1, hydraulics=0": processors of the nodes of `run`; empty: any
 
   [[nodiscard]] SimDuration step_duration() const noexcept;
-  [[nodiscard]] StepIndex steps() const noexcept;  // of the whole duration; 0: until stopped
-  // Free-running: as many steps as fit into 100 ms, 64 at most.
+  [[nodiscard]] StepIndex steps() const noexcept;  // number of steps of the duration; 0: until stopped
+  // Window of ticks; free-running: as many steps as fit into 100 ms, 64 at most.
   [[nodiscard]] std::int64_t window_steps() const noexcept;
   [[nodiscard]] SimDuration wait_budget_duration() const noexcept;
 };
@@ -96,40 +96,40 @@ enum class ControllerMode : int { sampled, lockstep };
 
 // One channel from the operator to a component or a load. Applied in this order to the raw value r (-1..1, digital 0 or
 // 1):
-//   dead zone  r if |r| > dead_zone else 0        it cuts, it does not rescale
+//   dead zone  r if |r| > dead_zone else 0        no rescaling
 //   ramp       at most 1 / ramp per second
 //   scale      the component gets scale * r; a point force or torque is multiplied by it
 struct InputDef {
   std::string name;
   InputType type = InputType::analog;
   std::string primitive;                     // component with a control signal, or point force or torque
-  InputSub sub = InputSub::control_voltage;  // which of its signals
+  InputSub sub = InputSub::control_voltage;  // signal of the component
   std::int64_t block = 0;                    // I/O block: number of the joystick
   std::int64_t channel = 0;                  // I/O channel: its axis or button
   double scale = 1;                          // component's signal at full stick; its sign is the stick's direction
-  double dead_zone = 0;                      // of the raw value
+  double dead_zone = 0;                      // dead zone of the raw value
   double ramp = 0;                           // s, from neutral to full stick; 0: none
   double rate_limit = 0;                     // 1/s, largest change of the raw value that a source may send; 0: none
   ControllerMode controller = ControllerMode::sampled;
   std::int64_t controller_delay =
       1;                         // steps, lockstep: tick n takes the value computed from the variables of n - delay
-  double controller_wait = 0.1;  // s, lockstep: longest time that a tick waits for that value
-  std::string supervisor;        // controller that may take the channel from its holder; empty: nobody may
+  double controller_wait = 0.1;  // s, lockstep: longest wait of a tick for that value
+  std::string supervisor;        // controller that may take the channel from its holder; empty: none
 };
 
 enum class ScriptInterpolation : int { linear, step };
 
 using Sha256 = std::array<std::uint8_t, 32>;
 
-// A table that stays in its CSV file since it is long: where the scene has it, and the content that the file must have.
+// A table that stays in its CSV file since it is long: its field, and the required content of the file.
 struct TableFile {
-  std::string path;                  // of the field, "Drive.force_table"; "script"
+  std::string path;                  // path of the field, "Drive.force_table"; "script"
   std::string file;                  // relative to the folder of the scene's files
-  std::vector<std::string> columns;  // names of the columns that are taken; empty: all
+  std::vector<std::string> columns;  // names of the used columns; empty: all
   std::uint64_t size = 0;            // bytes
   Sha256 sha256{};
-  bool is_pinned = false;  // the scene states the content, another one is refused
-  std::string found;       // path that it was read from; empty: it was not read
+  bool is_pinned = false;  // the scene states the content; other content is refused
+  std::string found;       // path of the file read; empty: not read
 };
 
 // Raw value of one input over time.
@@ -142,22 +142,22 @@ struct ScriptTrack {
 struct ScriptChange {
   double at = 0;         // s
   std::string set;       // parameter's path, "Bag.mass"
-  double value = 0;      // SI; of a choice its place among the choices
+  double value = 0;      // SI; for a choice its place among the choices
   double over = 0;       // s, spread over this time
   std::string choice{};  // name of a choice; empty: a number
 };
 
-// The scene's own operator, used when no other input is asked for.
+// The scene's own operator, used if no other input is selected.
 struct ScriptDef {
   ScriptInterpolation interpolation = ScriptInterpolation::linear;
   std::vector<ScriptTrack> tracks;    // in the order of the scene's inputs
   std::vector<ScriptChange> changes;  // ordered by time
-  std::optional<TableFile> file;      // of long tracks: these have no points where the file was not read
+  std::optional<TableFile> file;      // file of long tracks, which have no points if the file was not read
 
   [[nodiscard]] bool is_empty() const noexcept { return tracks.empty() && changes.empty() && !file; }
 };
 
-// Which variables the nodes publish and the recorder stores.
+// Selection of the variables that nodes publish and the recorder stores.
 struct RecordingDef {
   std::int64_t every = 1;                   // steps between two values of a variable
   std::vector<std::string> variables{"*"};  // names, or patterns with * and ?
@@ -175,17 +175,18 @@ inline constexpr double kMaxStep = 20e-3;                       // s
 inline constexpr SimDuration kLongestCopy = milliseconds(100);  // free-running: beyond it the ticks wait
 inline constexpr double kMinUsualStep = 0.1e-3;                 // s, warned about below
 inline constexpr double kMaxUsualStep = 10e-3;                  // s, warned about above
-inline constexpr std::size_t kMaxNameLength = 32;               // of an element: "name.quantity" must fit the wire's 63
+inline constexpr std::size_t kMaxNameLength = 32;               // limit of an element's name: "name.quantity" must fit
+                                                                // the wire's 63
 inline constexpr std::size_t kMaxSceneNameLength = 63;          // on the wire
 inline constexpr std::size_t kMaxAssetNameLength = 255;         // on the wire
-inline constexpr std::size_t kMaxExpandedBytes = 8 << 20;       // of Scene::expanded_text on the wire
-inline constexpr std::size_t kMaxPointsInText = 1000;           // of a table from a file; longer ones stay in it
+inline constexpr std::size_t kMaxExpandedBytes = 8 << 20;       // limit of Scene::expanded_text on the wire
+inline constexpr std::size_t kMaxPointsInText = 1000;           // limit of a table from a file; longer ones stay in it
 inline constexpr std::size_t kMaxInputs = 64;                   // channels on the wire
 inline constexpr std::size_t kMaxScriptChangesPerStep = 16;     // commands in one tick
 
 [[nodiscard]] std::span<const Field> session_fields() noexcept;
 [[nodiscard]] std::span<const Field> input_fields() noexcept;   // without `type`
-[[nodiscard]] std::span<const Field> script_fields() noexcept;  // of ScriptDef: interpolation
+[[nodiscard]] std::span<const Field> script_fields() noexcept;  // fields of ScriptDef: interpolation
 [[nodiscard]] std::span<const Field> script_track_fields() noexcept;
 [[nodiscard]] std::span<const Field> script_change_fields() noexcept;  // without `value`
 [[nodiscard]] std::span<const Field> recording_fields() noexcept;
@@ -193,13 +194,13 @@ inline constexpr std::size_t kMaxScriptChangesPerStep = 16;     // commands in o
 
 inline constexpr std::string_view kInputTypeChoices[] = {"analog", "digital"};
 
-// Why the session cannot couple a port at this level; empty: it can.
+// Reason why the session cannot couple a port at this level; empty: it can.
 [[nodiscard]] std::string_view obstacle_of(const SessionDef& session, coupling::Level level) noexcept;
 
-// Why the state of such a session cannot be put back; empty: it can, as far as the session says.
+// Reason why the state of such a session cannot be restored; empty: the session's settings allow it.
 [[nodiscard]] std::string_view obstacle_to_saving(const SessionDef& session) noexcept;
 
-// Rules between the fields; ranges are the tables' matter.
+// Checks rules between the fields; the tables check ranges.
 void validate(const SessionDef& session, Problems& errors, Problems& warnings);
 void validate(const std::vector<InputDef>& inputs, Problems& errors);
 

@@ -53,26 +53,26 @@ bool Report::is_override(const Mark& mark) const noexcept {
 
 int Report::layer(const Mark& mark) const noexcept {
   const auto count = static_cast<int>(sources_.size());
-  // the scene's own file is read first, then what it includes, then the overrides
+  // the scene's own file is read first, then included files, then the overrides
   return is_override(mark) ? 2 * count : mark.source == 0 ? count : mark.source;
 }
 
-Diagnostic Report::at(const Mark& mark, std::string path, Complaint complaint) const {
+Diagnostic Report::at(const Mark& mark, std::string path, ValueProblem problem) const {
   const Source& source = sources_.at(static_cast<std::size_t>(mark.source));
   const bool is_numbered = source.lines == Lines::numbered;
-  // an override says its path itself
+  // the label of an override contains its path
   if (!is_numbered && source.label.starts_with("--set " + path + "=")) path.clear();
   return {.file = source.label,
           .line = is_numbered ? mark.line : 0,
           .column = is_numbered ? mark.column : 0,
           .path = std::move(path),
-          .what = std::move(complaint.what),
-          .expected = std::move(complaint.expected),
-          .suggestion = std::move(complaint.suggestion)};
+          .what = std::move(problem.what),
+          .expected = std::move(problem.expected),
+          .suggestion = std::move(problem.suggestion)};
 }
 
-void Report::add(const Mark& mark, std::string path, Complaint complaint) {
-  entries_.push_back({mark, at(mark, std::move(path), std::move(complaint))});
+void Report::add(const Mark& mark, std::string path, ValueProblem problem) {
+  entries_.push_back({mark, at(mark, std::move(path), std::move(problem))});
 }
 
 void Report::fail(std::size_t limit) const {

@@ -1,8 +1,8 @@
-// What is wrong with a scene and where: one Diagnostic for each problem, all of them in one LoadError.
+// Problems of a scene: one Diagnostic for each with its place, all of them in one LoadError.
 //
 // Text of a diagnostic:  file:line:col: path: what is wrong; expected ...; did you mean 'x'?
-// A problem of a whole file has no line and column, one from a reader that knows lines only has no column; one of an
-// override reads "--set Bag.mass=5: ...".
+// A problem of a whole file has no line and column, a problem from a line-based reader has no column, and a problem of
+// an override reads "--set Bag.mass=5: ...".
 #pragma once
 
 #include <compare>
@@ -29,8 +29,8 @@ struct Diagnostic {
   int line = 0;      // 0: no line applies
   int column = 0;
   std::string path;        // "Bag.mass"; empty when the problem belongs to no key
-  std::string what;        // what is wrong
-  std::string expected;    // what would be right; may be empty
+  std::string what;        // the fault
+  std::string expected;    // accepted value; may be empty
   std::string suggestion;  // a name that was probably meant; may be empty
 
   [[nodiscard]] std::string text() const;
@@ -43,7 +43,7 @@ class LoadError : public std::runtime_error {
   LoadError(std::vector<Diagnostic> diagnostics, std::size_t omitted);
   [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const noexcept { return diagnostics_; }
   [[nodiscard]] std::size_t omitted() const noexcept { return omitted_; }
-  // of the first problem: where, what, what would be right
+  // parts of the first problem: place, fault, accepted value
   [[nodiscard]] std::string first_reason() const;
 
  private:
@@ -52,7 +52,7 @@ class LoadError : public std::runtime_error {
 };
 
 // A value's problem before its place is known.
-struct Complaint {
+struct ValueProblem {
   std::string what;
   std::string expected;
   std::string suggestion;
@@ -61,16 +61,16 @@ struct Complaint {
 // Collects problems while a scene is read.
 class Report {
  public:
-  enum class Lines { numbered, none };  // none: an override, whose places are not worth telling
+  enum class Lines { numbered, none };  // none: an override, reported without line
   // Registers a file or override by its label; the index goes into marks.
   int add_source(std::string label, Lines lines = Lines::numbered);
   [[nodiscard]] bool is_override(const Mark& mark) const noexcept;
-  // Layer that a place belongs to: files that are included, the scene's own file over them, overrides over both.
+  // Layer of a place: included files, the scene's own file over them, overrides over both.
   [[nodiscard]] int layer(const Mark& mark) const noexcept;
-  // The text of a diagnostic at this place: for warnings as for problems.
-  [[nodiscard]] Diagnostic at(const Mark& mark, std::string path, Complaint complaint) const;
+  // The diagnostic at this place, for warnings and problems.
+  [[nodiscard]] Diagnostic at(const Mark& mark, std::string path, ValueProblem problem) const;
 
-  void add(const Mark& mark, std::string path, Complaint complaint);
+  void add(const Mark& mark, std::string path, ValueProblem problem);
   [[nodiscard]] bool is_clean() const noexcept { return entries_.empty(); }
   [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }
 
@@ -90,8 +90,8 @@ class Report {
   std::vector<Entry> entries_;
 };
 
-// Calls load(), which reads the file. What goes wrong outside it (no unit database) is told in the same way; that the
-// system gives no more memory or files is no fault of the file.
+// Calls load(), which reads the file. Other failures (no unit database) become a LoadError too, except a lack of memory
+// or file handles, which is no fault of the file.
 template <typename Load>
 auto guarded(const std::string& file, const Load& load) {
   try {

@@ -55,12 +55,12 @@ std::vector<const Node*> included_files(const Node& include, Report& report) {
   return files;
 }
 
-std::optional<Node> read_included(const Node& name, const Surroundings& surroundings, Report& report) {
-  if (auto refusal = surroundings.refusal_of(name.text)) {
+std::optional<Node> read_included(const Node& name, const LoadContext& load_context, Report& report) {
+  if (auto refusal = load_context.refusal_of(name.text)) {
     report.add(name.mark, "include", std::move(*refusal));
     return std::nullopt;
   }
-  const std::string path = surroundings.path_of(name.text);
+  const std::string path = load_context.path_of(name.text);
   std::optional<Node> tree = read_tree(path, report.add_source(path), report);
   if (!tree) {
     report.add(name.mark, "include", {describe(name) + " cannot be included", "", ""});
@@ -84,7 +84,7 @@ bool is_single_section(std::string_view name) {
                                          [&](const SingleTable& table) { return table.section == name; });
 }
 
-// The map that a path's first part names: a single section (made when it is not there) or an element.
+// The map named by a path's first part: a single section (created if missing) or an element.
 Node* owner_of(Node& root, const std::string& name, const Mark& mark) {
   if (is_single_section(name)) {
     if (root.find(name) == nullptr) {
@@ -136,18 +136,18 @@ void apply_override(Node& root, const std::string& text, Report& report) {
 
 }  // namespace
 
-std::string Surroundings::path_of(const std::string& file) const {
+std::string LoadContext::path_of(const std::string& file) const {
   return (std::filesystem::path(folder) / file).string();
 }
 
-std::string Surroundings::asset_path_of(const std::string& file) const {
+std::string LoadContext::asset_path_of(const std::string& file) const {
   return (std::filesystem::path(asset_folder) / file).string();
 }
 
-std::optional<Complaint> Surroundings::refusal_of(const std::string& file) const {
+std::optional<ValueProblem> LoadContext::refusal_of(const std::string& file) const {
   if (!is_confined || is_inside_folder(file)) return std::nullopt;
-  return Complaint{"'" + file + "' lies outside of the scene's folder and was not read",
-                   "a file in that folder or below", ""};
+  return ValueProblem{"'" + file + "' lies outside of the scene's folder and was not read",
+                      "a file in that folder or below", ""};
 }
 
 std::optional<Node> read_with_includes(const std::string& path, Report& report) {
@@ -155,12 +155,12 @@ std::optional<Node> read_with_includes(const std::string& path, Report& report) 
   if (!scene) return std::nullopt;
   const Node::Entry* include = scene->find("include");
   if (include == nullptr) return scene;
-  const Surroundings surroundings{true, std::filesystem::path(path).parent_path().string()};
+  const LoadContext load_context{true, std::filesystem::path(path).parent_path().string()};
   Node base;
   base.kind = Node::Kind::map;
   bool is_complete = true;
   for (const Node* name : included_files(include->value, report)) {
-    std::optional<Node> tree = read_included(*name, surroundings, report);
+    std::optional<Node> tree = read_included(*name, load_context, report);
     is_complete = is_complete && tree;
     if (tree) merge(base, std::move(*tree));
   }

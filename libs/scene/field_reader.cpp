@@ -32,7 +32,7 @@ class ValueReader {
 
   void read(const Node& node) {
     if (node.kind == Node::Kind::empty) {
-      complain(node.mark, {"has no value", expected(), ""});
+      report_problem(node.mark, {"has no value", expected(), ""});
       return;
     }
     switch (field_.type) {
@@ -74,21 +74,21 @@ class ValueReader {
   Value& member() {
     return *static_cast<Value*>(field_.member(def_));
   }
-  void complain(const Mark& mark, Complaint complaint) { context_.report.add(mark, path_, std::move(complaint)); }
-  void complain_kind(const Node& node) { complain(node.mark, {"is " + describe(node), expected(), ""}); }
+  void report_problem(const Mark& mark, ValueProblem problem) { context_.report.add(mark, path_, std::move(problem)); }
+  void report_kind(const Node& node) { report_problem(node.mark, {"is " + describe(node), expected(), ""}); }
 
   [[nodiscard]] std::string expected() const { return expected_value(field_); }
 
   std::optional<double> number(const Node& node, Dimension dimension, bool has_range) {
     if (node.kind != Node::Kind::scalar) {
-      complain(node.mark, {"is " + describe(node), expected_quantity(dimension), ""});
+      report_problem(node.mark, {"is " + describe(node), expected_quantity(dimension), ""});
       return std::nullopt;
     }
     QuantityResult result = read_quantity(node.text, writing_of(node), dimension, context_.units);
     if (!result.value) {
-      complain(node.mark, std::move(result.complaint));
+      report_problem(node.mark, std::move(result.problem));
     } else if (has_range && !field_.range.contains(*result.value)) {
-      complain(node.mark, {describe(node) + " is out of range", range_text(field_.range, dimension), ""});
+      report_problem(node.mark, {describe(node) + " is out of range", range_text(field_.range, dimension), ""});
       return std::nullopt;
     }
     return result.value;
@@ -99,12 +99,13 @@ class ValueReader {
     const NumberText parsed = is_scalar ? split_number(node.text) : NumberText{};
     const auto value = static_cast<double>(parsed.value);
     if (is_scalar && !parsed.is_number) {
-      complain(node.mark,
-               {parsed.complaint.what, parsed.complaint.expected.empty() ? expected() : parsed.complaint.expected, ""});
+      report_problem(node.mark,
+                     {parsed.problem.what, parsed.problem.expected.empty() ? expected() : parsed.problem.expected, ""});
     } else if (!is_scalar || !parsed.rest.empty() || value != std::floor(value) || std::abs(value) > kLargestInteger) {
-      complain(node.mark, {"is " + describe(node), expected() + (parsed.rest.empty() ? "" : " without unit"), ""});
+      report_problem(node.mark,
+                     {"is " + describe(node), expected() + (parsed.rest.empty() ? "" : " without unit"), ""});
     } else if (!field_.range.contains(value)) {
-      complain(node.mark, {describe(node) + " is out of range", range_text(field_.range, Dimension::none), ""});
+      report_problem(node.mark, {describe(node) + " is out of range", range_text(field_.range, Dimension::none), ""});
     } else {
       member<std::int64_t>() = static_cast<std::int64_t>(value);
     }
@@ -119,18 +120,18 @@ class ValueReader {
                                                "No",  "On", "Off", "YES", "NO", "ON", "OFF"};
     const bool is_ambiguous =
         std::find(std::begin(kAmbiguous), std::end(kAmbiguous), node.text) != std::end(kAmbiguous);
-    complain(node.mark,
-             {(is_ambiguous ? describe(node) + " is ambiguous in YAML" : "is " + describe(node)), expected(), ""});
+    report_problem(node.mark, {(is_ambiguous ? describe(node) + " is ambiguous in YAML" : "is " + describe(node)),
+                               expected(), ""});
   }
 
   std::optional<std::string> text(const Node& node) {
     if (node.kind != Node::Kind::scalar) {
-      complain_kind(node);
+      report_kind(node);
       return std::nullopt;
     }
     // an empty text means "none" where a reference is optional
     if (node.text.empty() && field_.presence == Presence::required) {
-      complain(node.mark, {"is empty", expected(), ""});
+      report_problem(node.mark, {"is empty", expected(), ""});
       return std::nullopt;
     }
     if (!field_.reference.empty() && !node.text.empty()) {
@@ -141,12 +142,12 @@ class ValueReader {
 
   void read_triple(const Node& node) { fill_triple(node, expected(), member<Triple>()); }
 
-  // False after a complaint about the list; a number that is none leaves its component as it is.
+  // False after a problem in the list; an invalid number leaves its component unchanged.
   bool fill_triple(const Node& node, const std::string& wanted, Triple& triple) {
     if (node.kind != Node::Kind::sequence || node.items.size() != 3) {
       const bool is_list = node.kind == Node::Kind::sequence;
-      complain(node.mark,
-               {"is " + (is_list ? fmt::format("a list of {}", node.items.size()) : describe(node)), wanted, ""});
+      report_problem(node.mark,
+                     {"is " + (is_list ? fmt::format("a list of {}", node.items.size()) : describe(node)), wanted, ""});
       return false;
     }
     for (std::size_t i = 0; i < 3; ++i) {
@@ -157,7 +158,7 @@ class ValueReader {
 
   void read_triples(const Node& node) {
     if (node.kind != Node::Kind::sequence) {
-      complain_kind(node);
+      report_kind(node);
       return;
     }
     std::vector<Triple> triples;
@@ -167,13 +168,13 @@ class ValueReader {
     member<std::vector<Triple>>() = std::move(triples);
   }
 
-  // Points in a file beside the scene. A long table stays there: it is no part of the scene's text.
+  // Points in a file beside the scene. A long table stays there, outside the scene's text.
   void read_table_file(const Node& node) {
     std::optional<TableFile> table = read_table_reference(node, path_, context_);
     if (!table) return;
     if (!table->columns.empty() && table->columns.size() != 2) {
-      complain(node.find("columns")->value.mark,
-               {fmt::format("names {} columns", table->columns.size()), "two, of argument and value", ""});
+      report_problem(node.find("columns")->value.mark,
+                     {fmt::format("names {} columns", table->columns.size()), "two, of argument and value", ""});
       return;
     }
     const std::size_t problems = context_.report.size();
@@ -183,7 +184,7 @@ class ValueReader {
         member<Table>() = std::move(*points);
     }
     if (context_.report.size() > problems && opened.is_file)
-      complain(node.mark, {"'" + table->file + "' cannot be used", "", ""});
+      report_problem(node.mark, {"'" + table->file + "' cannot be used", "", ""});
     const bool is_long = member<Table>().size() > kMaxPointsInText || table->is_pinned;
     if (is_long && context_.report.size() == problems && context_.table_files != nullptr)
       context_.table_files->push_back(std::move(*table));
@@ -196,14 +197,14 @@ class ValueReader {
       return;
     }
     if (node.kind != Node::Kind::sequence || node.items.empty()) {
-      complain_kind(node);
+      report_kind(node);
       return;
     }
     Table table;
     bool is_sound = true;
     for (const Node& point : node.items) {
       if (point.kind != Node::Kind::sequence || point.items.size() != 2) {
-        complain(point.mark, {"a point is " + describe(point), "[argument, value]", ""});
+        report_problem(point.mark, {"a point is " + describe(point), "[argument, value]", ""});
         is_sound = false;
         continue;
       }
@@ -212,8 +213,8 @@ class ValueReader {
       is_sound = is_sound && argument && value;
       if (!argument || !value) continue;
       if (is_sound && !may_follow(table, *argument, field_)) {
-        complain(point.items[0].mark,
-                 {describe(point.items[0]) + " does not lie behind the point before it", order_text(field_), ""});
+        report_problem(point.items[0].mark,
+                       {describe(point.items[0]) + " does not lie behind the point before it", order_text(field_), ""});
         is_sound = false;
       }
       table.push_back({*argument, *value});
@@ -223,7 +224,7 @@ class ValueReader {
 
   void read_numbers(const Node& node) {
     if (node.kind != Node::Kind::sequence) {
-      complain_kind(node);
+      report_kind(node);
       return;
     }
     std::vector<double> values;
@@ -233,13 +234,13 @@ class ValueReader {
 
   void read_texts(const Node& node) {
     if (node.kind != Node::Kind::sequence) {
-      complain_kind(node);
+      report_kind(node);
       return;
     }
     std::vector<std::string> values;
     for (const Node& item : node.items) {
       if (item.kind != Node::Kind::scalar || item.text.empty()) {
-        complain(item.mark, {"an entry is " + describe(item), "a text", ""});
+        report_problem(item.mark, {"an entry is " + describe(item), "a text", ""});
       } else if (auto value = text(item)) {
         values.push_back(std::move(*value));
       }
@@ -256,8 +257,8 @@ class ValueReader {
       }
     }
     const std::vector<std::string_view> candidates(field_.choices.begin(), field_.choices.end());
-    complain(node.mark, {"is " + describe(node), expected(),
-                         node.kind == Node::Kind::scalar ? closest(node.text, candidates) : ""});
+    report_problem(node.mark, {"is " + describe(node), expected(),
+                               node.kind == Node::Kind::scalar ? closest(node.text, candidates) : ""});
   }
 
   const Field& field_;
@@ -273,13 +274,13 @@ const Field* find_field(std::span<const Field> fields, std::string_view key) {
   return nullptr;
 }
 
-// "oil_law: density_parabola", as the Def has it; "no ls_port" where it is empty.
+// "oil_law: density_parabola", from the Def; "no ls_port" if it is empty.
 std::string setting_text(const Field* field, std::string_view key, void* def) {
   const std::string value = field == nullptr ? "" : value_text(*field, def);
   return value.empty() || value == "[]" ? "no " + std::string(key) : fmt::format("{}: {}", key, value);
 }
 
-// faulty: keys with problems of their own, about which nothing more is said
+// faulty: keys with problems of their own, which get no further report
 void check_unread(const Node& map, std::span<const Field> fields, void* def, const std::string& path,
                   std::span<const std::string_view> faulty, const ReadContext& context) {
   const auto is_faulty = [&](std::string_view key) {
@@ -293,7 +294,7 @@ void check_unread(const Node& map, std::span<const Field> fields, void* def, con
     if (unmet == field->read_by.end() || is_faulty(unmet->key)) continue;
     const Node::Entry* const choice = map.find(unmet->key);
     const std::string value_path = path + "." + entry.key;
-    const Complaint complaint{
+    const ValueProblem problem{
         "nothing reads this key with " + setting_text(find_field(fields, unmet->key), unmet->key, def),
         fmt::format("{}, or no such key", unmet->what), ""};
     const bool is_left_unread =
@@ -302,9 +303,9 @@ void check_unread(const Node& map, std::span<const Field> fields, void* def, con
         unmet->otherwise == ReadBy::Otherwise::warning ||
         (unmet->otherwise == ReadBy::Otherwise::error_in_files && context.report.is_override(entry.mark));
     if (is_left_unread || is_carried_along) {
-      context.warnings->push_back(context.report.at(entry.mark, value_path, complaint).text());
+      context.warnings->push_back(context.report.at(entry.mark, value_path, problem).text());
     } else {
-      context.report.add(entry.mark, value_path, complaint);
+      context.report.add(entry.mark, value_path, problem);
     }
   }
 }
@@ -313,7 +314,7 @@ void check_unread(const Node& map, std::span<const Field> fields, void* def, con
 
 bool may_follow(const Table& table, double argument, const Field& field) {
   if (table.empty() || argument > table.back()[0]) return true;
-  // of three points at one argument the middle one would have no effect
+  // the middle one of three points with one argument has no effect
   const bool is_second = table.size() < 2 || table[table.size() - 2][0] < argument;
   return field.has_jumps && argument == table.back()[0] && is_second;
 }
@@ -398,7 +399,7 @@ void read_fields(const Node& map, std::span<const Field> fields, void* def, cons
     }
     std::vector<std::string_view> candidates(other_keys.begin(), other_keys.end());
     for (const Field& field : fields) candidates.push_back(field.key);
-    // where no key is near, the list of them helps
+    // without a similar key the message lists all keys
     const std::string suggestion = closest(entry.key, candidates);
     const std::string expected = suggestion.empty() ? choice_list(candidates) : std::string();
     context.report.add(entry.mark, value_path, {"unknown key", expected, suggestion});

@@ -15,7 +15,7 @@
 
 namespace slew::scene {
 
-// A name that a value refers to, resolved when all elements are known.
+// A reference by name, resolved after all elements are read.
 struct Reference {
   std::string_view kind;  // Field::reference
   std::string name;
@@ -23,36 +23,36 @@ struct Reference {
   Mark mark;
 };
 
-struct Surroundings;
+struct LoadContext;
 
 struct ReadContext {
   UnitSystem& units;
   Report& report;
   PlaceMap& places;
   std::vector<Reference>& references;
-  const Surroundings* surroundings = nullptr;     // null: no file may be named
-  std::vector<TableFile>* table_files = nullptr;  // gets the tables that stay in their files
-  std::vector<std::string>* warnings = nullptr;   // null: keys that nothing reads are not looked for
+  const LoadContext* load_context = nullptr;      // null: files are not allowed
+  std::vector<TableFile>* table_files = nullptr;  // receives the tables that stay in their files
+  std::vector<std::string>* warnings = nullptr;   // null: unused keys are not searched for
 };
 
-// Reads every entry of `map` into the Def at `def`. Keys in `other_keys` are the caller's and are left alone. A key
-// that nothing reads with the choices beside it (Field::read_by) is an error; where a choice of a later layer (an
-// overlay, an override) left it unread, or where sweeps carry it along, a warning. path: what stands before the keys in
-// messages, "Bag"; place: where a missing key is reported.
+// Reads every entry of `map` into the Def at `def`. Keys in `other_keys` belong to the caller and are skipped. A key
+// unused with the present choices (Field::read_by) is an error. It is a warning if a choice of a later layer (an
+// overlay, an override) made it unused, or if sweeps carry it along. path: prefix of the keys in messages, "Bag";
+// place: position at which a missing key is reported.
 void read_fields(const Node& map, std::span<const Field> fields, void* def, const std::string& path, const Mark& place,
                  std::span<const std::string_view> other_keys, const ReadContext& context);
 
 // Reads one value; its problems go to the report.
 void read_value(const Node& node, const Field& field, void* def, const std::string& path, const ReadContext& context);
 
-// Reports the keys that a map holds twice. path: "" at the root, else what stands before the key.
+// Reports duplicate keys of a map. path: "" at the root, else the prefix of the key.
 void report_duplicates(const Node& map, const std::string& path, Report& report);
 
-// Whether a point with this argument may come behind those of the table, and how arguments of the field go on.
+// True if a point with this argument may follow those of the table; and the rule for the field's arguments.
 [[nodiscard]] bool may_follow(const Table& table, double argument, const Field& field);
 [[nodiscard]] std::string order_text(const Field& field);
 
-// What a field takes, for messages: "a mass such as '500 kg', or a bare number in kg".
+// Accepted values of a field, for messages: "a mass such as '500 kg', or a bare number in kg".
 [[nodiscard]] std::string expected_value(const Field& field);
 
 // "hold, linear, two or tlm".

@@ -54,7 +54,7 @@ std::string meaning_text(const Field& field) {
   return text;
 }
 
-// Markdown tables part cells with |
+// Markdown tables separate cells with |
 std::string cell(std::string text) {
   for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, "\\");
   return text;
@@ -121,7 +121,7 @@ std::string flexible_field_reference() {
   flex::StressPointDef point;
   flex::ElementChainDef element;
   flex::BeamNodeDef node;
-  add("At the top", "One of line, nodes and matrices says where the body is", flex::body_fields(), &body);
+  add("At the top", "One of line, nodes and matrices gives the geometry of the body", flex::body_fields(), &body);
   add("materials", "By name", flex::material_fields(), &material);
   text += "\n### sections\n\nBy name.\n";
   for (const flex::SectionType& type : flex::section_types()) {
@@ -133,7 +133,7 @@ std::string flexible_field_reference() {
   add("nodes", "By number: [x, y, z]; the first is the root, the last the tip", {&flex::node_field(), 1}, &node);
   add("elements", "A list; without it a chain through the nodes", flex::element_fields(), &element);
   add("matrices", "Files of another finite element code", flex::matrix_file_fields(), &body.matrices);
-  add("reduction", "How the body is reduced", flex::reduction_fields(), &body.reduction);
+  add("reduction", "Reduction of the body", flex::reduction_fields(), &body.reduction);
   return text;
 }
 

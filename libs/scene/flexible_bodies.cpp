@@ -31,7 +31,7 @@ using multibody::BodyDef;
 using multibody::FlexibleBodyDef;
 using multibody::SegmentedBodyDef;
 
-// "0.005;0.005"; nothing for what is no list of numbers
+// "0.005;0.005"; nothing if the text is no list of numbers
 std::optional<std::vector<double>> number_list(const std::string& text) {
   std::vector<double> numbers;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -53,19 +53,19 @@ struct Wanted {
 
 class FlexibleReader {
  public:
-  FlexibleReader(const Surroundings& surroundings, Scene& scene, Problems& problems, Problems& warnings)
-      : surroundings_(surroundings), scene_(scene), problems_(problems), warnings_(warnings) {}
+  FlexibleReader(const LoadContext& load_context, Scene& scene, Problems& problems, Problems& warnings)
+      : load_context_(load_context), scene_(scene), problems_(problems), warnings_(warnings) {}
 
   void read(const BodyDef& body) {
     FlexibleBodyDef flexible{.body = body.name};
     if (const auto damping = number_list(body.relative_damping)) {
       flexible.relative_damping = *damping;
     } else {
-      complain(body, "relative_damping", "'" + body.relative_damping + "' is no list of numbers",
-               "numbers between semicolons, such as '0.005;0.005'");
+      report_problem(body, "relative_damping", "'" + body.relative_damping + "' is no list of numbers",
+                     "numbers between semicolons, such as '0.005;0.005'");
     }
     const std::optional<Wanted> modes = modes_of(body);
-    if (surroundings_.has_assets) {
+    if (load_context_.has_assets) {
       const flex::FlexibleFileSet files = files_of(body);
       const flex::Reduction* reduction = reduction_of(body, files);
       if (reduction != nullptr && modes) take(body, files, *reduction, *modes, flexible);
@@ -79,11 +79,11 @@ class FlexibleReader {
     if (damping && damping->size() <= 1) {
       segmented.relative_damping = damping->empty() ? 0 : damping->front();
     } else {
-      complain(body, "relative_damping",
-               "'" + body.relative_damping + "' is not one number: the beams between segments are damped alike",
-               "one number, of the files' first mode");
+      report_problem(body, "relative_damping",
+                     "'" + body.relative_damping + "' is not one number: the beams between segments are damped alike",
+                     "one number, of the files' first mode");
     }
-    if (surroundings_.has_assets) {
+    if (load_context_.has_assets) {
       const flex::FlexibleFileSet files = files_of(body);
       const flex::Reduction* reduction = reduction_of(body, files);
       if (reduction != nullptr) cut(body, files, *reduction, segmented);
@@ -93,7 +93,7 @@ class FlexibleReader {
 
  private:
   [[nodiscard]] flex::FlexibleFileSet files_of(const BodyDef& body) const {
-    return {surroundings_.asset_folder, body.flex_model.empty() ? scene_.name : body.flex_model, body.flex_file_prefix};
+    return {load_context_.asset_folder, body.flex_model.empty() ? scene_.name : body.flex_model, body.flex_file_prefix};
   }
 
   void cut(const BodyDef& body, const flex::FlexibleFileSet& files, const flex::Reduction& reduction,
@@ -102,7 +102,7 @@ class FlexibleReader {
       segmented.chain = std::make_shared<const multibody::SegmentChain>(
           segment_chain(reduction, static_cast<int>(body.segments), fmt::format("{}_{}", files.model, files.prefix)));
     } catch (const flex::InputError& error) {
-      complain(body, "flex_file_prefix", error.what(), "files of a straight beam, or type flexible");
+      report_problem(body, "flex_file_prefix", error.what(), "files of a straight beam, or type flexible");
       return;
     }
     const auto& nodes = segmented.chain->nodes;
@@ -113,7 +113,7 @@ class FlexibleReader {
     compare_mass(body, of_files, length);
   }
 
-  void complain(const BodyDef& body, const char* key, std::string what, std::string expected) {
+  void report_problem(const BodyDef& body, const char* key, std::string what, std::string expected) {
     problems_.push_back({fmt::format("{}.{}", body.name, key), std::move(what), std::move(expected), ""});
   }
 
@@ -123,26 +123,27 @@ class FlexibleReader {
     try {
       return Wanted{.ordinals = flex::mode_list(body.flex_modes)};
     } catch (const flex::InputError& error) {
-      complain(body, "flex_modes", error.what(), "");
+      report_problem(body, "flex_modes", error.what(), "");
       return std::nullopt;
     }
   }
 
-  // null after a complaint
+  // null after a reported problem
   const flex::Reduction* reduction_of(const BodyDef& body, const flex::FlexibleFileSet& files) {
     const auto known = sets_.find({files.model, files.prefix});
     if (known != sets_.end()) return known->second.get();
     auto& set = sets_[{files.model, files.prefix}];
     if ((files.model + files.prefix).find('/') != std::string::npos) {
-      complain(body, "flex_file_prefix",
-               "'" + files.model + "_" + files.prefix + "' lies outside of the scene's folder",
-               "names of files in that folder");
+      report_problem(body, "flex_file_prefix",
+                     "'" + files.model + "_" + files.prefix + "' lies outside of the scene's folder",
+                     "names of files in that folder");
       return nullptr;
     }
     try {
       set = std::make_unique<flex::Reduction>(flex::read_flexible_files(files));
     } catch (const std::exception& error) {
-      complain(body, "flex_file_prefix", error.what(), "a set of flexible files beside the scene: slewring flex build");
+      report_problem(body, "flex_file_prefix", error.what(),
+                     "a set of flexible files beside the scene: slewring flex build");
       return nullptr;
     }
     for (const std::string& matrix : flex::flexible_matrices()) add_asset(body, files, matrix);
@@ -159,11 +160,11 @@ class FlexibleReader {
     if (std::optional<Asset> asset = measure_asset(name, path, fault)) {
       scene_.assets.push_back(std::move(*asset));
     } else {
-      complain(body, "flex_file_prefix", "'" + name + "' " + fault, "");
+      report_problem(body, "flex_file_prefix", "'" + name + "' " + fault, "");
     }
     if (scene_.assets.size() > kMaxAssets) {
-      complain(body, "flex_file_prefix", fmt::format("the scene has {} files", scene_.assets.size()),
-               fmt::format("at most {}", kMaxAssets));
+      report_problem(body, "flex_file_prefix", fmt::format("the scene has {} files", scene_.assets.size()),
+                     fmt::format("at most {}", kMaxAssets));
     }
   }
 
@@ -177,11 +178,11 @@ class FlexibleReader {
       if (is_wanted) kept.push_back(ordinal);
     }
     try {
-      static_cast<void>(flex::places_of(wanted.ordinals, all.body.modes()));  // throws for unknown ones
+      static_cast<void>(flex::places_of(wanted.ordinals, all.body.modes()));  // throws for unknown ordinals
       if (kept.empty() && (wanted.all || !wanted.ordinals.empty())) {
-        complain(body, "flex_frequency_limit",
-                 fmt::format("no mode is left below {:.4g} Hz", body.flex_frequency_limit),
-                 fmt::format("at least {:.4g} Hz", all.body.omega.front() / (2 * std::numbers::pi)));
+        report_problem(body, "flex_frequency_limit",
+                       fmt::format("no mode is left below {:.4g} Hz", body.flex_frequency_limit),
+                       fmt::format("at least {:.4g} Hz", all.body.omega.front() / (2 * std::numbers::pi)));
         return;
       }
       const flex::Reduction chosen = flex::select(all, kept);
@@ -192,7 +193,7 @@ class FlexibleReader {
       compare_mass(body, of_files, multibody::length_of(*flexible.modes));
       if (chosen.body.modes() > 0) add_model(flexible, chosen);
     } catch (const flex::InputError& error) {
-      complain(body, "flex_modes", error.what(), "");
+      report_problem(body, "flex_modes", error.what(), "");
     }
   }
 
@@ -201,33 +202,33 @@ class FlexibleReader {
                                       multibody::modal_damping(*flexible.modes, flexible.relative_damping)});
   }
 
-  // what the body had while it was rigid
+  // properties of the body as a rigid one
   void compare_mass(const BodyDef& body, const BodyDef& of_files, double length) {
     constexpr double kAlike = 0.01;
     if (body.mass == 0) return;
     if (std::fabs(body.mass - of_files.mass) > kAlike * of_files.mass) {
       warnings_.push_back(
           {body.name + ".mass",
-           fmt::format("{:.6g} kg has no effect: the flexible files say {:.6g} kg", body.mass, of_files.mass),
+           fmt::format("{:.6g} kg has no effect: the flexible files give {:.6g} kg", body.mass, of_files.mass),
            "no mass, or that of the files", ""});
     }
     const double off = norm(math::Vec3(body.center_of_mass) - math::Vec3(of_files.center_of_mass));
     if (off > kAlike * length) {
       const auto [x, y, z] = of_files.center_of_mass;
       warnings_.push_back({body.name + ".center_of_mass",
-                           fmt::format("it has no effect: the flexible files say [{:.6g}, {:.6g}, {:.6g}] m", x, y, z),
+                           fmt::format("it has no effect: the flexible files give [{:.6g}, {:.6g}, {:.6g}] m", x, y, z),
                            "no center_of_mass, or that of the files", ""});
     }
   }
 
-  const Surroundings& surroundings_;
+  const LoadContext& load_context_;
   Scene& scene_;
   Problems& problems_;
   Problems& warnings_;
   std::map<std::pair<std::string, std::string>, std::unique_ptr<flex::Reduction>> sets_;
 };
 
-// what a sample of the modes holds
+// capacity of a sample of the modes
 void check_caps(const Scene& scene, Problems& problems) {
   std::size_t modes = 0, pairs = 0;
   for (const FlexibleBody& model : scene.flexible_bodies) {
@@ -245,16 +246,16 @@ void check_caps(const Scene& scene, Problems& problems) {
   check(pairs, coupling::kMaxModePairs, "pairs of modes, the squares of their numbers of modes together");
 }
 
-// The condensed step is the trapezoidal rule's: with another rule on the mechanics' side the exchange grows.
+// The condensed step uses the trapezoidal rule: with another rule in the mechanics the exchange is unstable.
 void check_condensed(const Scene& scene, Problems& problems) {
   if (scene.session.flexible != coupling::ElasticExchange::condensed || !scene.has_modes()) return;
   if (multibody::step_rule(scene.mechanics).integrator != multibody::Integrator::trapezoidal) {
-    problems.push_back({"session.flexible", "'condensed' goes with the trapezoidal integrator alone",
+    problems.push_back({"session.flexible", "'condensed' requires the trapezoidal integrator",
                         "mechanics.integrator trapezoidal, or flexible once", ""});
   }
   if (scene.session.step > scene.mechanics.max_substep * (1 + 1e-9)) {
     problems.push_back({"session.flexible",
-                        fmt::format("'condensed' goes with one sub-step, the mechanics has {}",
+                        fmt::format("'condensed' requires one sub-step, the mechanics has {}",
                                     std::ceil(scene.session.step / scene.mechanics.max_substep * (1 - 1e-9))),
                         fmt::format("mechanics.max_substep of at least {:.3g} s, or flexible once", scene.session.step),
                         ""});
@@ -263,8 +264,8 @@ void check_condensed(const Scene& scene, Problems& problems) {
 
 }  // namespace
 
-void read_flexible_bodies(const Surroundings& surroundings, Scene& scene, Problems& problems, Problems& warnings) {
-  FlexibleReader reader(surroundings, scene, problems, warnings);
+void read_flexible_bodies(const LoadContext& load_context, Scene& scene, Problems& problems, Problems& warnings) {
+  FlexibleReader reader(load_context, scene, problems, warnings);
   for (const BodyDef& body : scene.mechanics.bodies) {
     if (body.type == multibody::BodyType::flexible) reader.read(body);
     if (body.type == multibody::BodyType::segmented) reader.read_segmented(body);
@@ -275,7 +276,7 @@ void read_flexible_bodies(const Surroundings& surroundings, Scene& scene, Proble
     warnings.push_back({"session.flexible", "it has no effect: no body of the scene keeps modes", "", ""});
   }
   if (scene.session.shed == ShedLoad::view && !scene.has_flexible_bodies()) {
-    warnings.push_back({"session.shed", "view leaves out nothing here: no body of the scene bends", "", "variables"});
+    warnings.push_back({"session.shed", "view has no effect: no body of the scene bends", "", "variables"});
   }
 }
 

@@ -8,10 +8,10 @@
 namespace slew::scene {
 
 // Reads Model_Prefix_Matrix.dat (flex/flexible_files.h) of every flexible body into scene.mechanics.flexible_bodies,
-// with the modes that the body takes, and of every segmented one into segmented_bodies, cut into segments; adds the
-// files to scene.assets. Without files that may be read the bodies keep no modes. Bodies of one set share it. Problems
-// have the path of the key that is at fault. Warned about: mass and centre of mass that the scene gives the body
-// besides, and that are not those of the files within a percent. Allocates, reads files.
-void read_flexible_bodies(const Surroundings& surroundings, Scene& scene, Problems& problems, Problems& warnings);
+// with the selected modes, and of every segmented one into segmented_bodies, divided into segments; adds the files to
+// scene.assets. If files may not be read, the bodies keep no modes. Bodies of one set share it. Problems have the path
+// of the faulty key. Warns about a mass or centre of mass in the scene that differs from the files by more than a
+// percent. Allocates, reads files.
+void read_flexible_bodies(const LoadContext& load_context, Scene& scene, Problems& problems, Problems& warnings);
 
 }  // namespace slew::scene

@@ -34,10 +34,10 @@ std::vector<std::string_view> root_keys() {
 
 class DescriptionReader {
  public:
-  DescriptionReader(const Node& root, Surroundings surroundings, Report& report)
-      : root_(root), surroundings_(std::move(surroundings)), report_(report) {}
+  DescriptionReader(const Node& root, LoadContext load_context, Report& report)
+      : root_(root), load_context_(std::move(load_context)), report_(report) {}
 
-  // Pre-condition of what it returns: a clean report.
+  // The result is valid only with a clean report.
   FlexibleModel read() {
     read_root();
     read_materials();
@@ -65,7 +65,7 @@ class DescriptionReader {
     }
   }
 
-  // single values, and keys that there are not
+  // single values, and unknown keys
   void read_root() {
     report_duplicates(root_, "", report_);
     const std::span<const Field> fields = flex::body_fields();
@@ -91,7 +91,7 @@ class DescriptionReader {
     return false;
   }
 
-  // The part's value when it is there and of the kind.
+  // The part's value if it is present and of the kind.
   const Node* part(std::string_view key, Node::Kind kind, const char* expected) {
     const Node::Entry* entry = root_.find(key);
     return entry != nullptr && is_kind(entry->value, kind, entry->key, expected) ? &entry->value : nullptr;
@@ -102,7 +102,7 @@ class DescriptionReader {
     if (map != nullptr) read_fields(*map, fields, def, std::string(key), root_.find(key)->mark, {}, context_);
   }
 
-  // a '.' would part the path of an override
+  // a '.' would split the path of an override
   void check_name(const Node::Entry& named, const std::string& path) {
     places_.add(path, named.mark);
     const bool is_word = std::all_of(named.key.begin(), named.key.end(), [](char c) {
@@ -159,7 +159,7 @@ class DescriptionReader {
     }
   }
 
-  // Null after a complaint.
+  // Null after a reported problem.
   const flex::SectionType* shape_of(const Node::Entry& entry, const std::string& path) {
     std::vector<std::string_view> names;
     const Node::Entry* shape = entry.value.find("shape");
@@ -212,16 +212,16 @@ class DescriptionReader {
     read_part("matrices", flex::matrix_file_fields(), &def_.matrices);
     const Node::Entry* matrices = root_.find("matrices");
     if (matrices == nullptr) return;
-    if (!surroundings_.has_folder)
+    if (!load_context_.has_folder)
       report_.add(matrices->mark, "matrices", {"a description without a folder cannot name files", "", ""});
     for (const Node::Entry& entry : matrices->value.entries) {
-      if (auto refusal = surroundings_.refusal_of(entry.value.text))
+      if (auto refusal = load_context_.refusal_of(entry.value.text))
         report_.add(entry.value.mark, "matrices." + entry.key, std::move(*refusal));
     }
     const auto keys = flex::beam_keys();
     for (const Node::Entry& entry : root_.entries) {
       if (std::find(keys.begin(), keys.end(), entry.key) != keys.end())
-        report_.add(entry.mark, entry.key, {"says nothing beside matrices", "either a beam or matrices", ""});
+        report_.add(entry.mark, entry.key, {"has no effect beside matrices", "either a beam or matrices", ""});
     }
   }
 
@@ -240,25 +240,25 @@ class DescriptionReader {
 
   void build(FlexibleModel& out) {
     try {
-      out.model = flex::model_of(def_, surroundings_.folder);
+      out.model = flex::model_of(def_, load_context_.folder);
     } catch (const flex::InputError& error) {
       report_.add(places_.nearest("matrices", root_.mark), "matrices", {error.what(), "", ""});
     }
   }
 
   const Node& root_;
-  Surroundings surroundings_;
+  LoadContext load_context_;
   Report& report_;
   flex::FlexibleBodyDef def_;
   PlaceMap places_;
   std::vector<Reference> references_;
   UnitSystem units_;
-  ReadContext context_{units_, report_, places_, references_, &surroundings_};
+  ReadContext context_{units_, report_, places_, references_, &load_context_};
 };
 
 constexpr const char* kModelSetting = "key=value, such as 'line.nodes=40' or 'materials.Steel.youngs_modulus=20GPa'";
 
-// Puts the value where the path leads; of the parts at the root one that is not there is made.
+// Sets the value at the path; creates a missing part at the root.
 void apply_setting(Node& root, const std::string& text, Report& report) {
   std::optional<Setting> setting = parse_setting(text, kModelSetting, report);
   if (!setting) return;
@@ -288,9 +288,9 @@ void apply_setting(Node& root, const std::string& text, Report& report) {
   set_key(*map, setting->path.substr(at), std::move(setting->value), setting->mark);
 }
 
-FlexibleModel read_tree(Node root, Surroundings surroundings, const Overrides& overrides, Report& report) {
+FlexibleModel read_tree(Node root, LoadContext load_context, const Overrides& overrides, Report& report) {
   for (const std::string& text : overrides) apply_setting(root, text, report);
-  FlexibleModel model = DescriptionReader(root, std::move(surroundings), report).read();
+  FlexibleModel model = DescriptionReader(root, std::move(load_context), report).read();
   if (!report.is_clean()) report.fail(kMaxReportedProblems);
   return model;
 }
@@ -302,8 +302,8 @@ FlexibleModel load_flexible_file(const std::string& path, const Overrides& overr
     Report report;
     std::optional<Node> root = read_with_includes(path, report);
     if (!root) report.fail(kMaxReportedProblems);
-    Surroundings surroundings{true, std::filesystem::path(path).parent_path().string()};
-    return read_tree(std::move(*root), std::move(surroundings), overrides, report);
+    LoadContext load_context{true, std::filesystem::path(path).parent_path().string()};
+    return read_tree(std::move(*root), std::move(load_context), overrides, report);
   });
 }
 

@@ -110,7 +110,7 @@ Json object_of(std::span<const Field> fields, std::string_view doc, std::string_
   return schema;
 }
 
-// A body whose inertia comes from a mesh: the fields of any body that the mesh leaves open, and the mesh's.
+// A body with its inertia from a mesh: the remaining fields of a body, and those of the mesh.
 Json mesh_body(const ElementTable& table) {
   std::vector<Field> fields = fields_beside_mesh(table.fields);
   fields.insert(fields.end(), mesh_inertia_fields().begin(), mesh_inertia_fields().end());
@@ -122,7 +122,7 @@ Json mesh_body(const ElementTable& table) {
   return schema;
 }
 
-// A flexible body may keep the keys of the rigid one, without effect.
+// A flexible body may keep the keys of a rigid one, without effect.
 Json flexible_body(const ElementTable& table) {
   std::vector<Field> fields(table.fields.begin(), table.fields.end());
   for (const ElementTable& rigid : element_tables()) {
@@ -156,14 +156,14 @@ Json elements_of(std::string_view section) {
 Json script() {
   Json schema = object_of(script_fields(), "the scene's own operator", "");
   Json change = object_of(script_change_fields(), "change of a live parameter", "");
-  // of a choice its name
+  // name of a choice
   change["properties"]["value"] = {{"type", Json::array({"number", "string"})}};
   change["required"].push_back("value");
   Json& properties = schema["properties"];
   properties["file"] = {{"type", "string"}, {"description", "CSV or YAML file beside the scene, instead of inputs"}};
   const Json text = {{"type", "string"}};
   properties["columns"] = list_of(text, 0);
-  properties["columns"]["description"] = "columns of the CSV file that are taken; without it those of inputs";
+  properties["columns"]["description"] = "used columns of the CSV file; default: those of inputs";
   properties["sha256"] = {{"type", "string"}, {"description", "content that the CSV file must have"}};
   properties["inputs"] = {{"type", "object"}, {"additionalProperties", property(script_track_fields().front())}};
   properties["parameters"] = list_of(std::move(change), 0);
@@ -182,7 +182,7 @@ Json flexible_section() {
     schema["required"].push_back("shape");
     if (type.shape == flex::SectionShape::given)
       schema["properties"]["stress_points"] =
-          list_of(object_of(flex::stress_point_fields(), "where stress is asked for", ""), 0);
+          list_of(object_of(flex::stress_point_fields(), "points of stress output", ""), 0);
     shapes.push_back(std::move(schema));
   }
   return {{"oneOf", std::move(shapes)}};
@@ -197,7 +197,7 @@ std::string flexible_json_schema() {
   const Json text = {{"type", "string"}};
   Json& properties = schema["properties"];
   properties["include"] = {{"anyOf", Json::array({text, list_of(text, 0)})},
-                           {"description", "files that this one is laid over"}};
+                           {"description", "files that this one is merged over"}};
   properties["materials"] = named(object_of(flex::material_fields(), "material", ""));
   properties["sections"] = named(flexible_section());
   properties["line"] = object_of(flex::line_fields(), "nodes 1, 2, ... at equal distances", "");
@@ -206,7 +206,7 @@ std::string flexible_json_schema() {
                          {"additionalProperties", property(flex::node_field())}};
   properties["elements"] = list_of(object_of(flex::element_fields(), "elements in a row", ""), 0);
   properties["matrices"] = object_of(flex::matrix_file_fields(), "files of another finite element code", "");
-  properties["reduction"] = object_of(flex::reduction_fields(), "how the body is reduced", "");
+  properties["reduction"] = object_of(flex::reduction_fields(), "reduction of the body", "");
   // with an include the names may stand there
   schema.erase("required");
   return schema.dump(2, Json::Order::as_put) + "\n";
@@ -222,8 +222,9 @@ std::string json_schema() {
   Json& properties = schema["properties"] = Json::object();
   for (const std::string_view key : top_level_keys()) properties[std::string(key)] = Json::object();
   properties["scene"] = {{"type", "string"}, {"description", "name of the scene"}};
-  properties["description"] = {{"type", "string"}, {"description", "what the scene shows"}};
-  properties["include"] = {{"anyOf", Json::array({text, texts})}, {"description", "files that this one is laid over"}};
+  properties["description"] = {{"type", "string"}, {"description", "description of the scene"}};
+  properties["include"] = {{"anyOf", Json::array({text, texts})},
+                           {"description", "files that this one is merged over"}};
   properties["assets"] = list_of(text, 0);
   properties["assets"]["description"] = "files that every machine of a session must have alike";
   properties["script"] = script();

@@ -37,12 +37,12 @@ constexpr std::string_view kMechanicsSections[] = {"mechanics", "bodies",   "joi
 constexpr std::string_view kHydraulicsSections[] = {"hydraulics", "volumes", "components", "curves"};
 constexpr std::string_view kTypeKey[] = {"type"};
 
-// Reads the expanded tree into a Scene: elements by their tables, then what holds between them, domain by domain. The
-// physics libraries look at a domain only when every value in it could be read, so that nobody gets follow-up errors.
+// Reads the expanded tree into a Scene: elements by their tables, then the rules between them, domain by domain. The
+// physics libraries check a domain only if all its values were read, so that there are no follow-up errors.
 class SceneReader {
  public:
-  SceneReader(const Node& root, Surroundings surroundings, Report& report)
-      : root_(root), surroundings_(std::move(surroundings)), report_(report) {}
+  SceneReader(const Node& root, LoadContext load_context, Report& report)
+      : root_(root), load_context_(std::move(load_context)), report_(report) {}
 
   Scene read(const std::string& default_name) {
     check_top_level();
@@ -65,7 +65,7 @@ class SceneReader {
     read_inputs();
     read_outputs();
     if (const Node::Entry* script = root_.find("script")) {
-      read_script(script->value, script->mark, surroundings_, names_, scene_, context_);
+      read_script(script->value, script->mark, load_context_, names_, scene_, context_);
     }
     check_content();
     if (report_.is_clean() && !lacks_files()) {
@@ -93,7 +93,7 @@ class SceneReader {
     add_warnings(warnings);
   }
 
-  // one line for all elements that are warned about in the same words
+  // one line for all elements with the same warning
   void add_warnings(const Problems& warnings) {
     for (auto first = warnings.begin(); first != warnings.end(); ++first) {
       const auto says_the_same = [first](const Problem& other) {
@@ -141,7 +141,7 @@ class SceneReader {
                   {fmt::format("the scene's name has {} characters", scene_.name.size()),
                    fmt::format("at most {}", kMaxSceneNameLength), ""});
     }
-    if (const Node::Entry* assets = root_.find("assets")) read_assets(assets->value, surroundings_, scene_, report_);
+    if (const Node::Entry* assets = root_.find("assets")) read_assets(assets->value, load_context_, scene_, report_);
   }
 
   bool is_map(const Node::Entry& section) {
@@ -173,7 +173,7 @@ class SceneReader {
     if (table == nullptr) return;
     void* def = table->append(scene_, element.key);
     if (section == "bodies" && takes_from_mesh(element.value)) {
-      read_mesh_body(element, table->fields, surroundings_, *static_cast<multibody::BodyDef*>(def), scene_, context_);
+      read_mesh_body(element, table->fields, load_context_, *static_cast<multibody::BodyDef*>(def), scene_, context_);
       return;
     }
     if (section == "bodies" && !table->is_default) return read_flexible_body(element, *table, def);
@@ -182,8 +182,8 @@ class SceneReader {
                 has_type ? std::span<const std::string_view>(kTypeKey) : std::span<const std::string_view>(), context_);
   }
 
-  // The keys of a rigid body may stay, so that one line makes it flexible and back. They are read, and what differs
-  // from the files is warned about (flexible_bodies.h); those of a mesh are passed over.
+  // The keys of a rigid body may stay, so that one line makes it flexible and back. They are read, and differences from
+  // the files give a warning (flexible_bodies.h); those of a mesh are skipped.
   void read_flexible_body(const Node::Entry& element, const ElementTable& table, void* def) {
     std::vector<Field> fields(table.fields.begin(), table.fields.end());
     std::vector<std::string_view> other_keys = {"type"};
@@ -200,31 +200,31 @@ class SceneReader {
         }
       }
     }
-    refuse_other_way(element, table, other_keys);
+    refuse_keys_of_other_type(element, table, other_keys);
     if (has_mesh) {
       for (const Field& field : mesh_inertia_fields()) other_keys.push_back(field.key);
     }
     read_fields(element.value, fields, def, element.key, element.mark, other_keys, context_);
   }
 
-  // keys of modes in a body of segments, and the other way round
-  void refuse_other_way(const Node::Entry& element, const ElementTable& table,
-                        std::vector<std::string_view>& passed_over) {
+  // refuses keys of modes in a body of segments, and vice versa
+  void refuse_keys_of_other_type(const Node::Entry& element, const ElementTable& table,
+                                 std::vector<std::string_view>& passed_over) {
     const bool is_segmented = table.type == "segmented";
-    const Complaint complaint =
-        is_segmented ? Complaint{"a segmented body has no modes: it bends by the beams between its segments",
-                                 "no such key, or type flexible", ""}
-                     : Complaint{"a flexible body has no segments: it bends by the modes of its files",
-                                 "no such key, or type segmented", ""};
+    const ValueProblem problem =
+        is_segmented ? ValueProblem{"a segmented body has no modes: it bends by the beams between its segments",
+                                    "no such key, or type flexible", ""}
+                     : ValueProblem{"a flexible body has no segments: it bends by the modes of its files",
+                                    "no such key, or type segmented", ""};
     for (const std::string_view key : {"flex_modes", "flex_frequency_limit", "segments"}) {
       const Node::Entry* found = element.value.find(key);
       if (found == nullptr || is_segmented == (key == "segments")) continue;
       passed_over.push_back(key);
-      report_.add(found->mark, element.key + "." + std::string(key), complaint);
+      report_.add(found->mark, element.key + "." + std::string(key), problem);
     }
   }
 
-  // The table of the element's type; null after a complaint.
+  // The table of the element's type; null after a reported problem.
   const ElementTable* table_of(std::string_view section, const Node::Entry& element) {
     std::vector<std::string_view> types;
     const Node::Entry* type = element.value.find("type");
@@ -259,8 +259,8 @@ class SceneReader {
     resolve_references();
     if (report_.size() > problems || !has_sound_names_) return false;
     check_problems([&](Problems& errors, Problems& warnings) {
-      read_meshes(surroundings_, scene_.mechanics, errors);
-      read_flexible_bodies(surroundings_, scene_, errors, warnings);
+      read_meshes(load_context_, scene_.mechanics, errors);
+      read_flexible_bodies(load_context_, scene_, errors, warnings);
       if (lacks_files()) return;
       if (errors.empty()) multibody::validate(scene_.mechanics, errors);
       if (errors.empty()) check_motion_ends(errors);
@@ -278,8 +278,8 @@ class SceneReader {
     return report_.size() == problems;
   }
 
-  // some table or body is empty: what holds between elements cannot be checked
-  [[nodiscard]] bool lacks_files() const { return scene_.needs_files() && !surroundings_.has_assets; }
+  // some table or body is empty: rules between elements cannot be checked
+  [[nodiscard]] bool lacks_files() const { return scene_.needs_files() && !load_context_.has_assets; }
 
   void add_assets_of_tables() {
     add_table_assets(scene_);
@@ -288,14 +288,14 @@ class SceneReader {
     report_.add(root_.mark, "", {what, fmt::format("at most {}", kMaxAssets), ""});
   }
 
-  // a table that refuses to be left lasts as long as the session, where that ends
+  // a table with ends: refuse must cover the session's duration, if it is limited
   void check_motion_ends(Problems& errors) const {
     const double duration = scene_.session.duration;
     for (const multibody::MotionDef& motion : scene_.mechanics.motions) {
       if (motion.ends != multibody::TableEnds::refused || motion.points.empty()) continue;
       if (motion.points.back()[0] >= duration) continue;
       errors.push_back({motion.name + ".points",
-                        fmt::format("the table ends at {} s and refuses to be left, the session lasts {} s",
+                        fmt::format("the table ends at {} s and has no values beyond, the session lasts {} s",
                                     motion.points.back()[0], duration),
                         fmt::format("a last time of at least {} s, or other ends", duration), ""});
     }
@@ -306,8 +306,8 @@ class SceneReader {
     for (const std::string_view section : kHydraulicsSections) read_section(section);
     resolve_references();
     if (report_.size() > problems || !has_sound_names_) return false;
-    if (!scene_.table_files.empty() && !surroundings_.has_assets) return true;
-    // a scene without volumes has no circuit to look at
+    if (!scene_.table_files.empty() && !load_context_.has_assets) return true;
+    // a scene without volumes has no circuit to check
     if (scene_.has_hydraulics() || !scene_.hydraulics.components.empty()) {
       check_problems(
           [&](Problems& errors, Problems& warnings) { hydraulics::validate(scene_.hydraulics, errors, warnings); });
@@ -357,7 +357,7 @@ class SceneReader {
     for (const PlotDef& plot : scene_.plots) check_variables(plot.name, plot.variables);
   }
 
-  // The part before the first dot names an element or a section; what quantities an element has is known to its node.
+  // The part before the first dot names an element or a section; only its node has the element's quantities.
   void check_variables(const std::string& owner, const std::vector<std::string>& variables) {
     std::vector<std::string_view> owners = names_.names_of("");
     for (const SingleTable& table : single_tables()) owners.push_back(table.section);
@@ -381,7 +381,7 @@ class SceneReader {
   }
 
   const Node& root_;
-  Surroundings surroundings_;
+  LoadContext load_context_;
   Report& report_;
   Scene scene_;
   NameTable names_;
@@ -389,20 +389,20 @@ class SceneReader {
   PlaceMap places_;
   std::vector<Reference> references_;
   UnitSystem units_;
-  // the text that a session or a recording holds states every key (canonical_text())
+  // the text of a session or a recording contains every key (canonical_text())
   ReadContext context_{units_,
                        report_,
                        places_,
                        references_,
-                       &surroundings_,
+                       &load_context_,
                        &scene_.table_files,
-                       surroundings_.has_folder ? &scene_.warnings : nullptr};
+                       load_context_.has_folder ? &scene_.warnings : nullptr};
 };
 
-Scene read_tree(Node root, Surroundings surroundings, const std::string& name, const Overrides& overrides,
+Scene read_tree(Node root, LoadContext load_context, const std::string& name, const Overrides& overrides,
                 Report& report) {
   apply_overrides(root, overrides, report);
-  Scene scene = SceneReader(root, std::move(surroundings), report).read(name);
+  Scene scene = SceneReader(root, std::move(load_context), report).read(name);
   if (!report.is_clean()) report.fail(kMaxReportedProblems);
   scene.expanded_text = canonical_text(scene);
   return scene;
@@ -418,13 +418,13 @@ std::string line_of(const std::string& text, std::size_t at) {
   throw LoadError(
       {{.file = scene.name,
         .path = "",
-        .what = "the scene as it is sent to the nodes is not read back as the same scene: " + std::move(what),
+        .what = "the scene as published to the nodes does not read back as the same scene: " + std::move(what),
         .expected = "the same scene; report it as a fault of this program, with the file",
         .suggestion = ""}},
       0);
 }
 
-// Every node reads the expanded text: what this program accepts it must accept there, as the same scene.
+// Every node reads the expanded text, which must therefore give the same scene.
 void read_back(const Scene& scene) {
   std::string again;
   try {
@@ -449,8 +449,8 @@ Scene load_file(const std::string& path, const Overrides& overrides) {
     std::optional<Node> root = read_with_includes(path, report);
     if (!root) report.fail(kMaxReportedProblems);
     const std::filesystem::path file(path);
-    Surroundings surroundings{true, file.parent_path().string()};
-    Scene scene = read_tree(std::move(*root), std::move(surroundings), file.stem().string(), overrides, report);
+    LoadContext load_context{true, file.parent_path().string()};
+    Scene scene = read_tree(std::move(*root), std::move(load_context), file.stem().string(), overrides, report);
     read_back(scene);
     return scene;
   });
@@ -463,11 +463,11 @@ Scene load_text(std::string text, const std::string& name, const Overrides& over
     const std::optional<SourceText> source = check_source(std::move(text), report.add_source(name), report);
     std::optional<Node> root = source ? parse_yaml(*source, report) : std::nullopt;
     if (!root) report.fail(kMaxReportedProblems);
-    Surroundings surroundings;
-    surroundings.has_assets = files.has_value();
-    surroundings.asset_folder = files.value_or("");
-    surroundings.reads_script = script == ScriptFile::read;
-    return read_tree(std::move(*root), std::move(surroundings), name, overrides, report);
+    LoadContext load_context;
+    load_context.has_assets = files.has_value();
+    load_context.asset_folder = files.value_or("");
+    load_context.reads_script = script == ScriptFile::read;
+    return read_tree(std::move(*root), std::move(load_context), name, overrides, report);
   });
 }
 

@@ -13,8 +13,8 @@ namespace {
 
 using multibody::ShapeDef;
 
-// what is wrong with the shape's words, before anything is read
-bool is_complete(const Surroundings& surroundings, const ShapeDef& shape, Problems& problems) {
+// faults of the shape's keys, checked before the file is read
+bool is_complete(const LoadContext& load_context, const ShapeDef& shape, Problems& problems) {
   const std::size_t before = problems.size();
   const auto add = [&](const char* key, std::string what, std::string expected) {
     problems.push_back({shape.name + "." + key, std::move(what), std::move(expected), ""});
@@ -26,7 +26,7 @@ bool is_complete(const Surroundings& surroundings, const ShapeDef& shape, Proble
     return false;
   }
   if (!shape.vertices.empty()) add("vertices", "the shape has a file already", "either a file or vertices");
-  if (!surroundings.has_folder) add("file", "a scene without a folder cannot read a file", "vertices and triangles");
+  if (!load_context.has_folder) add("file", "a scene without a folder cannot read a file", "vertices and triangles");
   if (!is_inside_folder(shape.file)) add("file", "'" + shape.file + "' is elsewhere", "a file in the scene's folder");
   if (!std::isfinite(shape.file_unit))
     add("unit", "the unit of the file is missing", "the length of one unit, such as '1 mm'");
@@ -49,15 +49,15 @@ void put_mesh(const contact::MeshDef& mesh, ShapeDef& shape) {
   shape.file_unit = std::numeric_limits<double>::infinity();
 }
 
-void read_meshes(const Surroundings& surroundings, multibody::MechanicsDef& mechanics, Problems& problems) {
+void read_meshes(const LoadContext& load_context, multibody::MechanicsDef& mechanics, Problems& problems) {
   for (ShapeDef& shape : mechanics.shapes) {
     const bool is_mesh =
         shape.type == contact::ShapeType::convex_mesh || shape.type == contact::ShapeType::triangle_mesh;
-    if (!is_mesh || !is_complete(surroundings, shape, problems)) continue;
+    if (!is_mesh || !is_complete(load_context, shape, problems)) continue;
     Problems found;
     const contact::MeshDef mesh =
         contact::read_mesh(shape.name,
-                           {.path = surroundings.path_of(shape.file),
+                           {.path = load_context.path_of(shape.file),
                             .unit = shape.file_unit,
                             .up_in_file = shape.file_up == "y" ? contact::UpAxis::y : contact::UpAxis::z,
                             .up = contact::UpAxis::y},

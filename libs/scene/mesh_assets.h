@@ -1,7 +1,7 @@
 // Mesh files of shapes, read once when the scene is loaded.
 //
 // The triangles become part of the scene (`vertices`, `triangles`), and so of its expanded text: nodes on other
-// machines and replays have them without the file.
+// machines and replays need no file.
 #pragma once
 
 #include "contact/contact_def.h"
@@ -11,11 +11,11 @@
 
 namespace slew::scene {
 
-// Reads the file of every shape that names one, in metres and with its upward axis along y; the shape then has vertices
-// and triangles and no file. Appends a problem for every file that cannot be read, and for a missing unit or axis.
-void read_meshes(const Surroundings& surroundings, multibody::MechanicsDef& mechanics, Problems& problems);
+// Reads the file of every shape that names one, in metres and with its upward axis along y. The shape then has vertices
+// and triangles instead of the file. Appends a problem for every unreadable file, and for a missing unit or axis.
+void read_meshes(const LoadContext& load_context, multibody::MechanicsDef& mechanics, Problems& problems);
 
-// The shape has these triangles, and no file.
+// Sets the shape's triangles and removes its file.
 void put_mesh(const contact::MeshDef& mesh, multibody::ShapeDef& shape);
 
 }  // namespace slew::scene

@@ -23,15 +23,15 @@ using math::Mat3;
 using math::Vec3;
 
 constexpr std::string_view kUpAxes[] = {"y", "z"};
-// keys of a body that the mesh answers
+// keys of a body that the mesh replaces
 constexpr std::string_view kDerivedKeys[] = {"center_of_mass", "products", "inertia_about"};
 constexpr std::string_view kInertiaKey = "inertia";
 constexpr std::string_view kMassKey = "mass";
 
-// m, m3, kg/m3: beyond these it is another unit; a bucket-wheel excavator is 225 m long
+// m, m3, kg/m3: limits beyond which the unit is wrong; a bucket-wheel excavator is 225 m long
 constexpr double kLargestSize = 1000, kSmallestSize = 1e-5, kLargestVolume = 1e6;
 constexpr double kLightest = 0.1, kDensest = 25000;
-// m, kg: beyond these it may be; single bodies of machines are smaller
+// m, kg: limits beyond which the unit may be wrong; single bodies of machines are smaller
 constexpr double kLikelySize = 100, kLikelySmall = 1e-3, kLikelyMass = 1e6;
 
 constexpr Field kFields[] = {
@@ -59,11 +59,11 @@ constexpr Field kFields[] = {
                                           .range = kPositive,
                                           .change = Change::live,
                                           .doc = "mass of the solid, spread evenly; either this or density"}),
-    field<&MeshInertiaDef::shell_thickness>(
-        "shell_thickness",
-        {.dimension = length,
-         .range = kNotNegative,
-         .doc = "of a sheet on the mesh's surface, which may be open, instead of the solid inside; 0: the solid"}),
+    field<&MeshInertiaDef::shell_thickness>("shell_thickness",
+                                            {.dimension = length,
+                                             .range = kNotNegative,
+                                             .doc = "thickness of a sheet on the mesh's surface, which may be open, "
+                                                    "instead of the solid inside; 0: the solid"}),
 };
 
 bool is_one_of(std::string_view key, std::span<const std::string_view> keys) {
@@ -76,8 +76,8 @@ bool is_mesh_key(std::string_view key) {
 
 class MeshBodyReader {
  public:
-  MeshBodyReader(const Node::Entry& element, const Surroundings& surroundings, const ReadContext& context)
-      : element_(element), surroundings_(surroundings), context_(context) {}
+  MeshBodyReader(const Node::Entry& element, const LoadContext& load_context, const ReadContext& context)
+      : element_(element), load_context_(load_context), context_(context) {}
 
   void read(std::span<const Field> body_fields, multibody::BodyDef& body, Scene& scene) {
     const std::size_t problems = context_.report.size();
@@ -114,52 +114,53 @@ class MeshBodyReader {
   void check_keys() {
     for (const std::string_view key : kDerivedKeys) {
       if (const Node::Entry* entry = element_.value.find(key)) {
-        complain(entry->mark, key, {"follows from the mesh", "no such key beside inertia: from_mesh", ""});
+        report_problem(entry->mark, key, {"follows from the mesh", "no such key beside inertia: from_mesh", ""});
       }
     }
     const Node::Entry* density_entry = element_.value.find("density");
     const Node::Entry* mass_entry = element_.value.find(kMassKey);
     if (density_entry != nullptr && mass_entry != nullptr) {
-      complain(mass_entry->mark, kMassKey, {"density and mass are both given", "one of them", ""});
+      report_problem(mass_entry->mark, kMassKey, {"density and mass are both given", "one of them", ""});
     } else if (density_entry == nullptr && mass_entry == nullptr) {
       context_.report.add(element_.mark, element_.key,
                           {"neither density nor mass is given", "one of them, for the solid in the mesh", ""});
     }
   }
 
-  // The mesh in the body's unit and up axis; nothing after a complaint.
+  // The mesh in the body's unit and up axis; nothing after a reported problem.
   std::optional<contact::MeshDef> read_solid() {
     const Mark mark = element_.value.find("mesh")->value.mark;
-    if (!surroundings_.has_folder) {
-      complain(mark, "mesh", {"a scene without a folder cannot name a file", "mass, center_of_mass and inertia", ""});
+    if (!load_context_.has_folder) {
+      report_problem(mark, "mesh",
+                     {"a scene without a folder cannot name a file", "mass, center_of_mass and inertia", ""});
       return std::nullopt;
     }
     if (!is_inside_folder(def_.mesh)) {
-      complain(mark, "mesh", {"is '" + def_.mesh + "'", "a file in the scene's folder", ""});
+      report_problem(mark, "mesh", {"is '" + def_.mesh + "'", "a file in the scene's folder", ""});
       return std::nullopt;
     }
-    const std::filesystem::path path = surroundings_.path_of(def_.mesh);
+    const std::filesystem::path path = load_context_.path_of(def_.mesh);
     std::error_code error;
     if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
-      complain(mark, "mesh", {"'" + path.string() + "' is not a regular file", "a mesh file", ""});
+      report_problem(mark, "mesh", {"'" + path.string() + "' is not a regular file", "a mesh file", ""});
       return std::nullopt;
     }
     Problems problems;
     contact::MeshDef mesh = contact::read_mesh(
         element_.key, {.path = path, .unit = def_.mesh_unit, .up_in_file = def_.mesh_up, .up = def_.body_up}, problems);
-    for (const Problem& problem : problems) complain(mark, "mesh", {problem.what, problem.expected, ""});
+    for (const Problem& problem : problems) report_problem(mark, "mesh", {problem.what, problem.expected, ""});
     if (!problems.empty()) return std::nullopt;
     if (const auto fault =
             def_.shell_thickness > 0 ? contact::find_number_fault(mesh) : contact::find_solid_fault(mesh)) {
-      complain(mark, "mesh",
-               {fmt::format("'{}' encloses no solid: {}", def_.mesh, fault->what),
-                fault->expected + "; shell_thickness takes the surface as a sheet", ""});
+      report_problem(mark, "mesh",
+                     {fmt::format("'{}' encloses no solid: {}", def_.mesh, fault->what),
+                      fault->expected + "; shell_thickness takes the surface as a sheet", ""});
       return std::nullopt;
     }
     return mesh;
   }
 
-  // Against a unit of the file that is another: whatever is refused, no machine is like that.
+  // Detects a wrong unit of the file: refuses sizes and masses that no machine has.
   bool is_plausible(const contact::MeshDef& mesh, const contact::MassProperties& solid, double density_of_solid,
                     Scene& scene) {
     const auto [low, high] = contact::extent_of(mesh);
@@ -171,7 +172,7 @@ class MeshBodyReader {
     const Mark mark = element_.value.find("mesh_unit")->value.mark;
     if (!(solid.volume > 0) || size > kLargestSize || size < kSmallestSize || solid.volume > kLargestVolume ||
         density_of_solid > kDensest || density_of_solid < kLightest) {
-      complain(mark, "mesh_unit", {found, "the length of one unit of the file, such as 1 mm or 1 m", ""});
+      report_problem(mark, "mesh_unit", {found, "the length of one unit of the file, such as 1 mm or 1 m", ""});
       return false;
     }
     if (size <= kLikelySize && size >= kLikelySmall && mass <= kLikelyMass) return true;
@@ -193,12 +194,12 @@ class MeshBodyReader {
     body.inertia_about = multibody::InertiaPoint::center_of_mass;
   }
 
-  void complain(const Mark& mark, std::string_view key, Complaint complaint) {
-    context_.report.add(mark, fmt::format("{}.{}", element_.key, key), std::move(complaint));
+  void report_problem(const Mark& mark, std::string_view key, ValueProblem problem) {
+    context_.report.add(mark, fmt::format("{}.{}", element_.key, key), std::move(problem));
   }
 
   const Node::Entry& element_;
-  const Surroundings& surroundings_;
+  const LoadContext& load_context_;
   const ReadContext& context_;
   MeshInertiaDef def_;
 };
@@ -223,9 +224,9 @@ std::vector<Field> fields_beside_mesh(std::span<const Field> body_fields) {
   return rows;
 }
 
-void read_mesh_body(const Node::Entry& element, std::span<const Field> body_fields, const Surroundings& surroundings,
+void read_mesh_body(const Node::Entry& element, std::span<const Field> body_fields, const LoadContext& load_context,
                     multibody::BodyDef& body, Scene& scene, const ReadContext& context) {
-  MeshBodyReader(element, surroundings, context).read(body_fields, body, scene);
+  MeshBodyReader(element, load_context, context).read(body_fields, body, scene);
 }
 
 }  // namespace slew::scene

@@ -7,10 +7,10 @@
 // and inertia I_M about it (contact/mass_properties.h):
 //   c_B = p_BM + R_BM c_M        I_B = R_BM I_M R_BM^T                                             (1)
 // With shell_thickness the solid is a sheet of that thickness on the mesh's surface, closed or open.
-// Sizes and masses that no machine has are refused, unlikely ones become warnings: a file in millimetres that is read
-// in metres is 1e9 times as heavy.
-// The scene keeps the numbers, not the mesh: the session's text and a recording hold them, nodes need no file.
-// Not covered: more than one density; a mesh that cuts through itself is not found (docs/models/contact_meshes.md).
+// Sizes and masses that no machine has are refused, unlikely ones give warnings: a file in millimetres read in metres
+// is 1e9 times as heavy. The scene keeps the numbers, not the mesh: the session's text and a recording contain them,
+// and nodes need no file. Not covered: more than one density; a mesh that intersects itself is not detected
+// (docs/models/contact_meshes.md).
 #pragma once
 
 #include <span>
@@ -29,11 +29,11 @@ namespace slew::scene {
 
 inline constexpr std::string_view kFromMesh = "from_mesh";
 
-// What stands in the place of inertia, products, inertia_about and center_of_mass.
+// Replacement of inertia, products, inertia_about and center_of_mass.
 struct MeshInertiaDef {
   std::string mesh{};                            // file in the scene's folder, of the endings of mesh_file.h
   double mesh_unit = 1;                          // m per unit of the file, > 0
-  contact::UpAxis mesh_up = contact::UpAxis::y;  // that axis of the file ...
+  contact::UpAxis mesh_up = contact::UpAxis::y;  // this axis of the file ...
   contact::UpAxis body_up = contact::UpAxis::y;  // ... becomes this axis, by a quarter turn about x
   Triple mesh_position{};                        // m, the mesh's origin, body frame
   Triple mesh_orientation{};                     // rad, successive rotations z, x', z''
@@ -44,15 +44,15 @@ struct MeshInertiaDef {
 
 [[nodiscard]] std::span<const Field> mesh_inertia_fields() noexcept;
 
-// True when an element of the section `bodies` asks for its inertia from a mesh.
+// True if an element of the section `bodies` has inertia: from_mesh.
 [[nodiscard]] bool takes_from_mesh(const Node& body);
 
-// Fields of a body that stay the user's when its inertia comes from a mesh.
+// Fields of a body that the user still sets when its inertia comes from a mesh.
 [[nodiscard]] std::vector<Field> fields_beside_mesh(std::span<const Field> body_fields);
 
-// Reads such an element into the body, and what the mesh gave into scene.mesh_inertias. Problems go to the report: also
-// a mesh that cannot be read, is open, not finite or inside out. Reads the mesh's file: allocates, not real-time safe.
-void read_mesh_body(const Node::Entry& element, std::span<const Field> body_fields, const Surroundings& surroundings,
+// Reads such an element into the body, and the mesh's results into scene.mesh_inertias. Problems go to the report, also
+// an unreadable, open, non-finite or inverted mesh. Reads the mesh's file: allocates, not real-time safe.
+void read_mesh_body(const Node::Entry& element, std::span<const Field> body_fields, const LoadContext& load_context,
                     multibody::BodyDef& body, Scene& scene, const ReadContext& context);
 
 }  // namespace slew::scene

@@ -1,4 +1,4 @@
-// A reduced body of libs/flex as the mechanics takes it.
+// Converts a reduced body of libs/flex for the mechanics.
 #pragma once
 
 #include <string>

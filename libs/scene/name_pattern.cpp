@@ -30,7 +30,7 @@ std::vector<std::string> unmatched(std::span<const std::string> patterns, std::s
 }
 
 bool can_meet(std::string_view a, std::string_view b) {
-  // meets[i][j]: what is left of a behind i and of b behind j can
+  // meets[i][j]: the rest of a from i and the rest of b from j have a common match
   std::vector<std::vector<bool>> meets(a.size() + 1, std::vector<bool>(b.size() + 1, false));
   for (std::size_t i = a.size() + 1; i-- > 0;) {
     for (std::size_t j = b.size() + 1; j-- > 0;) {

@@ -1,4 +1,4 @@
-// Choosing variables by name or pattern (* any characters, ? one character), as scenes and the command line do.
+// Selection of variables by name or pattern (* any characters, ? one character), for scenes and the command line.
 #pragma once
 
 #include <cstdint>
@@ -9,22 +9,22 @@
 
 namespace slew::scene {
 
-// Indices of the names that at least one pattern fits, ascending.
+// Indices of the names that match at least one pattern, ascending.
 [[nodiscard]] std::vector<std::uint32_t> matching(std::span<const std::string> patterns,
                                                   std::span<const std::string> names);
 
-// The patterns that fit none of the names.
+// The patterns without a matching name.
 [[nodiscard]] std::vector<std::string> unmatched(std::span<const std::string> patterns,
                                                  std::span<const std::string> names);
 
-// Whether there may be a name that both patterns fit.
+// True if some name can match both patterns.
 [[nodiscard]] bool can_meet(std::string_view a, std::string_view b);
 
 // "there is no variable 'Cyl_Lft.force'; did you mean 'Cyl_Lift.force'?"
 [[nodiscard]] std::string no_variable_text(const std::string& pattern, std::span<const std::string> names);
 
-// The variables meant by names and patterns, in the order in which they are asked for, none twice. Throws Failure
-// (bad_input) for a pattern that fits nothing, with the name that was probably meant.
+// The variables selected by names and patterns, in the order of the patterns, without repetition. Throws Failure
+// (bad_input) for a pattern without a match, with a suggested name.
 [[nodiscard]] std::vector<std::string> choose(std::span<const std::string> patterns,
                                               std::span<const std::string> names);
 

@@ -100,7 +100,7 @@ void NameTable::resolve(const std::vector<Reference>& references, Report& report
 std::string_view NameTable::kind_of(std::string_view name) const {
   if (name == multibody::kGroundName) return "body";
   if (const std::size_t dot = name.find(kNode); dot != std::string_view::npos) {
-    // whether there is such a node is seen when its files are read
+    // the node itself is checked when its files are read
     return flexible_.contains(name.substr(0, dot)) ? "body" : "";
   }
   const auto found = names_.find(name);

@@ -1,4 +1,4 @@
-// The names of a scene's elements: one name, one element, whatever its section.
+// The names of a scene's elements: one name, one element, in any section.
 #pragma once
 
 #include <map>
@@ -15,14 +15,14 @@ namespace slew::scene {
 
 class NameTable {
  public:
-  // Takes every element of every section, sound or not, so that one fault in an element does not make others dangle.
-  // Reports names that are not words, too long, taken, or reserved.
+  // Registers every element of every section, valid or not, so that a fault in one element leaves no dangling
+  // references. Reports names that are not words, too long, taken, or reserved.
   void declare_all(const Node& root, Report& report);
 
-  // Reports the references whose name is not an element of the kind they want.
+  // Reports the references whose name is not an element of the required kind.
   void resolve(const std::vector<Reference>& references, Report& report) const;
 
-  // Kind of an element ("body", "force", ...); empty when there is none.
+  // Kind of an element ("body", "force", ...); empty if it does not exist.
   [[nodiscard]] std::string_view kind_of(std::string_view name) const;
   [[nodiscard]] std::vector<std::string_view> names_of(std::string_view kind) const;  // "" for all
   [[nodiscard]] std::string closest_of(std::string_view name, std::string_view kind) const;
@@ -36,7 +36,7 @@ class NameTable {
   std::set<std::string, std::less<>> flexible_;  // bodies whose nodes are bodies as well: "Boom.Node20"
 };
 
-// True when a pattern with * (any characters) and ? (one character) fits the whole text.
+// True if a pattern with * (any characters) and ? (one character) matches the whole text.
 [[nodiscard]] bool fits_pattern(std::string_view text, std::string_view pattern);
 
 }  // namespace slew::scene

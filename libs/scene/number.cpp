@@ -72,7 +72,7 @@ Extent measure(std::string_view text) {
 }
 
 // The value of at most 19 digits and a power of ten up to 27: both are exact in 64 bits of mantissa, so their product
-// or quotient is the nearest long double, which std::from_chars finds in many times the time (Clinger 1990).
+// or quotient is the nearest long double, much faster than std::from_chars (Clinger 1990).
 std::optional<long double> short_value(std::string_view text, const Extent& extent) {
   constexpr std::size_t kMostDigits = 19;
   constexpr int kMostPower = 27;
@@ -99,7 +99,7 @@ std::optional<long double> short_value(std::string_view text, const Extent& exte
 }
 
 // 0x1F, 0o17, 0b101
-bool complain_of_base(std::string_view text, NumberText& result) {
+bool find_base_problem(std::string_view text, NumberText& result) {
   const std::size_t sign = !text.empty() && (text[0] == '+' || text[0] == '-') ? 1 : 0;
   if (text.size() < sign + 3 || text[sign] != '0' || is_digit(text[sign + 1])) return false;
   const std::string digits = lower(text.substr(sign));
@@ -113,13 +113,13 @@ bool complain_of_base(std::string_view text, NumberText& result) {
   const std::string_view name = base == 16 ? "hexadecimal" : base == 8 ? "octal" : "binary";
   const std::string_view minus = text[0] == '-' ? "-" : "";
   const bool is_whole = error == std::errc() && end == digits.data() + digits.size();
-  result.complaint.what = fmt::format("{} is {}", quoted(text), name);
-  result.complaint.expected = is_whole ? fmt::format("{}{}", minus, value) : "a decimal number";
+  result.problem.what = fmt::format("{} is {}", quoted(text), name);
+  result.problem.expected = is_whole ? fmt::format("{}{}", minus, value) : "a decimal number";
   return true;
 }
 
 // 010 is 8 to YAML 1.1 and 10 to YAML 1.2
-void complain_of_leading_zero(std::string_view text, const Extent& extent, NumberText& result) {
+void set_leading_zero_problem(std::string_view text, const Extent& extent, NumberText& result) {
   const std::string_view number = text.substr(0, extent.end);
   std::string_view digits = text.substr(extent.sign, extent.integer);
   const std::string sign = extent.sign == 1 && text[0] == '-' ? "-" : "";
@@ -131,24 +131,24 @@ void complain_of_leading_zero(std::string_view text, const Extent& extent, Numbe
   const std::string decimal = sign + std::string(digits) + std::string(number.substr(extent.sign + extent.integer));
   if (may_be_octal) {
     const std::string as_octal = sign + std::to_string(octal);
-    result.complaint = {quoted(number) + " looks octal", "", ""};
-    result.complaint.expected = as_octal == decimal ? decimal : decimal + " or " + as_octal;
+    result.problem = {quoted(number) + " looks octal", "", ""};
+    result.problem.expected = as_octal == decimal ? decimal : decimal + " or " + as_octal;
   } else {
-    result.complaint = {quoted(number) + " begins with a zero", decimal, ""};
+    result.problem = {quoted(number) + " begins with a zero", decimal, ""};
   }
 }
 
-// Words and signs that look like a number to somebody.
-void complain_of_text(std::string_view text, NumberText& result) {
+// Words and signs that resemble a number.
+void set_text_problem(std::string_view text, NumberText& result) {
   const std::string word = lower(text);
   const std::string_view bare =
       std::string_view(word).substr(!word.empty() && (word[0] == '-' || word[0] == '+') ? 1 : 0);
   if (bare == ".nan" || bare == "nan" || bare == ".inf" || bare == "inf" || bare == "infinity") {
-    result.complaint = {quoted(text) + " is not finite", "a finite number", ""};
+    result.problem = {quoted(text) + " is not finite", "a finite number", ""};
   } else if (text.starts_with("\xE2\x88\x92") || text.starts_with("\xE2\x80\x93")) {
-    result.complaint = {quoted(text) + " begins with a typographic minus sign", "'-'", ""};
+    result.problem = {quoted(text) + " begins with a typographic minus sign", "'-'", ""};
   } else {
-    result.complaint = {quoted(text) + " is not a number", "", ""};
+    result.problem = {quoted(text) + " is not a number", "", ""};
   }
 }
 
@@ -157,24 +157,24 @@ void complain_of_text(std::string_view text, NumberText& result) {
 NumberText split_number(std::string_view text) {
   NumberText result;
   text = trimmed(text);
-  if (complain_of_base(text, result)) return result;
+  if (find_base_problem(text, result)) return result;
   const Extent extent = measure(text);
   if (extent.end == 0) {
-    complain_of_text(text, result);
+    set_text_problem(text, result);
     return result;
   }
   if (extent.integer > 1 && text[extent.sign] == '0') {
-    complain_of_leading_zero(text, extent, result);
+    set_leading_zero_problem(text, extent, result);
     return result;
   }
   const char next = extent.end < text.size() ? text[extent.end] : '\0';
   const bool digit_follows = extent.end + 1 < text.size() && is_digit(text[extent.end + 1]);
   if (next == ',' && digit_follows) {
-    result.complaint = {quoted(text) + " has a comma", "a decimal point", ""};
+    result.problem = {quoted(text) + " has a comma", "a decimal point", ""};
     return result;
   }
   if (next == '_' || next == '\'') {
-    result.complaint = {quoted(text) + " has a digit separator", "digits only", ""};
+    result.problem = {quoted(text) + " has a digit separator", "digits only", ""};
     return result;
   }
   if (const auto value = short_value(text, extent)) {
@@ -188,8 +188,7 @@ NumberText split_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data() + begin, text.data() + extent.end, result.value);
   const bool is_huge = std::isinf(static_cast<double>(result.value));
   if (error != std::errc() || is_huge || end != text.data() + extent.end) {
-    result.complaint = {quoted(text.substr(0, extent.end)) + " is beyond what a number can hold", "a finite number",
-                        ""};
+    result.problem = {quoted(text.substr(0, extent.end)) + " is beyond what a number can hold", "a finite number", ""};
     return result;
   }
   result.is_number = true;

@@ -13,7 +13,7 @@ struct NumberText {
   bool is_number = false;
   long double value = 0;  // nearest long double to the decimal text, so that scaling by a unit rounds once
   std::string_view rest;  // behind the number, without spaces around it
-  Complaint complaint;    // when it is not a number, or not one that is allowed
+  ValueProblem problem;   // set if the text is not an accepted number
 };
 
 [[nodiscard]] NumberText split_number(std::string_view text);

@@ -54,7 +54,7 @@ void add_field(std::vector<ParameterInfo>& all, const Field& field, const std::s
   }
 }
 
-// The tables bind to mutable Defs; nothing here writes.
+// The tables bind to mutable Defs; they are only read here.
 std::vector<ElementRef> everything(const Scene& scene) {
   auto& mutable_scene = const_cast<Scene&>(scene);
   std::vector<ElementRef> all = single_sections(mutable_scene);
@@ -84,7 +84,7 @@ std::string obstacle(const Scene& scene, const ElementRef& element, const Field&
   return "the scene gives the joint neither friction nor limits, so none is computed" + restart(field.key);
 }
 
-// Why the session cannot take this value of a coupling level; empty: it can, or the parameter is another.
+// Reason why the session cannot use this value of a coupling level; empty: it can, or the parameter is no level.
 std::string_view obstacle_of_level(const SessionDef& session, const ParameterInfo& parameter, double value) {
   if (parameter.path == "session.coupling") {
     return obstacle_of(session, static_cast<coupling::Level>(static_cast<int>(value)));
@@ -133,13 +133,13 @@ double mechanics_substep(const SessionDef& session, const multibody::MechanicsDe
 }
 
 ParameterDirectory::ParameterDirectory(const Scene& scene) : session_(scene.session), parameters_(parameters(scene)) {
-  // of tables that were not read no mechanism can be built
+  // without the tables of files no mechanism can be built
   const bool is_whole = std::all_of(scene.table_files.begin(), scene.table_files.end(),
                                     [](const TableFile& table) { return !table.found.empty(); });
   if (is_whole && scene.has_mechanics() && session_.solution == Solution::split) {
     mechanics_ = std::make_shared<const multibody::MechanicsDef>(scene.mechanics);
   }
-  // files of flexible bodies may not be here, and without them no machine can be judged
+  // the files of flexible bodies may be missing, and without them the machine cannot be checked
   if (scene.has_mechanics() && !scene.has_flexible_bodies()) {
     whole_mechanics_ =
         mechanics_ != nullptr ? mechanics_ : std::make_shared<const multibody::MechanicsDef>(scene.mechanics);
@@ -158,7 +158,7 @@ const ParameterInfo* ParameterDirectory::find(std::string_view path) const {
   return found == index_.end() ? nullptr : &parameters_[found->second];
 }
 
-// Only for what makes the mechanism faster than the scene has it, which costs some hundred evaluations of it.
+// Only for changes that make the mechanism faster than in the scene; costs some hundred evaluations of it.
 std::string ParameterDirectory::obstacle_of_speed(const ParameterInfo& parameter, double value) const {
   if (mechanics_ == nullptr) return {};
   const multibody::Integrator rule = multibody::step_rule(*mechanics_).integrator;
@@ -178,7 +178,7 @@ std::string ParameterDirectory::obstacle_of_speed(const ParameterInfo& parameter
 
 namespace {
 
-// Puts the value into the element's field that the path names. False: it names none.
+// Sets the element's field named by the path. False: there is none.
 bool assign(Scene& scene, std::string_view path, double value) {
   for (const ElementRef& element : elements(scene)) {
     if (!path.starts_with(element.name) || path.size() <= element.name.size() || path[element.name.size()] != '.') {
@@ -203,7 +203,7 @@ bool assign(Scene& scene, std::string_view path, double value) {
 
 }  // namespace
 
-// What the loader would say of the machine with this value, at its start.
+// Problem that the loader would report for the machine with this value, at its start.
 std::string ParameterDirectory::obstacle_of_machine(const ParameterInfo& parameter, double value) const {
   if (whole_mechanics_ == nullptr) return {};
   Scene changed;
@@ -286,15 +286,14 @@ Assignment ParameterDirectory::parse_assignment(std::string_view text, std::opti
   }
   const std::string_view path = text.substr(0, equals);
   const ParameterInfo* parameter = find(path);
-  // an unknown or fixed parameter is refused for that, whatever the value is
+  // an unknown or fixed parameter is refused for that reason, at any value
   if (parameter == nullptr || parameter->change == Change::restart) return check(path, 0);
   if (parameter->is_choice()) return parse_choice(*parameter, text.substr(equals + 1), over);
   const QuantityResult quantity = read_quantity(text.substr(equals + 1), Writing::plain, parameter->dimension, units_);
   if (!quantity.value) {
-    std::string complaint =
-        std::string(path) + ": " + quantity.complaint.what + "; expected " + quantity.complaint.expected;
-    if (!quantity.complaint.suggestion.empty()) complaint += "; did you mean '" + quantity.complaint.suggestion + "'?";
-    return refused(std::move(complaint));
+    std::string refusal = std::string(path) + ": " + quantity.problem.what + "; expected " + quantity.problem.expected;
+    if (!quantity.problem.suggestion.empty()) refusal += "; did you mean '" + quantity.problem.suggestion + "'?";
+    return refused(std::move(refusal));
   }
   return check(path, *quantity.value, over);
 }

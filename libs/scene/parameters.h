@@ -20,18 +20,18 @@
 namespace slew::scene {
 
 struct ParameterInfo {
-  std::string path;  // "Bag.mass"; of a triple "Bag.position.x"
-  double value = 0;  // SI, as the scene has it
+  std::string path;  // "Bag.mass"; for a triple "Bag.position.x"
+  double value = 0;  // SI, value of the scene
   Dimension dimension = Dimension::none;
   Range range;
   Change change = Change::restart;
-  std::string obstacle{};  // why a parameter that is live elsewhere would change nothing in this scene, and is not
+  std::string obstacle{};  // reason why a generally live parameter has no effect in this scene and is not live
   double ramp = 0;         // s, over which a live change is spread by default
   bool is_integer = false;
   std::span<const std::string_view> choices{};  // names by value; empty: a number
 
   [[nodiscard]] bool is_choice() const noexcept { return !choices.empty(); }
-  // Name of a choice with this number; empty when it has none.
+  // Name of the choice with this number; empty if there is none.
   [[nodiscard]] std::string_view choice_of(double number) const noexcept;
   std::string_view doc;
 };
@@ -42,9 +42,9 @@ struct ParameterInfo {
 // All parameters of a scene in canonical order. Triples give three, .x .y .z; texts and tables none.
 [[nodiscard]] std::vector<ParameterInfo> parameters(const Scene& scene);
 
-// A change that may be applied: path, SI value and the time over which it is spread.
+// A checked change: path, SI value and the time over which it is spread.
 struct Assignment {
-  Status status;  // why it was refused; the other members then mean nothing
+  Status status;  // reason of a refusal; the other members are then undefined
   std::string path;
   double value = 0;
   SimDuration over;
@@ -56,16 +56,16 @@ class ParameterDirectory {
   explicit ParameterDirectory(const Scene& scene);
 
   [[nodiscard]] const std::vector<ParameterInfo>& all() const noexcept { return parameters_; }
-  // Null when there is none.
+  // Null if the parameter does not exist.
   [[nodiscard]] const ParameterInfo* find(std::string_view path) const;
 
-  // "Bag.mass=1500kg", "Cyl_Lift.coupling=linear": refused when unknown (with a suggestion), not live, of a wrong
-  // dimension, out of range, none of the choices, a value with which the loader would refuse the machine, or a mass,
-  // spring or damper with which the mechanics' explicit integrator could not follow what it moves
-  // (multibody/forces/element_speeds.h; at the start, the rest as the scene has it).
+  // "Bag.mass=1500kg", "Cyl_Lift.coupling=linear": refused if unknown (with a suggestion), not live, of a wrong
+  // dimension, out of range, none of the choices, or if the loader would refuse the machine with this value. Also
+  // refused: a mass, spring or damper that is too fast for the mechanics' explicit integrator
+  // (multibody/forces/element_speeds.h; at the start, with the other values of the scene).
   [[nodiscard]] Assignment parse_assignment(std::string_view text, std::optional<SimDuration> over = {});
-  // The same for a value that is already in SI, as it comes over the wire. over: the time that is asked for; without
-  // one it is the parameter's own. A choice is made at once, or refused.
+  // The same for a value in SI, as received over the wire. over: the requested time; default: the parameter's own. A
+  // choice changes at once, or is refused.
   [[nodiscard]] Assignment check(std::string_view path, double value, std::optional<SimDuration> over = {}) const;
 
  private:
@@ -76,11 +76,11 @@ class ParameterDirectory {
   [[nodiscard]] std::string obstacle_of_speed(const ParameterInfo& parameter, double value) const;
 
   SessionDef session_;
-  std::shared_ptr<const multibody::MechanicsDef> mechanics_;  // null: no bodies, or nobody integrates in sub-steps
-  std::shared_ptr<const multibody::MechanicsDef> whole_mechanics_;  // null: it cannot be judged
+  std::shared_ptr<const multibody::MechanicsDef> mechanics_;        // null: no bodies, or no integration in sub-steps
+  std::shared_ptr<const multibody::MechanicsDef> whole_mechanics_;  // null: the machine cannot be checked
   std::vector<ParameterInfo> parameters_;
   std::map<std::string, std::size_t, std::less<>> index_;
-  std::map<std::string, std::string, std::less<>> not_numeric_;  // path of a field that is no parameter: its type
+  std::map<std::string, std::string, std::less<>> not_numeric_;  // type by path of fields that are no parameters
   UnitSystem units_;
 };
 

@@ -1,4 +1,4 @@
-// Where every element and key of a scene stands in its files, for problems that are found after reading.
+// Places of all elements and keys of a scene in its files, for problems found after reading.
 #pragma once
 
 #include <map>

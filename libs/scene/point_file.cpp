@@ -29,7 +29,7 @@ class PointFileReader {
       if (!read_row(*cells, table)) return std::nullopt;
     }
     if (report_.size() > problems) return std::nullopt;
-    if (table.empty()) file_.complain_of_file({"the file has a header and no points", "a line for each point", ""});
+    if (table.empty()) file_.report_file_problem({"the file has a header and no points", "a line for each point", ""});
     return table.empty() ? std::nullopt : std::optional<Table>(std::move(table));
   }
 
@@ -72,8 +72,8 @@ class PointFileReader {
     const double value = scale_[i].in_si(*number);
     const std::string& unit = file_.head()[column_[i]].unit;
     if (std::isfinite(value) && (i == 0 || field_.range.contains(value))) return value;
-    file_.complain(cell, {fmt::format("'{}{}' is out of range", cell.text, unit.empty() ? "" : " " + unit),
-                          range_text(field_.range, dimension(i)), ""});
+    file_.report_problem(cell, {fmt::format("'{}{}' is out of range", cell.text, unit.empty() ? "" : " " + unit),
+                                range_text(field_.range, dimension(i)), ""});
     return std::nullopt;
   }
 
@@ -82,7 +82,7 @@ class PointFileReader {
     const auto value = value_of(cells[column_[1]], 1);
     if (!argument || !value) return false;
     if (!may_follow(table, *argument, field_)) {
-      file_.complain(
+      file_.report_problem(
           cells[column_[0]],
           {fmt::format("'{}' does not lie behind the line before it", cells[column_[0]].text), order_text(field_), ""});
       return false;

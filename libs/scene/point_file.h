@@ -3,8 +3,8 @@
 //   deflection [mm], force [kN]
 //   -100, -1.2
 //   0, 0
-// A column's unit stands in brackets behind its name; without it the numbers are SI. The header is required. Of a file
-// with more than two columns those of argument and value are named. csv_cells.h describes such files.
+// A column's unit stands in brackets behind its name; without it the numbers are SI. The header is required. In a file
+// with more than two columns, argument and value are selected by name. csv_cells.h describes such files.
 #pragma once
 
 #include <optional>
@@ -18,8 +18,8 @@
 
 namespace slew::scene {
 
-// Empty after a complaint, which goes to the report. field: of type table; columns: names of argument and value, or
-// empty for a file of two columns.
+// Empty after a reported problem, which goes to the report. field: of type table; columns: names of argument and value,
+// or empty for a file of two columns.
 [[nodiscard]] std::optional<Table> read_point_file(const SourceText& source, const std::vector<std::string>& columns,
                                                    const Field& field, UnitSystem& units, Report& report);
 

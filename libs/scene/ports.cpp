@@ -14,10 +14,10 @@
 namespace slew::scene {
 namespace {
 
-// a start at the end of the stroke, by numbers with six digits and more
+// tolerance for a start at the end of the stroke, with numbers of six digits
 constexpr double kStrokeTolerance = 1e-6;  // m
 
-// the hydraulics' choices are the coupling's
+// the hydraulics' choices equal the coupling's
 static_assert(static_cast<int>(hydraulics::PortCoupling::session) == static_cast<int>(coupling::PortLevel::session));
 static_assert(static_cast<int>(hydraulics::PortCoupling::tlm) == static_cast<int>(coupling::PortLevel::tlm));
 
@@ -45,7 +45,7 @@ PortDef port_of(const std::string& name, const hydraulics::ActuatorDef& actuator
 
 void take_curve(PortDef& port, const std::string& name, const Scene& scene, Problems& problems) {
   const hydraulics::CurveDef* curve = hydraulics::find_curve(scene.hydraulics, name);
-  // empty where the file that holds it was not read
+  // empty if the file of the curve was not read
   if (curve == nullptr || curve->points.empty()) return;
   port.line_force.friction_curve = hydraulics::straight_lines(*curve);
   if (curve->points.front()[0] < 0) {

@@ -30,7 +30,7 @@ namespace slew::scene {
 // Connection of one actuator of the circuit with one force element of the mechanism. x_port = offset + ratio * (length
 // [m] or angle [rad] of the force element) is the stroke [m].
 struct PortDef {
-  std::string name;   // of the actuator component
+  std::string name;   // name of the actuator component
   std::string force;  // name of the force element
   double offset = 0;  // m
   double ratio = 1;   // 1 for a line, m/rad for an axis
@@ -46,7 +46,7 @@ struct Asset {
   bool operator==(const Asset&) const = default;
 };
 
-// A body whose mass properties came from a mesh, for those who show a scene; the numbers are in its BodyDef.
+// A body with mass properties from a mesh, for displays of a scene; the numbers are in its BodyDef.
 struct MeshInertia {
   std::string body;
   std::string mesh;    // file
@@ -54,10 +54,10 @@ struct MeshInertia {
   double density = 0;  // kg/m3
 };
 
-// A body that bends, as the flex node knows it: what it was made of, and the elastic forces of its modes.
+// A body that bends, for the flex node: its reduction, and the elastic forces of its modes.
 struct FlexibleBody {
   std::string body;
-  std::shared_ptr<const flex::Reduction> reduction;  // with the modes that the body takes
+  std::shared_ptr<const flex::Reduction> reduction;  // with the selected modes
   std::vector<double> stiffness, damping;            // by pair of modes
 };
 
@@ -75,24 +75,24 @@ struct Scene {
   std::vector<std::string> warnings;
   std::vector<FlexibleBody> flexible_bodies;  // with modes, in the bodies' order; none in a scene without files
   std::vector<Asset> assets;
-  std::vector<TableFile> table_files;      // tables that stay in their files; those that were read are among the assets
-  std::vector<MeshInertia> mesh_inertias;  // of the files that were read; none in a scene from its expanded text
+  std::vector<TableFile> table_files;      // tables that stay in their files; the read ones are among the assets
+  std::vector<MeshInertia> mesh_inertias;  // results of the files read; none in a scene from its expanded text
 
   // The scene after includes and overrides as canonical YAML in SI: reading it gives the same Scene (assets by name).
   std::string expanded_text;
 
   [[nodiscard]] bool has_mechanics() const noexcept { return !mechanics.bodies.empty(); }
-  // Some body keeps modes, so that a flex node takes part.
+  // True if some body keeps modes; a flex node then takes part.
   [[nodiscard]] bool has_modes() const noexcept;
-  // Steps between two samples for and of flexible bodies.
+  // Steps between two samples for and from flexible bodies.
   [[nodiscard]] std::uint32_t flexible_every() const noexcept;
-  // Steps after which all nodes have exchanged: the least common multiple of what they exchange at.
+  // Steps after which all nodes have exchanged: the least common multiple of their exchange periods.
   [[nodiscard]] StepIndex exchange_unit() const noexcept;
-  // By modes or by segments: then its flexible files are needed.
+  // True if some body bends by modes or segments; its flexible files are then needed.
   [[nodiscard]] bool has_flexible_bodies() const noexcept {
     return !mechanics.flexible_bodies.empty() || !mechanics.segmented_bodies.empty();
   }
-  // Nothing can be built of it without the folder of its files.
+  // True if models cannot be built without the folder of the scene's files.
   [[nodiscard]] bool needs_files() const noexcept { return has_flexible_bodies() || !table_files.empty(); }
   [[nodiscard]] bool has_hydraulics() const noexcept { return !hydraulics.volumes.empty(); }
 };
@@ -105,21 +105,21 @@ inline constexpr std::size_t kMaxReportedProblems = 20;
 // Reads a scene file, its include and its assets. Throws LoadError, nothing else.
 [[nodiscard]] Scene load_file(const std::string& path, const Overrides& overrides = {});
 
-// Whether the long tracks of a script are read from its file: io alone needs them.
+// Reading of a script's long tracks from its file: only io needs them.
 enum class ScriptFile : std::uint8_t { left_out, read };
 
-// Reads a scene from memory; `name` stands for the file in messages. Includes are not allowed there, and assets keep
-// their names only (size 0): see check_assets. files: folder of the files of flexible bodies and long tables; without
-// it these are not filled and the mechanics and hydraulics are not checked: nothing can be built of it (needs_files()).
-// Throws LoadError, nothing else.
+// Reads a scene from memory; `name` replaces the file in messages. Includes are not allowed, and assets keep their
+// names only (size 0): see check_assets. files: folder of the files of flexible bodies and long tables. Without it
+// these stay empty, the mechanics and hydraulics are not checked, and no model can be built (needs_files()). Throws
+// LoadError, nothing else.
 [[nodiscard]] Scene load_text(std::string text, const std::string& name, const Overrides& overrides = {},
                               const std::optional<std::string>& files = std::nullopt,
                               ScriptFile script = ScriptFile::left_out);
 
-// Error (bad_input) for a scene whose physics is solved as one system: no node can have a part of it.
+// Error (bad_input) for a scene whose physics is solved as one system: no node can solve a part of it.
 [[nodiscard]] Status check_is_split(const Scene& scene);
 
-// Compares the files in a folder with a session's manifest; the error names every file that is missing or differs.
+// Compares the files in a folder with a session's manifest; the error names every missing or different file.
 [[nodiscard]] Status check_assets(std::span<const Asset> manifest, const std::string& folder);
 
 }  // namespace slew::scene

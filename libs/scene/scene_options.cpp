@@ -21,7 +21,7 @@ scene::Node text_node(const std::string& text, const scene::Mark& mark) {
   return node;
 }
 
-// Puts the script of a file in the place of the scene's own; problems are told with their place in that file.
+// Replaces the scene's script by that of a file; problems are reported with their place in that file.
 void replace_script(scene::Scene& scene, const std::string& file) {
   scene::Report report;
   const scene::Mark mark{report.add_source("--input " + file, scene::Report::Lines::none), 0, 0};
@@ -43,7 +43,7 @@ void replace_script(scene::Scene& scene, const std::string& file) {
   scene::PlaceMap places;
   std::vector<scene::Reference> references;
   // the command line may name a file anywhere
-  const scene::Surroundings beside{.has_folder = true, .folder = "", .is_confined = false};
+  const scene::LoadContext beside{.has_folder = true, .folder = "", .is_confined = false};
   const scene::ReadContext context{units, report, places, references, &beside};
   scene::read_script(section, mark, beside, names, scene, context);
   // a recording keeps both in one folder
@@ -61,8 +61,8 @@ void add_scene_options(options::Command& app, SceneOptions& options) {
   const options::Option file = app.option("scene", options.file, "scene file").value_name("SCENE");
   const options::Option from =
       app.option("--from", options.from,
-                 "go on with a saved session ('slewring control save') in the place of a scene; --set then changes "
-                 "live parameters and who moves an input (controller, supervisor)")
+                 "continue a saved session ('slewring control save') instead of a scene; --set then changes "
+                 "live parameters and the control of inputs (controller, supervisor)")
           .value_name("FILE")
           .group("Scene");
   app.option("--assets", options.assets, "with --from: folder with the scene's files; without it this one")
@@ -77,7 +77,7 @@ void add_scene_options(options::Command& app, SceneOptions& options) {
   app.option("--duration", options.duration, "length of the run, such as '20 s'; 0: until it is stopped")
       .value_name("TIME")
       .group("Scene");
-  app.option("--pace", options.pace, "real: by the wall clock; free: as fast as possible")
+  app.option("--pace", options.pace, "real: paced by the wall clock; free: as fast as possible")
       .one_of({"real", "free"})
       .value_name("PACE")
       .group("Scene");
@@ -120,7 +120,7 @@ scene::Scene load_scene(const SceneOptions& options) {
 
 namespace {
 
-// Who moves an input is no part of the state that a session goes on from: io_node's has its value and its ramp alone.
+// The controller of an input is no part of the saved state: io_node's state holds only its value and ramp.
 constexpr std::string_view kOfController[] = {".controller", ".controller_delay", ".controller_wait", ".supervisor"};
 
 bool is_of_controller(const std::string& setting) {
@@ -135,7 +135,7 @@ ContinuedScene continue_scene(const SceneOptions& options, const std::string& sc
                               const std::string& scene_name) {
   if (!options.step.empty()) {
     throw Failure(ExitCode::bad_input,
-                  "the step of a saved session is a part of its state; nothing was started; leave --step out");
+                  "the step of a saved session is part of its state; nothing was started; omit --step");
   }
   scene::Overrides overrides = of_session(options);
   std::copy_if(options.overrides.begin(), options.overrides.end(), std::back_inserter(overrides), is_of_controller);
@@ -150,7 +150,7 @@ ContinuedScene continue_scene(const SceneOptions& options, const std::string& sc
     scene::Assignment change = directory.parse_assignment(setting);
     if (!change.status.is_ok()) {
       throw Failure(ExitCode::bad_input, "--set " + setting + ": " + change.status.text +
-                                             "; a session that goes on takes changes of live parameters, and of the "
+                                             "; a continued session accepts changes of live parameters, and of the "
                                              "controller, controller_delay, controller_wait and supervisor of inputs, "
                                              "only; nothing was started");
     }

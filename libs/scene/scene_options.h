@@ -1,4 +1,4 @@
-// Which scene a session runs and with what changes: the options that `slewring run` and io_node share.
+// Options of `slewring run` and io_node for the scene of a session and its changes.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@ namespace slew::scene {
 
 struct SceneOptions {
   std::string file;
-  std::string from;                    // a saved session in the place of a scene file
+  std::string from;                    // a saved session instead of a scene file
   std::string assets;                  // folder of its scene's files; empty: here
   std::vector<std::string> overrides;  // "Bag.mass=1500kg"
-  std::string step;                    // quantities; empty: as the scene says
+  std::string step;                    // quantities; empty: the scene's
   std::string duration;
   std::string pace;
   std::string input = "script";  // script, none, keyboard, or a .csv or .yaml file
@@ -31,9 +31,9 @@ void add_scene_options(options::Command& app, SceneOptions& options);
 // scene::LoadError.
 [[nodiscard]] scene::Scene load_scene(const SceneOptions& options);
 
-// The scene of a saved session with what may be different where it goes on: duration, pace, input, and settings of who
-// moves an input (controller, controller_delay, controller_wait, supervisor) become part of its text; all other
-// settings are changes of live parameters. Throws Failure or scene::LoadError.
+// The scene of a saved session with the permitted changes: duration, pace, input, and the control of inputs
+// (controller, controller_delay, controller_wait, supervisor) become part of its text; all other settings are changes
+// of live parameters. Throws Failure or scene::LoadError.
 struct ContinuedScene {
   scene::Scene scene;
   std::vector<scene::Assignment> changes;

@@ -1,4 +1,4 @@
-// The scene format as a JSON Schema and as tables for people, both from the field tables.
+// The scene format as a JSON Schema and as tables for readers, both from the field tables.
 #pragma once
 
 #include <string>
@@ -6,14 +6,14 @@
 
 namespace slew::scene {
 
-// JSON Schema (draft 2020-12) of a scene file, for editors and other programs. It cannot say everything: dimensions of
-// units, names that exist and rules between fields are checked by load_file only.
+// JSON Schema (draft 2020-12) of a scene file, for editors and other programs. Only load_file checks dimensions of
+// units, existing names and rules between fields.
 [[nodiscard]] std::string json_schema();
 
 // Markdown: one table for each section and type, all fields with dimension, range, default and doc.
 [[nodiscard]] std::string field_reference();
 
-// The same of descriptions of flexible bodies (flexible_model.h).
+// The same for descriptions of flexible bodies (flexible_model.h).
 [[nodiscard]] std::string flexible_json_schema();
 [[nodiscard]] std::string flexible_field_reference();
 

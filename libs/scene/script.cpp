@@ -52,7 +52,7 @@ void ScriptPlayer::read_course(std::size_t input, SimTime from, SimTime to, Sign
     add_until(next->time_ns, next->value);
     begin = next->value;
   }
-  // a jump at `to` belongs to what follows
+  // a jump at `to` belongs to the next interval
   const bool ends_at_point = next != points.end() && next->time_ns == to.ns;
   add_until(to.ns, ends_at_point ? next->value : value(input, to));
 }

@@ -21,11 +21,11 @@ class ScriptPlayer {
   // Raw value -1..1 of the input with this index in Scene::inputs. Real-time safe.
   [[nodiscard]] double value(std::size_t input, SimTime t) const noexcept;
 
-  // The signal in [from, to) as straight pieces, in the place of what `course` held; with interpolation step one piece
-  // at value(from). Allocates while `course` grows.
+  // The signal in [from, to) as straight pieces, which replace the content of `course`; with interpolation step one
+  // piece at value(from). Allocates while `course` grows.
   void read_course(std::size_t input, SimTime from, SimTime to, SignalCourse& course) const;
 
-  // Most pieces that read_course() gives for a step of this length.
+  // Largest number of pieces of read_course() for a step of this length.
   [[nodiscard]] std::size_t most_pieces(SimDuration length) const noexcept;
 
   // Parameter changes that begin in [from, to). Real-time safe.

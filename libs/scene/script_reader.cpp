@@ -18,11 +18,11 @@ namespace slew::scene {
 namespace {
 
 constexpr std::string_view kScriptKeys[] = {"file", "columns", "sha256", "inputs", "parameters"};
-constexpr std::string_view kRawSuffix = ".raw";  // of an input's variable, as `slewring export` writes it
+constexpr std::string_view kRawSuffix = ".raw";  // suffix of an input's variable in `slewring export`
 constexpr std::string_view kChangeKeys[] = {"value"};
 
-// Values of a record that are no further apart than a step, as ticks held them: each until the next. Of values further
-// apart nothing is known in between, a line leads from one to the next.
+// Interpolation of a record: values no further apart than a step are held until the next, as ticks held them. Values
+// further apart are joined by a line.
 Table held_as_ticks(const Table& points, SimDuration step) {
   Table held;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -40,12 +40,12 @@ Table held_as_ticks(const Table& points, SimDuration step) {
 
 class ScriptReader {
  public:
-  ScriptReader(const Surroundings& surroundings, const NameTable& names, Scene& scene, const ReadContext& context)
-      : surroundings_(surroundings), names_(names), scene_(scene), context_(context) {}
+  ScriptReader(const LoadContext& load_context, const NameTable& names, Scene& scene, const ReadContext& context)
+      : load_context_(load_context), names_(names), scene_(scene), context_(context) {}
 
   void read(const Node& section, const Mark& place) {
     if (section.kind != Node::Kind::map) {
-      complain(section.mark, "script", {"is " + describe(section), "a map", ""});
+      report_problem(section.mark, "script", {"is " + describe(section), "a map", ""});
       return;
     }
     read_fields(section, script_fields(), &scene_.script, "script", place, kScriptKeys, context_);
@@ -53,13 +53,13 @@ class ScriptReader {
     const Node::Entry* inputs = section.find("inputs");
     const Node::Entry* changes = section.find("parameters");
     if (file != nullptr && inputs != nullptr) {
-      complain(inputs->mark, "script.inputs", {"the script has a file and inputs of its own", "one of them", ""});
+      report_problem(inputs->mark, "script.inputs", {"the script has a file and inputs of its own", "one of them", ""});
     } else if (file != nullptr) {
       read_file(section, file->value);
     } else {
       for (const char* key : {"columns", "sha256"}) {
         if (const Node::Entry* entry = section.find(key))
-          complain(entry->mark, std::string("script.") + key, {"it has no effect without a file", "a file", ""});
+          report_problem(entry->mark, std::string("script.") + key, {"it has no effect without a file", "a file", ""});
       }
     }
     if (inputs != nullptr) read_tracks(inputs->value);
@@ -68,13 +68,14 @@ class ScriptReader {
   }
 
  private:
-  void complain(const Mark& mark, std::string path, Complaint complaint) {
-    context_.report.add(mark, std::move(path), std::move(complaint));
+  void report_problem(const Mark& mark, std::string path, ValueProblem problem) {
+    context_.report.add(mark, std::move(path), std::move(problem));
   }
 
   void read_tracks(const Node& node) {
     if (node.kind != Node::Kind::map) {
-      complain(node.mark, "script.inputs", {"is " + describe(node), "a map from inputs to points [time, value]", ""});
+      report_problem(node.mark, "script.inputs",
+                     {"is " + describe(node), "a map from inputs to points [time, value]", ""});
       return;
     }
     report_duplicates(node, "script.inputs", context_.report);
@@ -90,7 +91,7 @@ class ScriptReader {
 
   bool is_input(const std::string& name, const Mark& mark, const std::string& path) {
     if (names_.kind_of(name) == "input") return true;
-    complain(mark, path, {"no input '" + name + "'", "", names_.closest_of(name, "input")});
+    report_problem(mark, path, {"no input '" + name + "'", "", names_.closest_of(name, "input")});
     return false;
   }
 
@@ -100,26 +101,26 @@ class ScriptReader {
     if (input != scene_.inputs.end() && input->type == InputType::digital) {
       for (const auto& point : track.points) {
         if (point[1] == 0 || point[1] == 1) continue;
-        complain(mark, "script.inputs." + track.input,
-                 {fmt::format("{} is no value of a digital input", point[1]), "0 or 1", ""});
+        report_problem(mark, "script.inputs." + track.input,
+                       {fmt::format("{} is no value of a digital input", point[1]), "0 or 1", ""});
         return;
       }
     }
     scene_.script.tracks.push_back(std::move(track));
   }
 
-  // The file, its columns and its content: keys of a .csv file beside those that every script has.
+  // The file, its columns and its content: keys for a .csv file beside those of every script.
   void read_file(const Node& section, const Node& name) {
     const bool is_text = name.kind == Node::Kind::scalar && !name.text.empty();
     const bool is_yaml = is_text && (name.text.ends_with(".yaml") || name.text.ends_with(".yml"));
     if (!is_text || (!is_yaml && !name.text.ends_with(".csv"))) {
-      complain(name.mark, "script.file", {"is " + describe(name), "the name of a .csv or .yaml file", ""});
+      report_problem(name.mark, "script.file", {"is " + describe(name), "the name of a .csv or .yaml file", ""});
       return;
     }
-    // the text of a session states the content
-    if (!surroundings_.has_folder && section.find("sha256") == nullptr) {
-      complain(name.mark, "script.file",
-               {"a scene without a folder cannot name a file", "the points themselves under inputs", ""});
+    // the text of a session gives the content
+    if (!load_context_.has_folder && section.find("sha256") == nullptr) {
+      report_problem(name.mark, "script.file",
+                     {"a scene without a folder cannot name a file", "the points themselves under inputs", ""});
       return;
     }
     Node reference;
@@ -129,7 +130,8 @@ class ScriptReader {
       const Node::Entry* entry = section.find(key);
       if (entry == nullptr) continue;
       if (is_yaml)
-        complain(entry->mark, std::string("script.") + key, {"it has no effect on a .yaml file", "a .csv file", ""});
+        report_problem(entry->mark, std::string("script.") + key,
+                       {"it has no effect on a .yaml file", "a .csv file", ""});
       reference.entries.push_back(*entry);
     }
     const std::size_t problems = context_.report.size();
@@ -139,23 +141,23 @@ class ScriptReader {
       read_csv_file(name, std::move(*file));
     }
     if (context_.report.size() > problems && is_opened_)
-      complain(name.mark, "script.file", {describe(name) + " cannot be used", "", ""});
+      report_problem(name.mark, "script.file", {describe(name) + " cannot be used", "", ""});
   }
 
   void read_yaml_file(const Node& name) {
-    if (auto refusal = surroundings_.refusal_of(name.text)) {
-      complain(name.mark, "script.file", std::move(*refusal));
+    if (auto refusal = load_context_.refusal_of(name.text)) {
+      report_problem(name.mark, "script.file", std::move(*refusal));
       return;
     }
     is_opened_ = true;
-    const std::string path = surroundings_.path_of(name.text);
+    const std::string path = load_context_.path_of(name.text);
     const auto text = read_source(path, context_.report.add_source(path), context_.report);
     if (text) read_yaml(*text);
   }
 
   // Long tracks stay in the file; short ones become part of the scene's text.
   void read_csv_file(const Node& name, TableFile file) {
-    if (file.is_pinned && !surroundings_.has_folder && !surroundings_.reads_script) {
+    if (file.is_pinned && !load_context_.has_folder && !load_context_.reads_script) {
       scene_.script.file = std::move(file);
       return;
     }
@@ -190,7 +192,7 @@ class ScriptReader {
                                           is_one ? "was" : "were", passed_over.front(), is_one ? "" : ", ..."));
   }
 
-  // Columns named after an input are taken, `Stick` or `Stick.raw`; other variables of an export are passed over.
+  // Uses columns named after an input, `Stick` or `Stick.raw`; skips other variables of an export.
   std::vector<std::size_t> columns_of(const TimeTable& table, const TableFile& file,
                                       std::vector<std::string>& passed_over) {
     std::vector<std::size_t> taken;
@@ -248,7 +250,7 @@ class ScriptReader {
     const std::optional<Node> root = parse_yaml(text, context_.report);
     if (!root) return;
     if (const Node::Entry* nested = root->find("file")) {
-      complain(nested->mark, "script.file", {"a script file names another", "inputs and parameters", ""});
+      report_problem(nested->mark, "script.file", {"a script file names another", "inputs and parameters", ""});
       return;
     }
     read(*root, root->mark);
@@ -256,8 +258,8 @@ class ScriptReader {
 
   void read_changes(const Node& node) {
     if (node.kind != Node::Kind::sequence) {
-      complain(node.mark, "script.parameters",
-               {"is " + describe(node), "a list of {at: , set: , value: , over: }", ""});
+      report_problem(node.mark, "script.parameters",
+                     {"is " + describe(node), "a list of {at: , set: , value: , over: }", ""});
       return;
     }
     for (std::size_t i = 0; i < node.items.size(); ++i) {
@@ -267,18 +269,19 @@ class ScriptReader {
 
   void read_change(const Node& node, const std::string& path) {
     if (node.kind != Node::Kind::map) {
-      complain(node.mark, path, {"is " + describe(node), "{at: , set: , value: , over: }", ""});
+      report_problem(node.mark, path, {"is " + describe(node), "{at: , set: , value: , over: }", ""});
       return;
     }
     ScriptChange change;
     const std::size_t problems = context_.report.size();
     read_fields(node, script_change_fields(), &change, path, node.mark, kChangeKeys, context_);
     const Node::Entry* value = node.find("value");
-    if (value == nullptr) complain(node.mark, path, {"the key 'value' is missing", "the parameter's new value", ""});
+    if (value == nullptr)
+      report_problem(node.mark, path, {"the key 'value' is missing", "the parameter's new value", ""});
     if (value == nullptr || context_.report.size() > problems) return;
     if (!take_value(value->value, path, node.find("set")->value.mark, change)) return;
     if (!change.choice.empty() && change.over > 0) {
-      complain(node.find("over")->value.mark, path + ".over", {"a choice changes at once", "no time, or 0", ""});
+      report_problem(node.find("over")->value.mark, path + ".over", {"a choice changes at once", "no time, or 0", ""});
       return;
     }
     scene_.script.changes.push_back(std::move(change));
@@ -290,7 +293,7 @@ class ScriptReader {
     change_path_ = change.set;
     const ParameterInfo* parameter = directory().find(change.set);
     if (parameter == nullptr || parameter->change == Change::restart) {
-      complain(set_mark, path + ".set", {directory().check(change.set, 0).status.text, "", ""});
+      report_problem(set_mark, path + ".set", {directory().check(change.set, 0).status.text, "", ""});
       return false;
     }
     Field row;
@@ -303,10 +306,10 @@ class ScriptReader {
     read_value(node, row, &change, path + ".value", context_);
     if (context_.report.size() > problems) return false;
     change.choice = parameter->choice_of(change.value);
-    // of a scene that is sound so far, whose mechanism can be built
+    // only for a scene without problems so far, whose mechanism can be built
     if (context_.report.size() > 0 || parameter->is_choice()) return true;
     const Status status = directory().check(change.set, change.value).status;
-    if (!status.is_ok()) complain(node.mark, path + ".value", {status.text, "", ""});
+    if (!status.is_ok()) report_problem(node.mark, path + ".value", {status.text, "", ""});
     return status.is_ok();
   }
 
@@ -315,7 +318,7 @@ class ScriptReader {
     return *directory_;
   }
 
-  // One order for every way of writing a script.
+  // One order for every notation of a script.
   void finish(const Mark& mark) {
     const auto rank = [&](const std::string& name) {
       return std::find_if(scene_.inputs.begin(), scene_.inputs.end(),
@@ -331,26 +334,26 @@ class ScriptReader {
       const StepIndex step =
           duration_of_seconds(change.at).ns / std::max<std::int64_t>(1, scene_.session.step_duration().ns);
       if (++changes_in_step[step] != kMaxScriptChangesPerStep + 1) continue;
-      complain(mark, "script.parameters",
-               {fmt::format("more than {} changes in the step at {} s", kMaxScriptChangesPerStep, change.at),
-                fmt::format("at most {} in one step", kMaxScriptChangesPerStep), ""});
+      report_problem(mark, "script.parameters",
+                     {fmt::format("more than {} changes in the step at {} s", kMaxScriptChangesPerStep, change.at),
+                      fmt::format("at most {} in one step", kMaxScriptChangesPerStep), ""});
     }
   }
 
-  const Surroundings& surroundings_;
+  const LoadContext& load_context_;
   const NameTable& names_;
   Scene& scene_;
   const ReadContext& context_;
-  bool is_opened_ = false;  // problems are those of the file
+  bool is_opened_ = false;  // true: problems belong to the file
   std::string change_path_;
   std::optional<ParameterDirectory> directory_;
 };
 
 }  // namespace
 
-void read_script(const Node& section, const Mark& place, const Surroundings& surroundings, const NameTable& names,
+void read_script(const Node& section, const Mark& place, const LoadContext& load_context, const NameTable& names,
                  Scene& scene, const ReadContext& context) {
-  ScriptReader(surroundings, names, scene, context).read(section, place);
+  ScriptReader(load_context, names, scene, context).read(section, place);
 }
 
 }  // namespace slew::scene

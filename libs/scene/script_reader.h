@@ -21,7 +21,7 @@
 namespace slew::scene {
 
 // Pre-condition: all elements of the scene are read. Problems go to the context's report.
-void read_script(const Node& section, const Mark& place, const Surroundings& surroundings, const NameTable& names,
+void read_script(const Node& section, const Mark& place, const LoadContext& load_context, const NameTable& names,
                  Scene& scene, const ReadContext& context);
 
 }  // namespace slew::scene

@@ -1,7 +1,7 @@
 // The sections of a scene and the types of elements in them, from the libraries that own the Defs.
 //
-// Everything that walks over a scene (reading, canonical text, parameters, schema, documentation) goes through these
-// tables; none of it knows a single Def.
+// All code that iterates over a scene (reading, canonical text, parameters, schema, documentation) uses these tables
+// and depends on no single Def.
 #pragma once
 
 #include <functional>
@@ -19,11 +19,12 @@ namespace slew::scene {
 struct ElementTable {
   std::string_view section;  // "joints"
   std::string_view type;     // value of `type:`; empty where the section has one type only
-  std::string_view kind;     // what references call it: "body", "force", "component", ...
+  std::string_view kind;     // its kind in references: "body", "force", "component", ...
   std::string_view doc;
   std::span<const Field> fields;
-  std::function<void*(Scene&, const std::string&)> append;  // a Def with its defaults; the address is for Field::member
-  bool is_default = false;                                  // meant where `type:` is missing
+  std::function<void*(Scene&, const std::string&)> append;  // appends a Def with its defaults; the address is for
+                                                            // Field::member
+  bool is_default = false;                                  // type of an element without `type:`
 };
 
 // A section that is one map of fields.
@@ -38,7 +39,7 @@ struct SingleTable {
 struct ElementRef {
   std::string_view name;
   std::string_view section;
-  std::string_view type;  // empty where it need not be said
+  std::string_view type;  // empty if the section has one type
   std::string_view kind;
   std::span<const Field> fields;
   void* def = nullptr;

@@ -1,4 +1,4 @@
-// Finite segments of libs/flex as the numbers of libs/multibody, which do not know each other.
+// Converts finite segments of libs/flex for libs/multibody, which are independent of each other.
 #pragma once
 
 #include <string>

@@ -11,8 +11,8 @@ namespace slew::scene {
 
 struct Setting {
   std::string path;
-  Node value;  // read as the value of a key, so that brackets and quotes mean what they mean in a file
-  Mark mark;   // of "--set PATH=VALUE", everywhere in it
+  Node value;  // read as the value of a key, so that brackets and quotes have the same meaning as in a file
+  Mark mark;   // mark of "--set PATH=VALUE", the same everywhere in it
 };
 
 // Problems go to the report. expected: for messages, "Element.key=value, such as 'Bag.mass=1500kg'".

@@ -12,7 +12,7 @@
 namespace slew::scene {
 namespace {
 
-// What is wrong with the character at a byte, or nothing.
+// The fault of the character at a byte, or nothing.
 std::string character_problem(std::string_view text, std::size_t at) {
   const auto byte = static_cast<std::uint8_t>(text[at]);
   if (byte == 0) return "NUL byte";

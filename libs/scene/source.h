@@ -23,7 +23,7 @@ struct SourceText {
   [[nodiscard]] Mark mark_at(std::size_t byte) const;
 };
 
-// Reads a regular file of at most `most` bytes; a problem goes to the report and nothing is returned.
+// Reads a regular file of at most `most` bytes; a problem goes to the report and the result is empty.
 [[nodiscard]] std::optional<SourceText> read_source(const std::string& path, int source, Report& report,
                                                     std::size_t most = kMaxFileBytes);
 
@@ -31,7 +31,7 @@ struct SourceText {
 [[nodiscard]] std::optional<SourceText> check_source(std::string text, int source, Report& report,
                                                      std::size_t most = kMaxFileBytes);
 
-// What is wrong with a text whose escapes are resolved, by the same rules; empty: nothing.
+// The fault of a text with resolved escapes, by the same rules; empty: none.
 [[nodiscard]] std::string text_problem(std::string_view text);
 
 }  // namespace slew::scene

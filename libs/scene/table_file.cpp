@@ -81,10 +81,10 @@ std::optional<TableFile> read_table_reference(const Node& node, const std::strin
 
 TableText open_table(TableFile& table, const Mark& mark, const ReadContext& context) {
   TableText opened;
-  const Surroundings* around = context.surroundings;
+  const LoadContext* around = context.load_context;
   const bool has_folder = around != nullptr && (around->has_folder || around->has_assets);
   if (!has_folder) {
-    // the text of a session, read where no table is needed
+    // the text of a session, read without the need for tables
     if (!table.is_pinned)
       context.report.add(mark, table.path,
                          {"a scene without a folder cannot name a file", "the points themselves", ""});

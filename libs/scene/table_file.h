@@ -1,15 +1,14 @@
-// CSV files of tables: how a scene names them, and how they are opened.
+// CSV files of tables: their notation in a scene, and opening them.
 //
 //   force_table: drive.csv
 //   force_table: {file: log.csv, columns: [time, F1]}
 //
-// A table of more than kMaxPointsInText points is no part of the scene's expanded text, which every node and recording
-// has. It stays in its file, an asset of the session; the text has its name, columns and SHA-256:
+// A table of more than kMaxPointsInText points is not in the scene's expanded text, which every node and recording
+// holds. It stays in its file, an asset of the session; the text has its name, columns and SHA-256:
 //
 //   force_table: {file: log.csv, columns: [time, F1], sha256: 9f86d0...}
 //
-// Read with the folder of the files, that text takes this content and no other; without a folder the table is left
-// empty.
+// Read with the folder of the files, that text accepts only this content; without a folder the table stays empty.
 #pragma once
 
 #include <optional>
@@ -22,24 +21,23 @@
 
 namespace slew::scene {
 
-// The file that a value names; nothing after a complaint. path: of the value in messages.
+// The file that a value names; nothing after a reported problem. path: of the value in messages.
 [[nodiscard]] std::optional<TableFile> read_table_reference(const Node& node, const std::string& path,
                                                             const ReadContext& context);
 
-// The columns of `columns: [NAME, ...]`; nothing after a complaint.
+// The columns of `columns: [NAME, ...]`; nothing after a reported problem.
 [[nodiscard]] std::optional<std::vector<std::string>> read_column_names(const Node& node, const std::string& path,
                                                                         Report& report);
 
 struct TableText {
-  std::optional<SourceText> text;  // nothing after a complaint, or where the folder is not known
-  bool is_file = false;            // complaints are about a file
+  std::optional<SourceText> text;  // nothing after a reported problem, or without a folder
+  bool is_file = false;            // problems belong to a file
 };
 
 // Reads the file and fills size, SHA-256 and place of the table.
 [[nodiscard]] TableText open_table(TableFile& table, const Mark& mark, const ReadContext& context);
 
-// The files of the scene's long tables, which every node must have, become its assets. Those of a script are io's
-// alone.
+// Adds the files of the scene's long tables, which every node needs, to its assets. Only io needs those of a script.
 void add_table_assets(Scene& scene);
 
 // The reference as YAML.

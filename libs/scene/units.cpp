@@ -38,7 +38,7 @@ struct AddedUnit {
 constexpr AddedUnit kAddedUnits[] = {
     {"deg", "arc_degree"}, {"rev", "turn"}, {"Nm", "N.m"}, {"Nms", "N.m.s"}, {"Ns", "N.s"}};
 
-// names offered when a unit is not known
+// names suggested for an unknown unit
 constexpr std::string_view kCommonUnits[] = {
     "m",       "mm",    "cm",    "km",    "inch",  "m2",     "mm2",    "cm2",     "m3",     "cm3",     "cc",
     "l",       "kg",    "g",     "t",     "s",     "ms",     "us",     "min",     "h",      "rad",     "deg",
@@ -94,7 +94,7 @@ long double exact_offset(double offset) {
   return found.value_or(static_cast<long double>(offset));
 }
 
-// ---- what UDUNITS tells about a unit, through its visitor
+// ---- properties of a unit from UDUNITS, through its visitor
 
 struct Visit {
   const ut_system* system = nullptr;
@@ -200,7 +200,7 @@ bool has_dimension(const Unit& unit, Dimension dimension) {
          (unit.offset == 0 || dimension == Dimension::temperature);
 }
 
-Complaint unknown_unit(std::string_view text, Dimension dimension, UnitSystem& units) {
+ValueProblem unknown_unit(std::string_view text, Dimension dimension, UnitSystem& units) {
   std::vector<std::string_view> fitting, all(std::begin(kCommonUnits), std::end(kCommonUnits));
   for (const std::string_view name : all) {
     const Unit* unit = units.find(name);
@@ -210,7 +210,7 @@ Complaint unknown_unit(std::string_view text, Dimension dimension, UnitSystem& u
   return {fmt::format("unknown unit '{}'", text), expected_quantity(dimension), std::move(suggestion)};
 }
 
-// Throws std::system_error when this process cannot open as many files as UDUNITS at a time, which does not tell why.
+// Throws std::system_error if this process cannot open as many files at once as UDUNITS does, which reports no reason.
 void require_files() {
   constexpr std::size_t kFiles = 4;
   std::array<int, kFiles> files{};
@@ -305,7 +305,7 @@ std::string with_unit(double value, Dimension dimension) {
 
 namespace {
 
-// quantity: what the message quotes
+// quantity: text quoted in the message
 UnitResult find_unit(std::string_view text, Dimension dimension, UnitSystem& units, std::string_view quantity) {
   const Unit* unit = units.find(text);
   if (unit == nullptr) return {nullptr, unknown_unit(text, dimension, units)};
@@ -324,11 +324,11 @@ UnitResult read_unit(std::string_view text, Dimension dimension, UnitSystem& uni
 QuantityResult read_quantity(std::string_view text, Writing writing, Dimension dimension, UnitSystem& units) {
   const NumberText number = split_number(text);
   if (!number.is_number) {
-    Complaint complaint = number.complaint;
-    if (complaint.expected.empty()) complaint.expected = expected_quantity(dimension);
-    return {std::nullopt, std::move(complaint)};
+    ValueProblem problem = number.problem;
+    if (problem.expected.empty()) problem.expected = expected_quantity(dimension);
+    return {std::nullopt, std::move(problem)};
   }
-  // a bare number is SI; in quotes it is a text that somebody forgot the unit of
+  // a bare number is SI; in quotes it is a text without its unit
   if (number.rest.empty()) {
     if (writing == Writing::plain) return {static_cast<double>(number.value), {}};
     const std::string what = is_plain_number(dimension) ? " is in quotes" : " is in quotes and has no unit";
@@ -336,7 +336,7 @@ QuantityResult read_quantity(std::string_view text, Writing writing, Dimension d
   }
   UnitResult found = find_unit(number.rest, dimension, units, text);
   const Unit* unit = found.unit;
-  if (unit == nullptr) return {std::nullopt, std::move(found.complaint)};
+  if (unit == nullptr) return {std::nullopt, std::move(found.problem)};
   const long double value = number.value * unit->scale + unit->offset;
   if (!std::isfinite(static_cast<double>(value))) {
     return {std::nullopt, {fmt::format("'{}' is beyond what a number can hold", text), "a finite number", ""}};

@@ -1,9 +1,9 @@
 // Quantities: a number with a unit, checked against a dimension, in SI.
 //
-// UDUNITS-2 parses the unit and knows the scales; the dimension check is ours, because UDUNITS takes Hz for rad/s and
-// rad for 1. Here the angle is a base dimension (core/dimension.h). Added to its database: deg, rev, Nm, Nms, Ns.
-// Scales that are short decimals, such decimals over 60 or 3600, or those times pi are restored exactly: UDUNITS keeps
-// an inch as 0.025400000000000002 m. So "1050 mm" and 1.05 are the same bits.
+// UDUNITS-2 parses the unit and provides the scales; the dimension check is done here, because UDUNITS takes Hz for
+// rad/s and rad for 1. Here the angle is a base dimension (core/dimension.h). Added to its database: deg, rev, Nm, Nms,
+// Ns. Scales that are short decimals, such decimals over 60 or 3600, or those times pi are restored exactly: UDUNITS
+// keeps an inch as 0.025400000000000002 m. So "1050 mm" and 1.05 are the same bits.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace slew::scene {
 struct Unit {
   long double scale = 1;                  // SI value = number * scale + offset
   long double offset = 0;                 // degC, degF
-  std::array<std::int8_t, 5> exponent{};  // of kg, m, s, K, rad
+  std::array<std::int8_t, 5> exponent{};  // powers of kg, m, s, K, rad
   bool has_other_base = false;            // mole, ampere, candela, ...
 };
 
@@ -31,28 +31,28 @@ class UnitSystem {
   // Throws std::runtime_error when the database cannot be read.
   UnitSystem();
 
-  // Null when there is no such unit.
+  // Null if the unit does not exist.
   [[nodiscard]] const Unit* find(std::string_view text);
 
  private:
   std::map<std::string, std::optional<Unit>, std::less<>> known_;
 };
 
-// How a quantity was written.
+// Notation of a quantity.
 enum class Writing { plain, quoted };
 
-// The value in SI of "250 bar", of "2.5e7" (plain: already SI), or what is wrong with it.
+// The value in SI of "250 bar", of "2.5e7" (plain: already SI), or its problem.
 struct QuantityResult {
   std::optional<double> value;
-  Complaint complaint;
+  ValueProblem problem;
 };
 [[nodiscard]] QuantityResult read_quantity(std::string_view text, Writing writing, Dimension dimension,
                                            UnitSystem& units);
 
-// The unit of a column of numbers, or what is wrong with it: "mm" for a length. The pointer lasts as long as `units`.
+// The unit of a column of numbers, or its problem: "mm" for a length. The pointer lasts as long as `units`.
 struct UnitResult {
   const Unit* unit = nullptr;
-  Complaint complaint;
+  ValueProblem problem;
 };
 [[nodiscard]] UnitResult read_unit(std::string_view text, Dimension dimension, UnitSystem& units);
 

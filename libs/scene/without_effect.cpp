@@ -56,7 +56,7 @@ class Search {
     warnings_.push_back({std::move(path), std::move(what), std::move(expected), ""});
   }
 
-  // an input that is multiplied by zero
+  // inputs that are multiplied by zero
   void find_in(const InputDef& input) {
     if (input.scale == 0) warn(input.name + ".scale", "the input has no effect: its scale is 0", "another scale");
     const auto check_load = [&](const auto& load, double value, const Table& table, std::string_view key) {
@@ -83,7 +83,7 @@ class Search {
          fmt::format("a {0} other than 0 or a {0}_table", key));
   }
 
-  // a spring and damper that an actuator or a dummy refers to carries their force or mass
+  // a spring and damper used by an actuator or a dummy carries their force or mass
   template <typename Spring>
   void find_in(const Spring& spring, std::string_view exerted) {
     if (referenced_.contains(spring.name) || spring.spring_constant != 0 || spring.damping_constant != 0 ||
@@ -95,7 +95,7 @@ class Search {
          "a spring_constant, damping_constant or tables, or an actuator that drives it");
   }
 
-  // the speed that smooths a dry friction of 0, of each coordinate of a joint
+  // the smoothing speed of a dry friction of 0, for each coordinate of a joint
   void find_smoothing(const ElementRef& element) {
     constexpr std::string_view kSpeed = "friction_speed", kFriction = "coulomb_friction";
     const auto number = [&](const Field& field) { return *static_cast<double*>(field.member(element.def)); };

@@ -1,4 +1,4 @@
-// What a scene says that changes nothing: legal, and probably a mistake.
+// Parts of a scene without effect: legal, and probably a mistake.
 #pragma once
 
 #include "core/problem.h"

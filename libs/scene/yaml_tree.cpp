@@ -15,7 +15,7 @@ namespace slew::scene {
 namespace {
 
 constexpr std::size_t kLongestQuote = 40;
-// of a map in which a key is looked for one by one
+// size of a map up to which keys are searched linearly
 constexpr std::size_t kFewEntries = 16;
 
 std::string shortened(const std::string& text) {
@@ -26,14 +26,14 @@ std::string shortened(const std::string& text) {
   return text.substr(0, end) + "...";
 }
 
-// Line breaks of YAML 1.1 that are no line breaks to anybody else.
+// Line breaks of YAML 1.1 that other programs do not treat as such.
 constexpr std::string_view kOddBreaks[] = {"\xC2\x85", "\xE2\x80\xA8", "\xE2\x80\xA9"};
 
 bool is_null(std::string_view plain) {
   return plain.empty() || plain == "~" || plain == "null" || plain == "Null" || plain == "NULL";
 }
 
-// Builds the tree event by event. Each step is false after a problem that makes the rest meaningless.
+// Builds the tree event by event. Each step returns false after a problem that makes the rest meaningless.
 class TreeBuilder {
  public:
   TreeBuilder(const SourceText& source, Report& report) : source_(source), report_(report) {}
@@ -103,7 +103,7 @@ class TreeBuilder {
   [[nodiscard]] Mark place(const yaml_mark_t& mark) const {
     return {source_.source, static_cast<int>(mark.line) + 1, static_cast<int>(mark.column) + 1};
   }
-  // of what stands at a mark, which counts characters
+  // text at a mark, which counts characters
   [[nodiscard]] std::size_t byte_of(const yaml_mark_t& mark) const {
     if (mark.line >= source_.line_start.size()) return source_.text.size();
     std::size_t at = source_.line_start[mark.line];
@@ -113,9 +113,9 @@ class TreeBuilder {
     }
     return at;
   }
-  // the parser's messages in the words of somebody who writes a scene
+  // the parser's messages in terms of the scene's author
 
-  // what was never closed is best shown where it opened
+  // an unclosed item is reported at its opening
   void explain_quote(const yaml_parser_t& parser, bool is_at_end) {
     const Mark opened = place(parser.context_mark);
     if (is_at_end) {
@@ -143,7 +143,7 @@ class TreeBuilder {
                    closing + " or ','", ""});
     }
   }
-  [[nodiscard]] static Complaint explain(const yaml_parser_t& parser, const Mark& opened) {
+  [[nodiscard]] static ValueProblem explain(const yaml_parser_t& parser, const Mark& opened) {
     const std::string begin = "not valid YAML: ", problem = parser.problem;
     if (problem == "mapping values are not allowed in this context" || problem == "could not find expected ':'") {
       return {begin + "no key can stand here", "one 'key: value' in a line; a ':' may be missing in the line before",
@@ -155,7 +155,7 @@ class TreeBuilder {
     }
     return {begin + problem, "", ""};
   }
-  // of the line of a mark
+  // text of the line of a mark
   [[nodiscard]] std::optional<Mark> tab_in_indentation(const yaml_mark_t& mark) const {
     if (mark.line >= source_.line_start.size()) return std::nullopt;
     const std::size_t tab = source_.text.find_first_not_of(' ', source_.line_start[mark.line]);
@@ -185,7 +185,7 @@ class TreeBuilder {
       return;
     }
     node.kind = Node::Kind::scalar;
-    // an escape may stand for what the source itself must not hold
+    // an escape may represent a character that the source must not contain
     if (std::string problem = text_problem(node.text); !problem.empty()) {
       report_.add(node.mark, "", {std::move(problem) + " after its escapes are resolved", "UTF-8 text", ""});
     }
@@ -215,7 +215,7 @@ class TreeBuilder {
     accept(std::move(node));
   }
 
-  // A finished node goes to where it belongs: the root, a list, a key or a key's value.
+  // Moves a finished node to its place: the root, a list, a key or a key's value.
   void accept(Node node) {
     if (open_.empty()) {
       root_ = std::move(node);
@@ -228,7 +228,7 @@ class TreeBuilder {
       accept_key(level, node);
     } else {
       level.has_key = false;
-      // a value that is not there is shown at its key
+      // a missing value is reported at its key
       if (node.kind == Node::Kind::empty) node.mark = level.key_mark;
       if (!level.drops_value) {
         level.node.entries.push_back({std::move(level.key), level.key_mark, std::move(node)});
@@ -292,7 +292,7 @@ class Parser {
   Parser& operator=(const Parser&) = delete;
 
   enum class End { none, of_text, syntax_error, refused };
-  // One event more.
+  // Takes the next event.
   End advance(TreeBuilder& builder) {
     struct Event : yaml_event_t {
       ~Event() { yaml_event_delete(this); }

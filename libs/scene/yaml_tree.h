@@ -21,7 +21,7 @@ struct Node {
   struct Entry;
   struct Duplicate {
     std::string key;
-    Mark mark;  // of the later key, whose value is dropped
+    Mark mark;  // mark of the later key, whose value is dropped
     Mark first;
   };
 
@@ -30,7 +30,7 @@ struct Node {
   std::string text;                   // scalar
   std::vector<Node> items;            // sequence
   std::vector<Entry> entries;         // map, in file order
-  std::vector<Duplicate> duplicates;  // map: keys that were there before; whoever reads the map reports them
+  std::vector<Duplicate> duplicates;  // map: repeated keys; the reader of the map reports them
   Mark mark;
 
   [[nodiscard]] const Entry* find(std::string_view key) const;
@@ -39,14 +39,14 @@ struct Node {
 
 struct Node::Entry {
   std::string key;
-  Mark mark;  // of the key
+  Mark mark;  // mark of the key
   Node value;
 };
 
-// What a node is, for messages: "a list", "a map", "nothing", "'text'".
+// Description of a node, for messages: "a list", "a map", "nothing", "'text'".
 [[nodiscard]] std::string describe(const Node& node);
 
-// The document's root, which is a map; problems go to the report. Nothing is returned when no tree could be built.
+// The document's root, a map; problems go to the report. Empty if no tree could be built.
 [[nodiscard]] std::optional<Node> parse_yaml(const SourceText& source, Report& report);
 
 }  // namespace slew::scene

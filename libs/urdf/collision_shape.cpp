@@ -23,7 +23,7 @@ bool is_there(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-// The file that a URDF names; empty: there is none.
+// The file named by a URDF; empty: it does not exist.
 fs::path find_file(const std::string& name, const fs::path& folder) {
   const std::string_view text = name;
   if (text.starts_with(kFile)) return is_there(text.substr(kFile.size())) ? text.substr(kFile.size()) : fs::path();
@@ -42,7 +42,7 @@ fs::path find_file(const std::string& name, const fs::path& folder) {
   return {};
 }
 
-// name of a file as a scene in that folder says it; empty: it lies elsewhere
+// name of a file relative to a scene in that folder; empty: it lies elsewhere
 std::string name_inside(const fs::path& file, const fs::path& folder) {
   std::error_code error;
   const fs::path base = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
@@ -67,7 +67,7 @@ void take_mesh(const Geometry& geometry, bool is_static, const Folders& folders,
     return;
   }
   shape.def.file_unit = x;
-  shape.def.file_up = "y";  // what is y in the file is y of the shape
+  shape.def.file_up = "y";  // the file's y is the shape's y
   Problems problems;
   shape.mesh = contact::read_mesh(
       "", {.path = file, .unit = x, .up_in_file = contact::UpAxis::y, .up = contact::UpAxis::y}, problems);

@@ -109,7 +109,7 @@ class Converter {
     return taken;
   }
 
-  // a fixed joint to a link that rides on a body is in the places already
+  // the places include a fixed joint to a link that rides on a body
   [[nodiscard]] bool is_made(const Joint& joint) const {
     if (joint.kind == JointKind::fixed && places_[at(joint.child)].body != joint.child) return false;
     return places_[at(joint.parent)].body != places_[at(joint.child)].body;
@@ -176,7 +176,7 @@ class Converter {
     out_.mechanics.joints.push_back(joint);
   }
 
-  // a link without mass: its frame, for those who hang a force on it later
+  // a link without mass: its frame, for forces attached later
   void note_rider(const Link& link, const Place& place) {
     const std::string where = fmt::format("on {} at {} m, orientation (x, y', z'') {} rad", body_name(place.body),
                                           triple_text(position_of(place.pose)),
@@ -185,7 +185,7 @@ class Converter {
     add_shapes(link, body_name(place.body), place.pose);
   }
 
-  // what touches becomes a shape; what is only seen, and what no shape can be, is told
+  // collision geometry becomes a shape; visual geometry and unsupported meshes give a note
   void add_shapes(const Link& link, const std::string& body, const Pose& place) {
     for (const Geometry& geometry : link.geometries) {
       if (geometry.use == Geometry::Use::visual) {

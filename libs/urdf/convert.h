@@ -5,9 +5,9 @@
 // child is R_CA and its frame 1 in the parent X_PC R_CA, so that the joint's coordinate is URDF's:
 //   I_C = R_CI I R_CI^T   inertia about the centre, in the link's axes; R_CI from the inertial's rpy               (1)
 //   k = omega^2 I_q,  c = 2 omega I_q   stiffness and damping of a joint's limits, omega = kStopFrequency           (2)
-// I_q is what hangs on the joint: its inertia about the axis, or its mass along it. URDF's limits have no stiffness:
-// (2) stops the load critically damped, within about v/omega of the limit. damping and friction become viscous and
-// Coulomb friction. A planar joint with the normal n becomes three joints:
+// I_q is the load of the joint: its inertia about the axis, or its mass along it. URDF's limits have no stiffness: (2)
+// stops the load critically damped, within about v/omega of the limit. damping and friction become viscous and Coulomb
+// friction. A planar joint with the normal n becomes three joints:
 //   point of the child in the parent's plane, and n_C at a right angle to two directions of that plane           (3)
 // and a joint that follows another (<mimic>), q_2 = a q_1 + b, a gear, whose coordinates may be whole turns less:
 //   q_2' = a q_1' + b + a turns_1 - turns_2                                                                    (4)
@@ -30,13 +30,13 @@ inline constexpr double kStopFrequency = 100;  // rad/s, slow against sub-steps 
 struct Conversion {
   multibody::MechanicsDef mechanics;
   std::map<std::string, std::vector<std::string>> comments;  // by element
-  std::map<std::string, int> lines;                          // of the URDF, by element
-  std::map<std::string, contact::MeshDef> meshes;            // of shapes with a file, by shape
-  std::vector<Note> notes;                                   // the robot's and those of the conversion, by line
-  std::vector<Note> changes{};                               // made on request before the conversion
+  std::map<std::string, int> lines;                          // lines of the URDF, by element
+  std::map<std::string, contact::MeshDef> meshes;            // meshes of shapes with a file, by shape
+  std::vector<Note> notes;                                   // notes of the robot and of the conversion, by line
+  std::vector<Note> changes{};                               // changes requested before the conversion
 };
 
-// Pre-condition: find_starts() and settle_mass_properties() found nothing to complain about.
+// Pre-condition: find_starts() and settle_mass_properties() found no problem.
 [[nodiscard]] Conversion convert(const Robot& robot, RootMount mount, const Folders& folders);
 
 }  // namespace slew::urdf

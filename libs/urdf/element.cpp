@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kSpace = " \t\r\n";
 
-// The number at the start of the text, which it takes away; nothing when there is none, or none that is finite.
+// Removes and returns the number at the start of the text; nothing if there is no finite number.
 std::optional<double> take_number(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
   std::string_view digits = text;
@@ -37,20 +37,20 @@ std::string in_tag(const XMLElement& element, const char* attribute) {
 std::optional<std::string> ElementValues::name(const XMLElement& element, const char* attribute) {
   const char* text = element.Attribute(attribute);
   if (text != nullptr && !is_blank(text)) return text;
-  complain(element, fmt::format("{} has no value", in_tag(element, attribute)), "a name");
+  report_problem(element, fmt::format("{} has no value", in_tag(element, attribute)), "a name");
   return std::nullopt;
 }
 
 double ElementValues::number(const XMLElement& element, const char* attribute, std::optional<double> missing) {
   const char* text = element.Attribute(attribute);
   if (text == nullptr) {
-    if (!missing) complain(element, fmt::format("{} is missing", in_tag(element, attribute)), "a number");
+    if (!missing) report_problem(element, fmt::format("{} is missing", in_tag(element, attribute)), "a number");
     return missing.value_or(0);
   }
   std::string_view rest = text;
   const std::optional<double> value = take_number(rest);
   if (value && is_blank(rest)) return *value;
-  complain(element, fmt::format("{} is '{}'", in_tag(element, attribute), text), "a finite number");
+  report_problem(element, fmt::format("{} is '{}'", in_tag(element, attribute), text), "a finite number");
   return 0;
 }
 
@@ -58,7 +58,7 @@ double ElementValues::number_not_negative(const XMLElement& element, const char*
                                           std::optional<double> missing) {
   const double value = number(element, attribute, missing);
   if (value < -kRoundOff) {
-    complain(element, fmt::format("{} is {}", in_tag(element, attribute), value), "at least 0");
+    report_problem(element, fmt::format("{} is {}", in_tag(element, attribute), value), "at least 0");
   }
   return std::max(value, 0.0);
 }
@@ -71,7 +71,7 @@ double ElementValues::moment(const XMLElement& element, const char* attribute) {
 Triple ElementValues::triple(const XMLElement& element, const char* attribute, std::optional<Triple> missing) {
   const char* text = element.Attribute(attribute);
   if (text == nullptr) {
-    if (!missing) complain(element, fmt::format("{} is missing", in_tag(element, attribute)), "three numbers");
+    if (!missing) report_problem(element, fmt::format("{} is missing", in_tag(element, attribute)), "three numbers");
     return missing.value_or(Triple{});
   }
   Triple values{};
@@ -79,13 +79,13 @@ Triple ElementValues::triple(const XMLElement& element, const char* attribute, s
   for (double& value : values) {
     const std::optional<double> one = take_number(rest);
     if (!one) {
-      complain(element, fmt::format("{} is '{}'", in_tag(element, attribute), text), "three finite numbers");
+      report_problem(element, fmt::format("{} is '{}'", in_tag(element, attribute), text), "three finite numbers");
       return {};
     }
     value = *one;
   }
   if (!is_blank(rest)) {
-    complain(element, fmt::format("{} is '{}'", in_tag(element, attribute), text), "three finite numbers");
+    report_problem(element, fmt::format("{} is '{}'", in_tag(element, attribute), text), "three finite numbers");
   }
   return values;
 }

@@ -17,7 +17,7 @@ namespace slew::urdf {
 
 using tinyxml2::XMLElement;
 
-// kg, kg m2: less than a grain of dust has; exporters print -5e-20 where they mean 0.
+// kg, kg m2: below a grain of dust; exporters print -5e-20 for 0.
 inline constexpr double kRoundOff = 1e-15;
 
 class ElementValues {
@@ -25,19 +25,19 @@ class ElementValues {
   ElementValues(int source, scene::Report& report, std::vector<Note>& notes)
       : source_(source), report_(report), notes_(notes) {}
 
-  // "link 'arm'": stands before what is wrong.
+  // "link 'arm'": prefix of a problem.
   void set_owner(std::string owner) { owner_ = std::move(owner); }
-  void complain(const XMLElement& element, std::string what, std::string expected = "") {
+  void report_problem(const XMLElement& element, std::string what, std::string expected = "") {
     report_.add({source_, element.GetLineNum(), 0}, owner_, {std::move(what), std::move(expected), ""});
   }
   void note(const XMLElement& element, const std::string& text) {
     notes_.push_back({element.GetLineNum(), owner_.empty() ? text : owner_ + ": " + text});
   }
 
-  // Text of an attribute; a complaint when it is missing or empty.
+  // Text of an attribute; reports a problem if it is missing or empty.
   [[nodiscard]] std::optional<std::string> name(const XMLElement& element, const char* attribute);
 
-  // A finite decimal number; `missing` for an attribute that is not there, a complaint when that is nothing.
+  // A finite decimal number; `missing` for an attribute that is not there, reports a problem if that is empty.
   [[nodiscard]] double number(const XMLElement& element, const char* attribute, std::optional<double> missing);
   [[nodiscard]] double number_not_negative(const XMLElement& element, const char* attribute,
                                            std::optional<double> missing);

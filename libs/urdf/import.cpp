@@ -26,7 +26,7 @@ namespace {
 using scene::ElementRef;
 using scene::ElementTable;
 
-// one line, whatever the file had in its names
+// one line, for any content of the file's names
 std::string one_line(std::string text) {
   for (char& c : text) {
     if (c == '\n' || c == '\r' || c == '\t') c = ' ';
@@ -64,8 +64,8 @@ void write_element(std::string& text, const ElementRef& element, const Conversio
   const auto defaults = defaults_of(element);
   for (const Field& field : element.fields) {
     const std::string value = scene::value_text(field, element.def);
-    const bool is_said = field.presence == Presence::required || value != defaults.at(field.key);
-    if (!value.empty() && is_said) text += fmt::format("    {}: {}\n", field.key, value);
+    const bool is_written = field.presence == Presence::required || value != defaults.at(field.key);
+    if (!value.empty() && is_written) text += fmt::format("    {}: {}\n", field.key, value);
   }
 }
 
@@ -77,7 +77,7 @@ std::string header(const std::string& file, const Conversion& conversion) {
     for (const Note& note : notes) text += fmt::format("# {:>5}  {}\n", note.line, one_line(note.text));
   };
   list("Changed on request", conversion.changes);
-  list("What the file says otherwise or besides", conversion.notes);
+  list("Further contents of the file", conversion.notes);
   return text;
 }
 
@@ -101,7 +101,7 @@ std::string scene_text(const std::string& file, const std::string& name, const C
   return text;
 }
 
-// With the triangles of its meshes in it, as a session publishes it.
+// The scene with the triangles of its meshes, as a session publishes it.
 std::string text_without_files(const std::string& file, const std::string& name, Conversion conversion) {
   for (multibody::ShapeDef& shape : conversion.mechanics.shapes) {
     const auto mesh = conversion.meshes.find(shape.name);
@@ -110,7 +110,7 @@ std::string text_without_files(const std::string& file, const std::string& name,
   return scene_text(file, name, conversion);
 }
 
-// The scene is read as a run would; what is wrong with it is told at the line of the URDF.
+// Reads the scene as a run does; reports its problems at the lines of the URDF.
 void check(const std::string& text, const Conversion& conversion, int source, scene::Report& report) {
   try {
     (void)scene::load_text(text, "scene");

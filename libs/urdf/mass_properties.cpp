@@ -42,7 +42,7 @@ void put_tensor(const Mat3& I, Inertial& inertial) {
   inertial.products = {I(0, 1), I(0, 2), I(1, 2)};
 }
 
-// direction of the largest moment: what (I - p1)(I - p2) leaves of any vector
+// direction of the largest moment: (I - p1)(I - p2) times any vector
 Vec3 axis_of_largest(const Mat3& I, const Principal& p) {
   const Mat3 left = (I - Mat3::diagonal(p.p1, p.p1, p.p1)) * (I - Mat3::diagonal(p.p2, p.p2, p.p2));
   Vec3 longest = left.c[0];
@@ -64,8 +64,9 @@ void raise_small_moments(Inertial& inertial) {
 
 class Settling {
  public:
-  Settling(Robot& robot, RootMount mount, const Repairs& repairs, std::vector<Note>& changes, const Complain& complain)
-      : robot_(robot), mount_(mount), repairs_(repairs), changes_(changes), complain_(complain) {}
+  Settling(Robot& robot, RootMount mount, const Repairs& repairs, std::vector<Note>& changes,
+           const ReportProblem& report_problem)
+      : robot_(robot), mount_(mount), repairs_(repairs), changes_(changes), report_problem_(report_problem) {}
 
   void run() {
     const std::vector<Group> groups = find_groups(robot_);
@@ -144,15 +145,16 @@ class Settling {
     const std::string what = fault_of(inertial);
     const double share = principal_of(tensor_of(inertial)).missed_share();
     if (inertial.mass > 0 && share > repairs_.share && repairs_.is_repairing) {
-      complain_(inertial.line, fmt::format("link '{}': {}", part.name, what),
-                fmt::format("moments of a real body; --repair-share is {}", repairs_.share));
+      report_problem_(inertial.line, fmt::format("link '{}': {}", part.name, what),
+                      fmt::format("moments of a real body; --repair-share is {}", repairs_.share));
       return;
     }
     if (!repairs_.is_repairing) {
-      complain_(inertial.line, fmt::format("link '{}': {}", part.name, what),
-                inertial.mass > 0 ? "no principal moment below 0 or larger than the sum of the other two; --repair "
-                                    "raises those that are too small"
-                                  : "a mass; --repair leaves the inertia out");
+      report_problem_(inertial.line, fmt::format("link '{}': {}", part.name, what),
+                      inertial.mass > 0
+                          ? "no principal moment below 0 or larger than the sum of the other two; --repair "
+                            "raises those that are too small"
+                          : "a mass; --repair leaves the inertia out");
       return;
     }
     if (inertial.mass > 0) {
@@ -174,7 +176,7 @@ class Settling {
                        100 * p.missed_share());
   }
 
-  // groups without mass, from the tips inwards, so that what hangs on a fixed joint is known
+  // groups without mass, from the tips inwards, so that the load of a fixed joint is known
   void fix_what_weighs_nothing() {
     const std::vector<Group> groups = find_groups(robot_);
     std::vector<char> has_mass(robot_.links.size(), 0), carries_mass(robot_.links.size(), 0);
@@ -201,8 +203,8 @@ class Settling {
   }
 
   void refuse_root(int link) {
-    complain_(robot_.links[at(link)].line, fmt::format("link '{}' floats and has no mass", name(link)),
-              "an <inertial> in it or in a link fixed to it");
+    report_problem_(robot_.links[at(link)].line, fmt::format("link '{}' floats and has no mass", name(link)),
+                    "an <inertial> in it or in a link fixed to it");
   }
 
   void fix_massless(int link, bool carries_mass) {
@@ -218,8 +220,9 @@ class Settling {
           {joint.line, fmt::format("joint '{}' is fixed: '{}' moves and has no mass", joint.name, name(link))});
       fix(joint);
     } else {
-      complain_(robot_.links[at(link)].line, fmt::format("link '{}' moves and has no mass", name(link)),
-                fmt::format("an <inertial> in it or in a link fixed to it; --merge fixes its joint '{}'", joint.name));
+      report_problem_(
+          robot_.links[at(link)].line, fmt::format("link '{}' moves and has no mass", name(link)),
+          fmt::format("an <inertial> in it or in a link fixed to it; --merge fixes its joint '{}'", joint.name));
     }
   }
 
@@ -234,12 +237,12 @@ class Settling {
         changes_.push_back({joint.line, what + ": it is fixed"});
         fix(joint);
       } else if (carries_mass(joint.child)) {
-        complain_(joint.line, what, "an inertia about the axis; --merge fixes the joint");
+        report_problem_(joint.line, what, "an inertia about the axis; --merge fixes the joint");
       }
     }
   }
 
-  // links without mass have had their complaint
+  // links without mass are reported already
   [[nodiscard]] bool carries_mass(int link) const {
     return std::any_of(robot_.order.begin(), robot_.order.end(), [&](int other) {
       if (!robot_.links[at(other)].inertial) return false;
@@ -250,7 +253,7 @@ class Settling {
     });
   }
 
-  // where the joint that others follow is fixed, the first of them leads
+  // if the leader of others is fixed, the first of them leads
   void rebind_followers() {
     std::vector<std::pair<int, Mimic>> leaders(robot_.joints.size(), {-1, {}});
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
@@ -272,14 +275,14 @@ class Settling {
   RootMount mount_;
   const Repairs& repairs_;
   std::vector<Note>& changes_;
-  const Complain& complain_;
+  const ReportProblem& report_problem_;
 };
 
 }  // namespace
 
 void settle_mass_properties(Robot& robot, RootMount mount, const Repairs& repairs, std::vector<Note>& changes,
-                            const Complain& complain) {
-  Settling(robot, mount, repairs, changes, complain).run();
+                            const ReportProblem& report_problem) {
+  Settling(robot, mount, repairs, changes, report_problem).run();
 }
 
 }  // namespace slew::urdf

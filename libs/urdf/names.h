@@ -6,8 +6,8 @@
 
 namespace slew::urdf {
 
-// Gives every name once. Other scripts are transliterated, other characters that a scene does not take become _, what
-// is too long loses its middle, what is taken or reserved gets `suffix`, then a number.
+// Gives every name once. Other scripts are transliterated, characters not allowed in a scene become _, long names lose
+// their middle, used or reserved names get `suffix`, then a number.
 class SceneNames {
  public:
   SceneNames();

@@ -15,7 +15,7 @@ using math::Vec3;
 
 namespace {
 
-// share of what hangs on a joint below which its inertia about the axis is rounding
+// share of a joint's load below which its inertia about the axis is rounding
 constexpr double kNoInertia = 1e-12;
 
 Mat3 parallel_axes(double mass, Vec3 r) {
@@ -83,7 +83,7 @@ Pose inverse(const Pose& a) noexcept {
 }
 
 Triple without_rounding(const Triple& triple, double scale) noexcept {
-  // what rounding leaves of a zero when frames are turned
+  // rounding of a zero after a rotation of frames
   constexpr double kRounding = 1e-15;
   Triple clean = triple;
   for (double& value : clean) value = std::abs(value) <= kRounding * scale ? 0 : value;

@@ -1,4 +1,4 @@
-// Where the links of a robot go: which links become bodies, and where every link's frame lies in its body.
+// Placement of a robot's links: the links that become bodies, and every link's frame in its body.
 //
 // Links that fixed joints hold together move as one. A link with mass becomes a body; one without rides on a body of
 // its group, or on Ground when the group is the root's and the root is fixed.
@@ -27,7 +27,7 @@ struct Place {
 [[nodiscard]] Pose operator*(const Pose& a, const Pose& b) noexcept;  // C in A from B in A and C in B
 [[nodiscard]] Pose inverse(const Pose& a) noexcept;
 
-// Values of a pose as a scene writes them, without what rounding leaves of a zero.
+// Values of a pose for a scene, with rounded zeros as 0.
 [[nodiscard]] Triple without_rounding(const Triple& triple, double scale) noexcept;
 [[nodiscard]] Triple position_of(const Pose& pose) noexcept;     // m
 [[nodiscard]] Triple orientation_of(const Pose& pose) noexcept;  // rad, Euler z-x'-z''
@@ -45,22 +45,23 @@ struct Lump {
   math::Vec3 h;     // kg m
   math::Mat3 I;     // kg m2
 };
-void add_lump(Lump& lump, const Lump& other, const Pose& pose) noexcept;  // of another frame, whose pose is given
+void add_lump(Lump& lump, const Lump& other, const Pose& pose) noexcept;  // adds a lump of another frame with the given
+                                                                          // pose
 [[nodiscard]] Lump lump_of(const Inertial& inertial) noexcept;
 [[nodiscard]] math::Mat3 tensor_of(const Inertial& inertial) noexcept;  // about its centre, in its own axes
 [[nodiscard]] math::Mat3 central_inertia(const Lump& lump) noexcept;    // about the centre of mass
 
-// By link. Pre-condition: every group that moves has mass (mass_properties.h).
+// Placements by link. Pre-condition: every group that moves has mass (mass_properties.h).
 [[nodiscard]] std::vector<Place> find_places(const Robot& robot, RootMount mount);
 
 // Child's frame in the parent's at the start.
 [[nodiscard]] Pose start_pose(const Joint& joint) noexcept;
 
-// The joint stays where it starts.
+// True if the joint stays at its start.
 void fix(Joint& joint) noexcept;
 
-// What hangs on a joint resists: its inertia about the axis [kg m2], or its mass [kg] along it, at the start. What
-// floating joints leave free does not count. 0 where that is rounding only.
+// Load of a joint: its inertia about the axis [kg m2], or its mass [kg] along it, at the start. Links behind floating
+// joints do not count. 0 if the value is rounding only.
 [[nodiscard]] std::vector<double> resistance_of_joints(const Robot& robot);
 
 }  // namespace slew::urdf

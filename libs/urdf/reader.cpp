@@ -36,12 +36,12 @@ class Reader {
     const std::size_t problems = report_.size();
     read_root(root);
     if (report_.size() > problems) return std::nullopt;
-    const Complain complain = [&](int line, std::string what, std::string expected) {
+    const ReportProblem report_problem = [&](int line, std::string what, std::string expected) {
       report_.add({source_, line, 0}, "", {std::move(what), std::move(expected), ""});
     };
-    find_leaders(robot_, complain);
+    find_leaders(robot_, report_problem);
     if (report_.size() > problems) return std::nullopt;
-    find_tree(robot_, complain);
+    find_tree(robot_, report_problem);
     if (report_.size() > problems) return std::nullopt;
     return std::move(robot_);
   }
@@ -49,11 +49,12 @@ class Reader {
  private:
   void read_root(const XMLElement& root) {
     if (std::string_view(root.Name()) != "robot") {
-      values_.complain(root, fmt::format("the root element is <{}>", root.Name()), "<robot>, the root of a URDF file");
+      values_.report_problem(root, fmt::format("the root element is <{}>", root.Name()),
+                             "<robot>, the root of a URDF file");
       return;
     }
     read_robot_name(root);
-    // joints name links that may stand behind them
+    // joints may name later links
     for_each_child(root, [&](const XMLElement& child, std::string_view tag) {
       if (tag == "link") read_link(child);
     });
@@ -69,7 +70,7 @@ class Reader {
     });
     values_.set_owner("");
     note_once();
-    if (robot_.links.empty()) values_.complain(root, "the robot has no links", "at least one <link>");
+    if (robot_.links.empty()) values_.report_problem(root, "the robot has no links", "at least one <link>");
   }
 
   void read_robot_name(const XMLElement& root) {
@@ -88,8 +89,8 @@ class Reader {
   void note_element(const XMLElement& element) {
     const std::string_view tag = element.Name();
     if (tag.starts_with("xacro:")) {
-      values_.complain(element, fmt::format("<{}> is a macro", tag),
-                       "a file without macros: xacro robot.urdf.xacro > robot.urdf");
+      values_.report_problem(element, fmt::format("<{}> is a macro", tag),
+                             "a file without macros: xacro robot.urdf.xacro > robot.urdf");
       return;
     }
     const char* name = element.Attribute("name");
@@ -101,7 +102,7 @@ class Reader {
     if (material_line_ == 0 || element.GetLineNum() < material_line_) material_line_ = element.GetLineNum();
   }
 
-  // what every joint or link of most files has, in a line for all
+  // contents of most joints or links: one line for all
   void note_once() {
     if (material_line_ > 0) robot_.notes.push_back({material_line_, "materials and colours are not taken over"});
     if (bounds_line_ > 0) {
@@ -109,7 +110,7 @@ class Reader {
     }
   }
 
-  // A link's or joint's name; nothing after a complaint.
+  // A link's or joint's name; nothing after a reported problem.
   std::optional<std::string> name_of_element(const XMLElement& element, std::map<std::string, int>& taken) {
     values_.set_owner("");
     std::optional<std::string> name = values_.name(element, "name");
@@ -117,7 +118,8 @@ class Reader {
     values_.set_owner(fmt::format("{} '{}'", element.Name(), *name));
     const auto [first, is_new] = taken.emplace(*name, element.GetLineNum());
     if (!is_new) {
-      values_.complain(element, fmt::format("is there twice (first in line {})", first->second), "a name of its own");
+      values_.report_problem(element, fmt::format("is there twice (first in line {})", first->second),
+                             "a name of its own");
     }
     return name;
   }
@@ -131,7 +133,7 @@ class Reader {
     Link link{.name = *name, .inertial = std::nullopt, .geometries = {}, .line = element.GetLineNum()};
     for_each_child(element, [&](const XMLElement& child, std::string_view tag) {
       if (tag == "inertial") {
-        if (link.inertial) values_.complain(child, "has a second <inertial>", "one");
+        if (link.inertial) values_.report_problem(child, "has a second <inertial>", "one");
         link.inertial = read_inertial(child);
       } else if (tag == "visual" || tag == "collision") {
         read_shape(child, tag == "visual" ? Geometry::Use::visual : Geometry::Use::collision, link);
@@ -144,7 +146,7 @@ class Reader {
     robot_.links.push_back(std::move(link));
   }
 
-  // such a link is a frame
+  // a link without mass is a frame
   static bool is_nothing(const Inertial& inertial) {
     double largest = inertial.mass;
     for (const Triple& triple : {inertial.moments, inertial.products}) {
@@ -158,12 +160,13 @@ class Reader {
     const XMLElement* mass = element.FirstChildElement("mass");
     const XMLElement* tensor = element.FirstChildElement("inertia");
     if (mass == nullptr) {
-      values_.complain(element, "<inertial> has no <mass>", "<mass value=\"...\"/>");
+      values_.report_problem(element, "<inertial> has no <mass>", "<mass value=\"...\"/>");
     } else {
       inertial.mass = values_.number_not_negative(*mass, "value", std::nullopt);
     }
     if (tensor == nullptr) {
-      values_.complain(element, "<inertial> has no <inertia>", "<inertia ixx=... ixy=... .../>; 0 for a point mass");
+      values_.report_problem(element, "<inertial> has no <inertia>",
+                             "<inertia ixx=... ixy=... .../>; 0 for a point mass");
     } else {
       inertial.moments = {values_.moment(*tensor, "ixx"), values_.moment(*tensor, "iyy"),
                           values_.moment(*tensor, "izz")};
@@ -180,7 +183,8 @@ class Reader {
     const XMLElement* geometry = element.FirstChildElement("geometry");
     const XMLElement* kind = geometry == nullptr ? nullptr : geometry->FirstChildElement();
     if (kind == nullptr) {
-      values_.complain(element, fmt::format("<{}> has no geometry", element.Name()), "<geometry> with a shape in it");
+      values_.report_problem(element, fmt::format("<{}> has no geometry", element.Name()),
+                             "<geometry> with a shape in it");
       return;
     }
     const std::string_view tag = kind->Name();
@@ -199,7 +203,7 @@ class Reader {
       shape.file = values_.name(*kind, "filename").value_or("");
       shape.scale = values_.triple(*kind, "scale", Triple{1, 1, 1});
     } else {
-      values_.complain(*kind, fmt::format("<{}> is no shape", tag), "box, sphere, cylinder, capsule or mesh");
+      values_.report_problem(*kind, fmt::format("<{}> is no shape", tag), "box, sphere, cylinder, capsule or mesh");
       return;
     }
     if (report_.size() > problems) return;
@@ -210,7 +214,7 @@ class Reader {
     link.geometries.push_back(std::move(shape));
   }
 
-  // placeholders of other programs have a size of 0
+  // size 0: a placeholder of another program
   static bool has_extent(const Geometry& shape) {
     switch (shape.kind) {
       case Geometry::Kind::box:
@@ -238,7 +242,7 @@ class Reader {
     joint.parent = read_end(element, "parent");
     joint.child = read_end(element, "child");
     if (joint.parent >= 0 && joint.parent == joint.child) {
-      values_.complain(element, "parent and child are the same link", "two links");
+      values_.report_problem(element, "parent and child are the same link", "two links");
     }
     read_axis(element, joint);
     read_limit(element, joint);
@@ -272,22 +276,22 @@ class Reader {
     for (const auto& [word, kind] : kJointKinds) {
       if (*type == word) return kind;
     }
-    values_.complain(element, fmt::format("the type '{}' is unknown", *type), kKindList);
+    values_.report_problem(element, fmt::format("the type '{}' is unknown", *type), kKindList);
     return std::nullopt;
   }
 
-  // Index of the link that <parent> or <child> names; -1 after a complaint.
+  // Index of the link that <parent> or <child> names; -1 after a reported problem.
   int read_end(const XMLElement& element, const char* tag) {
     const XMLElement* end = element.FirstChildElement(tag);
     if (end == nullptr) {
-      values_.complain(element, fmt::format("has no <{}>", tag), fmt::format("<{} link=\"...\"/>", tag));
+      values_.report_problem(element, fmt::format("has no <{}>", tag), fmt::format("<{} link=\"...\"/>", tag));
       return -1;
     }
     const auto link = values_.name(*end, "link");
     if (!link) return -1;
     const auto found = link_index_.find(*link);
     if (found != link_index_.end()) return found->second;
-    values_.complain(*end, fmt::format("there is no link '{}'", *link), "the name of a link");
+    values_.report_problem(*end, fmt::format("there is no link '{}'", *link), "the name of a link");
     return -1;
   }
 
@@ -296,7 +300,7 @@ class Reader {
     if (axis == nullptr || !has_axis(joint)) return;
     joint.axis = values_.triple(*axis, "xyz", Triple{1, 0, 0});
     const double size = std::hypot(joint.axis[0], joint.axis[1], joint.axis[2]);
-    if (size == 0) values_.complain(*axis, "the axis is zero", "a direction");
+    if (size == 0) values_.report_problem(*axis, "the axis is zero", "a direction");
     if (size == 0 || size == 1) return;
     for (double& component : joint.axis) component /= size;
   }

@@ -1,4 +1,4 @@
-// Reads a URDF file: strictly where a number or a name matters, with a note on everything that is left out.
+// Reads a URDF file: strict for numbers and names, with a note on everything omitted.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,8 @@
 
 namespace slew::urdf {
 
-// Problems go to the report with their line: XML that is not well formed, what xacro has not expanded, names that are
-// missing, doubled or unknown, numbers that are none, unknown joint types, what is no tree.
-// Nothing is returned then.
+// Problems go to the report with their line: malformed XML, unexpanded xacro, missing, duplicate or unknown names,
+// invalid numbers, unknown joint types, links that form no tree. The result is then empty.
 [[nodiscard]] std::optional<Robot> read_robot(const scene::SourceText& source, scene::Report& report);
 
 }  // namespace slew::urdf

@@ -1,4 +1,4 @@
-// A robot as its URDF file says it, before anything is made of it.
+// A robot as given by its URDF file, before conversion.
 //
 // Frames of URDF: a link's frame is that of the joint that carries it. A joint's origin is the pose of the child's
 // frame in the parent's at the coordinate 0, xyz [m] and rpy [rad] with R = Rz(yaw) Ry(pitch) Rx(roll); its axis is in
@@ -43,7 +43,7 @@ struct Geometry {
 
 struct Link {
   std::string name;
-  std::optional<Inertial> inertial;  // none also for a mass and an inertia of 0
+  std::optional<Inertial> inertial;  // none also if mass and inertia are 0
   std::vector<Geometry> geometries;
   int line = 0;
 };
@@ -52,9 +52,9 @@ enum class JointKind { revolute, continuous, prismatic, fixed, floating, planar 
 
 // The coordinate follows that of another joint: q = multiplier q_other + offset.
 struct Mimic {
-  std::string joint;      // its name
-  int leader = -1;        // joint; after find_starts() one that moves by itself
-  double multiplier = 1;  // of URDF's units: rad or m over rad or m
+  std::string joint;      // name of the leading joint
+  int leader = -1;        // leading joint; after find_starts() an independent one
+  double multiplier = 1;  // in URDF's units: rad or m over rad or m
   double offset = 0;      // rad or m
   int line = 0;
 };
@@ -64,7 +64,7 @@ struct Joint {
   JointKind kind = JointKind::fixed;
   int parent = 0, child = 0;  // links
   Origin origin;
-  Triple axis{1, 0, 0};  // unit, child's frame; of a planar joint the normal
+  Triple axis{1, 0, 0};  // unit, child's frame; the normal of a planar joint
   bool is_limited = false;
   double lower = 0;  // rad or m
   double upper = 0;
@@ -73,14 +73,14 @@ struct Joint {
   std::optional<Mimic> mimic{};
   int line = 0;
   // filled by find_starts()
-  double start = 0;  // rad or m, coordinate at the start, of an angle within half a turn
-  double turns = 0;  // rad, a multiple of 2 pi that the scene's coordinate is less than URDF's
+  double start = 0;  // rad or m, coordinate at the start; angles within half a turn
+  double turns = 0;  // rad, URDF's coordinate less the scene's, a multiple of 2 pi
 
   [[nodiscard]] bool is_angle() const noexcept { return kind == JointKind::revolute || kind == JointKind::continuous; }
   [[nodiscard]] bool has_coordinate() const noexcept { return is_angle() || kind == JointKind::prismatic; }
 };
 
-// Something of the file that the scene does not hold.
+// A content of the file that the scene does not hold.
 struct Note {
   int line = 0;  // 0: the file as a whole
   std::string text;

@@ -12,7 +12,7 @@
 namespace slew::urdf {
 namespace {
 
-// rad, how near to half a turn rounding may take a start to the other side
+// rad, distance from half a turn within which rounding may change the side of a start
 constexpr double kHalfTurn = 1e-9;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
@@ -22,7 +22,7 @@ struct Follower {
   double a = 1, b = 0;
 };
 
-// through chains of <mimic> to a joint that moves by itself
+// follows chains of <mimic> to an independent joint
 Follower follower_of(const Robot& robot, int joint) {
   Follower follower{.leader = joint};
   while (const auto& mimic = robot.joints[at(follower.leader)].mimic) {
@@ -59,7 +59,7 @@ class Starts {
   }
 
   void find() {
-    // those that move by themselves are not asked to give way
+    // independent joints are not changed
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
       if (!robot_.joints[j].mimic) allowed_[j] = allowed(robot_.joints[j], followers_[j]);
     }

@@ -8,7 +8,7 @@
 namespace slew::urdf {
 namespace {
 
-// letters of a block in the order of Unicode, a space between them; - is no letter
+// letters of a block in the order of Unicode, separated by spaces; - is no letter
 struct Block {
   std::uint32_t first, last;
   std::string_view letters;
@@ -69,7 +69,7 @@ std::string romanised(std::uint32_t code) {
   return fmt::format("u{:04X}", code);
 }
 
-// Takes one character away; nothing when the bytes are no UTF-8: one byte is gone then.
+// Removes and returns one character; nothing if the bytes are no UTF-8, then one byte is removed.
 std::optional<std::uint32_t> take_character(std::string_view& text) {
   const auto first = static_cast<unsigned char>(text.front());
   text.remove_prefix(1);

@@ -9,16 +9,16 @@
 namespace slew::urdf {
 namespace {
 
-void find_parents(Robot& robot, const Complain& complain) {
+void find_parents(Robot& robot, const ReportProblem& report_problem) {
   robot.parent_joint.assign(robot.links.size(), -1);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const Joint& joint = robot.joints[j];
     int& parent = robot.parent_joint[at(joint.child)];
     if (parent >= 0) {
-      complain(joint.line,
-               fmt::format("link '{}' is the child of joint '{}' already", robot.links[at(joint.child)].name,
-                           robot.joints[at(parent)].name),
-               "a tree: loops are closed in the scene afterwards");
+      report_problem(joint.line,
+                     fmt::format("link '{}' is the child of joint '{}' already", robot.links[at(joint.child)].name,
+                                 robot.joints[at(parent)].name),
+                     "a tree: loops are closed in the scene afterwards");
     }
     parent = static_cast<int>(j);
   }
@@ -36,11 +36,11 @@ void find_order(Robot& robot) {
 
 }  // namespace
 
-void find_tree(Robot& robot, const Complain& complain) {
-  int complaints = 0;
-  const Complain counted = [&](int line, std::string what, std::string expected) {
-    ++complaints;
-    complain(line, std::move(what), std::move(expected));
+void find_tree(Robot& robot, const ReportProblem& report_problem) {
+  int problem_count = 0;
+  const ReportProblem counted = [&](int line, std::string what, std::string expected) {
+    ++problem_count;
+    report_problem(line, std::move(what), std::move(expected));
   };
   find_parents(robot, counted);
   robot.root = -1;
@@ -55,8 +55,8 @@ void find_tree(Robot& robot, const Complain& complain) {
               "one root");
     }
   }
-  if (robot.root < 0) counted(robot.links[0].line, "every link has a parent", "one link that is nobody's child");
-  if (complaints > 0) return;
+  if (robot.root < 0) counted(robot.links[0].line, "every link has a parent", "one link without a parent");
+  if (problem_count > 0) return;
   find_order(robot);
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     if (std::find(robot.order.begin(), robot.order.end(), static_cast<int>(i)) != robot.order.end()) continue;
@@ -78,16 +78,16 @@ bool follows_itself(const Robot& robot, const Joint& joint) {
 
 }  // namespace
 
-void find_leaders(Robot& robot, const Complain& complain) {
+void find_leaders(Robot& robot, const ReportProblem& report_problem) {
   for (Joint& joint : robot.joints) {
     if (!joint.mimic) continue;
     Mimic& mimic = *joint.mimic;
     const auto found = std::find_if(robot.joints.begin(), robot.joints.end(),
                                     [&mimic](const Joint& other) { return other.name == mimic.joint; });
     if (found == robot.joints.end()) {
-      complain(mimic.line,
-               fmt::format("joint '{}': follows the joint '{}', which is not there", joint.name, mimic.joint),
-               "the name of a joint");
+      report_problem(mimic.line,
+                     fmt::format("joint '{}': follows the joint '{}', which is not there", joint.name, mimic.joint),
+                     "the name of a joint");
     } else if (!found->has_coordinate()) {
       robot.notes.push_back(
           {mimic.line, fmt::format("joint '{}': <mimic> of '{}', which has no coordinate, is not taken "
@@ -100,8 +100,8 @@ void find_leaders(Robot& robot, const Complain& complain) {
   }
   for (const Joint& joint : robot.joints) {
     if (!follows_itself(robot, joint)) continue;
-    complain(joint.mimic->line, fmt::format("joint '{}': follows itself", joint.name),
-             "a joint that moves by itself at the end of every chain of <mimic>");
+    report_problem(joint.mimic->line, fmt::format("joint '{}': follows itself", joint.name),
+                   "a joint that moves by itself at the end of every chain of <mimic>");
   }
 }
 

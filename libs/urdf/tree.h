@@ -8,15 +8,14 @@
 
 namespace slew::urdf {
 
-// Takes a line, what is wrong, and what is expected.
-using Complain = std::function<void(int line, std::string what, std::string expected)>;
+// Receives a line, the problem, and the expected value.
+using ReportProblem = std::function<void(int line, std::string what, std::string expected)>;
 
-// Fills root, parent_joint and order. Complains about a link with two parents, about none or several roots, and about
-// links in a circle.
-void find_tree(Robot& robot, const Complain& complain);
+// Fills root, parent_joint and order. Reports a link with two parents, no root or several, and links in a circle.
+void find_tree(Robot& robot, const ReportProblem& report_problem);
 
-// Fills the leader of every <mimic>. Complains about one that is not there and about joints that follow themselves; a
-// leader without a coordinate is noted, and its follower moves by itself.
-void find_leaders(Robot& robot, const Complain& complain);
+// Fills the leader of every <mimic>. Reports a missing leader and joints that follow themselves. A leader without a
+// coordinate gives a note, and its follower becomes independent.
+void find_leaders(Robot& robot, const ReportProblem& report_problem);
 
 }  // namespace slew::urdf

@@ -78,8 +78,8 @@ std::string ending_of(const std::filesystem::path& path) {
   return ending;
 }
 
-// Axes and unit are what the caller says, not what assimp makes of them: it turns .3ds from z up to y up, and scales
-// the root of .dae by the unit in the file, and turns that of .fbx by its axes; these roots have no other
+// Undoes assimp's conversion of axes and unit; the caller states both. assimp turns .3ds from z up to y up, scales the
+// root of .dae by the unit in the file, and turns the root of .fbx by its axes; these roots have no other
 // transformation. No option prevents it.
 aiMatrix4x4 undoing(const std::string& ending, const aiMatrix4x4& root) {
   if (ending == ".3ds") return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
@@ -88,7 +88,7 @@ aiMatrix4x4 undoing(const std::string& ending, const aiMatrix4x4& root) {
   return undone;
 }
 
-// The file alone, none that it names: a library of materials may lie anywhere and be no file.
+// Opens this file alone and none that it refers to: a material library may be anywhere and no regular file.
 class OneFile final : public Assimp::DefaultIOSystem {
  public:
   explicit OneFile(std::string name) : name_(std::move(name)) {}

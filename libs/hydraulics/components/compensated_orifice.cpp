@@ -32,7 +32,7 @@ constexpr Field kCompensatedOrificeFields[] = {
         "opening", {.range = kFraction, .change = Change::live, .doc = "opened fraction of the area"}),
 };
 
-constexpr double kSwitchWidth = 2e4;  // Pa, smoothing where the compensator opens fully and where it holds the load
+constexpr double kSwitchWidth = 2e4;  // Pa, smoothing at the full opening of the compensator and at its load hold
 
 class CompensatedOrifice final : public HydraulicComponent {
  public:

@@ -46,7 +46,7 @@ Cylinder::Cylinder(std::unique_ptr<ComponentDef> def, const CylinderParameters& 
   actuator_ = builder.add_actuator(name(), actuator);
   x_ = builder.position(actuator_);
   v_ = builder.speed(actuator_);
-  const double span = common.free_way();
+  const double span = common.piston_travel();
   const WallLaw wall{.factor = 0, .lowest = common.bulk_modulus, .highest = common.bulk_modulus};
   builder.add_content({.volume_index = a_,
                        .volume = common.dead_volume,

@@ -1,4 +1,4 @@
-// Parameters that every cylinder has, whatever it drives.
+// Parameters common to all cylinders, and the parameters for both sides of the power port.
 #pragma once
 
 #include "hydraulics/component_def.h"
@@ -27,8 +27,8 @@ struct CylinderParameters {
   double dead_volume = 0;             // m3 in each chamber
   PortCoupling coupling = PortCoupling::session;
 
-  // L_chamber - L_piston, the piston's free way [m].
-  [[nodiscard]] double free_way() const noexcept { return chamber_length - piston_length; }
+  // L_chamber - L_piston, the piston's free travel [m].
+  [[nodiscard]] double piston_travel() const noexcept { return chamber_length - piston_length; }
 };
 
 }  // namespace slew::hydraulics

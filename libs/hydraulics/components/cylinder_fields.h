@@ -18,7 +18,7 @@ constexpr Field cylinder_field(std::string_view key, const FieldOptions& options
   return field<&Def::common, Member>(key, options);
 }
 
-// What it is connected to, and its piston.
+// Connections and piston.
 template <typename Def>
 constexpr auto cylinder_piston_fields() {
   using C = CylinderParameters;
@@ -89,7 +89,7 @@ constexpr auto cylinder_stroke_fields() {
       cylinder_field<Def, &C::coupling>(
           "coupling", {.change = Change::live,
                        .choices = kPortCouplings,
-                       .doc = "coupling level of this cylinder's port; session: as session.coupling says"}),
+                       .doc = "coupling level of this cylinder's port; session: the level of session.coupling"}),
   };
 }
 

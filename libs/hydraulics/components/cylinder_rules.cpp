@@ -9,12 +9,12 @@ namespace {
 
 constexpr double kStopPressure = 300e5;  // Pa, load pressure that may press the piston into its stop
 
-// Smallest volume of the chamber when the piston is `way` from closing it and in its stop.
-void check_chamber(const std::string& name, const CylinderParameters& c, char port, double area, double way,
+// Checks the smallest volume of the chamber, with the piston in its stop and `length` of the chamber left.
+void check_chamber(const std::string& name, const CylinderParameters& c, char port, double area, double length,
                    const char* key, Problems& errors) {
   const double piston_area = 0.25 * std::numbers::pi * c.piston_diameter * c.piston_diameter;
   const double compression = c.end_stiffness > 0 ? kStopPressure * piston_area / c.end_stiffness : 0;
-  const double volume = area * (way - compression) + c.dead_volume;
+  const double volume = area * (length - compression) + c.dead_volume;
   if (volume > 0) return;
   errors.push_back({name + "." + key,
                     fmt::format("the volume of chamber {} is not positive over the stroke: {:.4g} l with the stop "
@@ -43,7 +43,7 @@ void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const
     errors.push_back({name + ".port_b", "both ports are connected to '" + c.port_a + "'", "two volumes", ""});
   }
   check_friction_curve(circuit, name, c, errors);
-  if (!(c.free_way() > 0)) {
+  if (!(c.piston_travel() > 0)) {
     errors.push_back(
         {name + ".chamber_length", "the chamber is not longer than the piston", "more than piston_length", ""});
     return;
@@ -58,7 +58,7 @@ void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const
   const double D = c.piston_diameter, d = rod_diameter;
   check_chamber(name, c, 'A', 0.25 * std::numbers::pi * D * D, c.minimum_stroke, "minimum_stroke", errors);
   if (d < D) {
-    check_chamber(name, c, 'B', 0.25 * std::numbers::pi * (D * D - d * d), c.free_way() - c.maximum_stroke,
+    check_chamber(name, c, 'B', 0.25 * std::numbers::pi * (D * D - d * d), c.piston_travel() - c.maximum_stroke,
                   "maximum_stroke", errors);
   }
 }

@@ -8,8 +8,8 @@
 
 namespace slew::hydraulics {
 
-// Strokes in order, chambers positive over the stroke and the stops' compression, ports apart, a friction curve that
-// can only brake. name: of the cylinder; rod_diameter: 0 for a rod on neither side [m].
+// Checks that strokes are in order, chambers are positive over the stroke and the stops' compression, ports differ, and
+// the friction curve only brakes. name: the cylinder's; rod_diameter: 0 without a rod [m].
 void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& cylinder,
                     double rod_diameter, Problems& errors);
 

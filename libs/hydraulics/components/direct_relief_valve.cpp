@@ -44,7 +44,7 @@ constexpr Field kDirectReliefValveFields[] = {
 };
 
 constexpr double kCrackWidth =
-    1e-6;  // of the crack force (lift: of the maximum lift), smoothing of the seat and the stop
+    1e-6;  // share of the crack force (lift: of the maximum lift), smoothing of the seat and the stop
 constexpr double kOpenDirect = 1e-6;  // m, lift above which the valve counts as open
 
 class DirectReliefValve final : public HydraulicComponent {
@@ -70,7 +70,7 @@ class DirectReliefValve final : public HydraulicComponent {
     jacobian.move(p_1_, p_2_, p_2_, -slope);
   }
   void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept override {
-    // at the seat the slope jumps: state the open side's
+    // at the seat the slope jumps: use the open side's
     const double p = view[p_1_] - view[p_2_];
     if (std::fabs(p - def_.crack_pressure) > transition_) return;
     const double open = flow(def_.crack_pressure + transition_).slope, now = flow(p).slope;

@@ -107,7 +107,7 @@ class FourWayValve final : public HydraulicComponent {
   StateIndex p_, a_, b_, t_;
   int control_;
   double transition_, root_2_rho_;
-  double conductance_ = 0;  // m3/s/sqrt(Pa), of one edge fully open
+  double conductance_ = 0;  // m3/s/sqrt(Pa), one edge fully open
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Four-way valve with complementary edges: what one pair of edges opens, the other pair closes.
+// Four-way valve with complementary edges: as one pair of edges opens, the other pair closes.
 //
 //   u = clip(neutral_opening + opening_gain signal, 0, 1)
 //   Q_PA = C_d A_0 u       sqrt(2/rho) root(p_P - p_A),   Q_BT = C_d A_0 u       sqrt(2/rho) root(p_B - p_T)
@@ -16,7 +16,7 @@ namespace slew::hydraulics {
 
 struct FourWayValveDef final : ComponentDef {
   std::string port_p, port_a, port_b, port_t;  // volumes
-  double edge_area = 0;                        // A_0 [m2], of one edge fully open
+  double edge_area = 0;                        // A_0 [m2], one edge fully open
   double discharge_coefficient = 0.67;
   double neutral_opening = 0.5;  // u at signal 0
   double opening_gain = 0.5;     // du/d signal

@@ -29,7 +29,7 @@ constexpr Field kHoseFields[] = {
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "upper bound of the wall's law"}),
 };
 
-constexpr double kHighestPressure = 1000e5;  // Pa, of what a hose is made for and beyond
+constexpr double kHighestPressure = 1000e5;  // Pa, beyond the design pressure of any hose
 
 class Hose final : public HydraulicComponent {
  public:
@@ -67,7 +67,7 @@ void validate_hose(const HydraulicsDef& circuit, const ComponentDef& component, 
                         "a value above minimum_bulk_modulus / sqrt(pressure), and two different bounds", ""});
     return;
   }
-  // the law is at its cap already at the lowest pressure there is
+  // the law is at its cap even at the lowest pressure
   if (def.bulk_modulus * std::sqrt(circuit.pressure_floor) >= def.maximum_bulk_modulus) {
     warnings.push_back({def.name + ".bulk_modulus",
                         "the wall's modulus is at its upper bound at every pressure, so this value has no effect",

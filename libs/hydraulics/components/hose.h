@@ -4,7 +4,7 @@
 //   B = min(B_max, max(B_e sqrt(p), B_min))               modulus of the wall; p in Pa absolute
 //
 // Source: the flexible-body tutorial thesis (Saimaa UAS 2017), table 2. With its B_e = 7e9 the law is at its cap at any
-// pressure: a warning at load says so. Not covered: friction, inertia and wave travel in the line.
+// pressure: loading gives a warning. Not covered: friction, inertia and wave travel in the line.
 #pragma once
 
 #include "hydraulics/component_def.h"

@@ -6,16 +6,16 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr double kShockClipWidth = 0.01;  // of a shock valve's opening, smoothing of its limits
+constexpr double kShockClipWidth = 0.01;  // share of a shock valve's opening, smoothing of its limits
 constexpr double kCheckWidth = 1e4;       // Pa over which an anti-cavitation valve lifts off
 
 }  // namespace
 
 SupplyFlow metered(const L90Side& side, double opening, double drop, double load) noexcept {
-  // (2) what the compensator holds; falls to zero as the load passes the LS limit by the compensator's setting
+  // (2) the drop held by the compensator; falls to zero when the load exceeds the LS limit by the compensator's setting
   const ValueSlope over = ramp(load - side.maximum_ls, kLsWidth);
   const ValueSlope held = ramp(side.compensator_pressure - over.value, kLsWidth);
-  // (3) what is left of the drop when the compensator is fully open
+  // (3) the remaining drop with the compensator fully open
   const double K = opening * side.K_supply;
   const double share = side.K_comp_2 / (side.K_comp_2 + K * K);
   const ValueSlope lock = ramp(drop, side.opening_rise);

@@ -120,10 +120,10 @@ constexpr Field kL90lsValveFields[] = {
                                                   .doc = "limit of the load-sensing pressure of port B, above tank"}),
 };
 
-constexpr double kOverlapWidth = 1e-3;  // of the opening, smoothing where the spool's edge uncovers the port
+constexpr double kOverlapWidth = 1e-3;  // share of the opening, smoothing where the spool's edge uncovers the port
 constexpr double kLsOpening = 0.02;     // opening at which the load-sensing port is fully connected
-constexpr double kSwitchMargin = 3e4;   // Pa around a switch within which its steeper side is stated to the partner
-constexpr double kTimeConstants = 3;    // in a step response: 95 % of the way
+constexpr double kSwitchMargin = 3e4;   // Pa around a switch, range in which the partner receives its steeper side
+constexpr double kTimeConstants = 3;    // in a step response, to 95 % of the change
 
 enum Side { kA, kB, kSides };
 
@@ -217,7 +217,7 @@ class L90lsValve final : public HydraulicComponent {
     const Openings x = openings(view);
     for (int s = kA; s < kSides; ++s) {
       double rise = steeper_return_slope(law_[s], view[port_[s]] - view[t_], kSwitchMargin);
-      // just before the lock-hold opens: the slope behind it
+      // just before the lock-hold opens: use the slope after opening
       const double drop = view[p_] - view[port_[s]];
       if (x.supply[s].value > 0 && std::fabs(drop) <= kSwitchMargin) {
         const double load = view[port_[s]] - view[t_];

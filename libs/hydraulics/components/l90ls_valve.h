@@ -16,8 +16,8 @@
 // Load sensing: p_LS = w(x_A) min(p_A, p_LSmax,A) + w(x_B) min(p_B, p_LSmax,B); w rises from 0 to 1 over the first
 // per cents of opening, so the line is bled to tank when the spool is centred.                                    (7)
 //
-// Source: the flexible-body tutorial thesis (Saimaa UAS 2017), table 15, and fluid-power practice for what it leaves
-// open. Not covered: flow forces, spool mass, back pressure in the pilot, mass of the compensator.
+// Source: the flexible-body tutorial thesis (Saimaa UAS 2017), table 15, and fluid-power practice where the table is
+// incomplete. Not covered: flow forces, spool mass, back pressure in the pilot, mass of the compensator.
 #pragma once
 
 #include "hydraulics/component_def.h"

@@ -59,7 +59,7 @@ constexpr Field kLsPumpFields[] = {
 };
 
 constexpr double kPumpSwitchWidth = 2e4;  // Pa, smoothing between stand-by and load sensing, and of the LS limit
-constexpr double kSwashClipWidth = 0.01;  // of the swash, smoothing of its limits
+constexpr double kSwashClipWidth = 0.01;  // share of the swash, smoothing of its limits
 
 class LsPump final : public HydraulicComponent {
  public:
@@ -118,7 +118,7 @@ class LsPump final : public HydraulicComponent {
   }
 
  private:
-  // outlet pressure that the controller aims at, above tank; slope with respect to the LS pressure
+  // set pressure of the controller at the outlet, above tank; slope with respect to the LS pressure
   [[nodiscard]] ValueSlope set_point(const CircuitView& view) const noexcept {
     if (ls_ < 0) return {def_.standby_pressure, 0};
     const ValueSlope limited = smooth_min(view.ls[ls_], def_.maximum_ls_pressure, kPumpSwitchWidth);

@@ -40,9 +40,9 @@ constexpr Field kReliefValveFields[] = {
         {.dimension = Dimension::time, .range = kPositive, .doc = "three time constants of the opening"}),
 };
 
-constexpr double kOpeningClipWidth = 0.02;  // of the opening, smoothing of its limits
+constexpr double kOpeningClipWidth = 0.02;  // share of the opening, smoothing of its limits
 constexpr double kOpenPilot = 1e-3;         // opening above which the valve counts as open
-constexpr double kPilotTimeConstants = 3;   // in a step response: 95 % of the way
+constexpr double kPilotTimeConstants = 3;   // in a step response, to 95 % of the change
 
 class ReliefValve final : public HydraulicComponent {
  public:

@@ -74,7 +74,7 @@ Conductance conductance(const LaminarRestrictionDef& def, const OilNumbers& oil)
   return {.G = std::numbers::pi * d_2 * d_2 / (128 * oil.density * oil.viscosity * def.length)};
 }
 
-// The three differ only in where their conductance comes from.
+// The three types differ only in the source of their conductance.
 template <typename Def>
 class Restriction final : public HydraulicComponent {
  public:

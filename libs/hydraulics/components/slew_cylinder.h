@@ -14,7 +14,7 @@
 namespace slew::hydraulics {
 
 struct SlewCylinderDef final : ComponentDef {
-  CylinderParameters common;  // force: rotational; p_A pushes +phi; piston length: of the double piston
+  CylinderParameters common;  // force: rotational; p_A pushes +phi; piston length: that of the double piston
   double pinion_radius = 0;   // m
   double stroke_offset = 0;   // m, piston position at phi = 0
 

@@ -19,19 +19,19 @@ using math::Vec3;
 
 // pivot below which a row is taken as dependent: axes that should be parallel may be off by its root
 constexpr double kDependentAtStart = 1e-8;
-// A row that the tree holds by itself moves by rounding alone, and cannot be judged by its own mobility. Its pivot is
-// compared with this share of the mobility of the mechanism as one body as well: with kDependentAtStart 1e-12, the
-// square of what six digits in a scene leave open.
+// A row that the tree holds by itself moves by rounding alone, so its own mobility is no scale. Its pivot is also
+// compared with this share of the mobility of the mechanism as one body: with kDependentAtStart 1e-12, the square of
+// the rounding of six digits in a scene.
 constexpr double kVanishing = 1e-4;
 constexpr int kMostAssemblyIterations = 100;
 constexpr int kMostAssemblyHalvings = 20;
-constexpr double kNearTurn = 0.05;  // rad, of the positions nearby
-constexpr double kSlide = 0.02;     // of the mechanism's size
-// speeds that do not fit their loop by more than this are reported
+constexpr double kNearTurn = 0.05;  // rad, distance of the nearby positions
+constexpr double kSlide = 0.02;     // share of the mechanism's size
+// violation of a loop by given speeds above which it is reported
 constexpr double kAssembledSpeed = 1e-6;
 
-// What a unit of a mode turns a node by, or moves it by of the body's length, at most. A slender body's mode of torsion
-// turns its tip by hundreds of radians a unit.
+// Largest rotation of a node per unit of a mode, or displacement over the body's length. A slender body's mode of
+// torsion turns its tip by hundreds of radians per unit.
 double largest_turn(const FlexiblePart& part, std::size_t mode) {
   double largest = 0;
   for (const ModalNode& node : part.source->nodes) {
@@ -40,7 +40,7 @@ double largest_turn(const FlexiblePart& part, std::size_t mode) {
   return largest > 0 ? largest : 1;
 }
 
-// Works on the model's rows as they are; made anew when they change.
+// Works on the model's present rows; rebuilt when they change.
 class Assembler {
  public:
   explicit Assembler(const Model& model) : model_(model), ws_(model), state_(start_state(model)) {}
@@ -75,7 +75,7 @@ class Assembler {
     return is_dependent;
   }
 
-  // a position nearby; seed: which one
+  // a nearby position, selected by seed
   void move_away(std::uint64_t seed) {
     renew(state_);
     double size = 0;
@@ -168,7 +168,7 @@ class Assembler {
       solve_backward(model_, ws_, all_links, tau, {&residual[first], speeds}, {&rate[first], speeds});
     };
     for (std::size_t k = 0; k < given.size(); ++k) hold(given[k], cuts + k);
-    // the last rows: where rigid motion alone cannot close the loops, modal speeds give way
+    // the last rows: if rigid motion alone cannot close the loops, modal speeds change
     for (std::size_t k = 0; k < modal.size(); ++k) hold(modal[k], first_modal + k);
     for (std::size_t k = 0; k < model_.given_speeds.size(); ++k) {
       const GivenSpeed& speed = model_.given_speeds[k];
@@ -280,10 +280,10 @@ class Assembler {
   State state_;
 };
 
-// of the rows in positions near the start
+// properties of the rows in positions near the start
 struct Nearby {
-  std::vector<bool> is_dependent;  // in all of them
-  std::vector<double> mobility;    // the largest
+  std::vector<bool> is_dependent;  // dependent in all positions
+  std::vector<double> mobility;    // largest of all positions
 };
 
 // by row of the cuts [1/kg or 1/(kg m2)]
@@ -333,7 +333,7 @@ Nearby look_nearby(Model model) {
   return result;
 }
 
-// Rows that others imply only because of what is prescribed: they would hold until the laws part.
+// Rows that others imply only because of prescribed motions: they hold as long as the laws agree.
 std::vector<AssemblyReport::Row> find_held_twice(const Model& model, const Nearby& nearby) {
   if (model.drives.empty()) return {};
   Model released = model;

@@ -75,7 +75,7 @@ class ForceBuilder {
   [[nodiscard]] int body_index(const std::string& name) const { return number_of_(name); }
   [[nodiscard]] const Body& body_of(const std::string& name) const { return model_.bodies[at(body_index(name))]; }
 
-  // with all joints on the way about one axis the angle is a sum of joint angles, whatever the number of turns
+  // if all joints on the path turn about one axis, the angle is a sum of joint angles, for any number of turns
   void find_coaxial(AngleElement& element) {
     constexpr double kParallel = 1e-9;
     const Pose& pose1 = link_pose_[at(element.link1)];
@@ -182,7 +182,7 @@ class DummyBuilder {
                                .link = line.link1,
                                .owner = kNoBody});
     };
-    // with the end that has mass, since inertia scales with it
+    // assign to the end with mass, since inertia scales with it
     const bool has_cylinder = coupled.m1 > 0;
     add(line.p1 + e * coupled.c1, coupled.m1, has_cylinder ? coupled.transverse : 0);
     add(line.p2 + e * coupled.c2, coupled.m2, has_cylinder ? 0 : coupled.transverse);

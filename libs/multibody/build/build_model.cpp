@@ -66,7 +66,7 @@ class Builder {
     model_.contact = build_contacts(def_, model_);
     lump_links(model_);
     for (Cut& cut : model_.cuts) add_supports(model_, cut);
-    // loops would be open by what their bodies sag
+    // sagging bodies would leave loops open
     const bool has_loops = model_.has_closing_rows();
     if (has_loops) straighten_segments(model_, model_.start_q, model_.start_u);
     const bool is_settled = has_loops || (settle_segments(model_) && settle_modes(model_));
@@ -126,7 +126,7 @@ class Builder {
     }
   }
 
-  // the body's pose in its link; for merged bodies as the start poses have it
+  // the body's pose in its link; for merged bodies from the start poses
   void place(Body& body, const Pose& pose) {
     const Pose& link = link_pose_[at(body.link)];
     body.R_LB = math::transpose(link.R) * pose.R;
@@ -158,7 +158,7 @@ class Builder {
     return frames;
   }
 
-  // moves a body that the joint does not hold to where it does; as the scene has it within its tolerance
+  // moves a body onto the joint; keeps the scene's pose within its tolerance
   void settle(const JointDef& def, const TreeEdge& edge) {
     const auto [frame1, frame2] = frames_of(def, edge);
     const bool is_driven = edge.joint != kNoJoint && begin_drives(edge.joint);
@@ -170,7 +170,7 @@ class Builder {
     child = {turn * child.R, held.p + turn * (child.p - frame2.p)};
   }
 
-  // completes the laws of a joint by what the poses say; whether it has some
+  // completes the laws of a joint from the poses; true if it has some
   bool begin_drives(int joint) {
     const JointDef& def = def_.joints[at(joint)];
     const Pose &body1 = poses_[at(body_index(def.body1))], &body2 = poses_[at(body_index(def.body2))];
@@ -227,7 +227,7 @@ class Builder {
                                           : LinkJoint::cylindrical;
   }
 
-  // of a link whose coordinates are the last ones so far
+  // for a link whose coordinates are the last ones so far
   void add_drives(const TreeEdge& edge, Link& link) {
     for (std::size_t k = 0; k < model_.drives.size(); ++k) {
       Drive& drive = model_.drives[k];
@@ -257,7 +257,7 @@ class Builder {
     return static_cast<int>(model_.links.size()) - 1;
   }
 
-  // start values; the child link's frame is put where these coordinates have it
+  // start values; the child link's frame is set by these coordinates
   void add_coordinates(const JointDef& def, const TreeEdge& edge, const JointFrames& frames, Link& link) {
     std::vector<double>& q = model_.start_q;
     std::vector<double>& u = model_.start_u;

@@ -1,4 +1,4 @@
-// Parts of build_model(): ways between links, and rows. Internal to the library.
+// Parts of build_model(): paths between links, and rows. Internal to the library.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace slew::multibody {
 // Appends to model.paths the joints between two links: those that move link 1 with sign -1, link 2 with sign +1.
 void add_path(Model& model, int link1, int link2);
 
-// Links that a cut's rows reach on their way to Ground.
+// Links between a cut's bodies and Ground.
 void add_supports(Model& model, Cut& cut);
 void add_supports(Model& model, Gear& gear);
 

@@ -1,4 +1,4 @@
-// Where a joint of the tree wants the frame of its second body at the start. Internal to the library.
+// Start pose of a joint's second frame in the tree. Internal to the library.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace slew::multibody {
 // Frame 2 for given coordinates. Pre-condition: the joint has one or two.
 [[nodiscard]] Pose frame_at(JointType type, const Pose& frame1, const std::array<double, 2>& q) noexcept;
 
-// Coordinates of a universal joint, and where they have frame 2.
+// Coordinates of a universal joint, and the attitude of frame 2.
 struct UniversalStart {
   double q1 = 0, q2 = 0;  // rad
   math::Mat3 R;           // R_W2

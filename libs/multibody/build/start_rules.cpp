@@ -18,15 +18,15 @@ namespace {
 
 using math::Vec3;
 
-// a start on a limit, by numbers with six digits and more
+// tolerance for a start on a limit, with numbers of six digits
 constexpr double kLimitTolerance = 1e-6;  // m, rad
 
 // A dummy's mass couples the links of its two points, which the recursion takes within one body, across one joint, and
 // along the modes of one flexible body on either side of it (flexible/node_dummies.h).
 class DummyRules {
  public:
-  struct Verdict {
-    const char* what = nullptr;  // none: it is fine
+  struct Fault {
+    const char* what = nullptr;  // none: no fault
     const char* expected = nullptr;
   };
 
@@ -51,7 +51,7 @@ class DummyRules {
     }
   }
 
-  Verdict check(int body1, int body2) {
+  Fault check(int body1, int body2) {
     const int end1 = merged_[at(body1)], end2 = merged_[at(body2)];
     if (end1 == end2) return {};
     const std::optional<NodeSpan> span = node_span(end1, end2, parent_, is_node_);
@@ -71,8 +71,8 @@ class DummyRules {
  private:
   static std::size_t at(int body) { return static_cast<std::size_t>(body); }
 
-  // all nodes that ends and the joint are at, on its inner side, are of one body
-  Verdict check_modes(const NodeSpan& span) {
+  // all nodes of the ends and of the joint's inner side belong to one body
+  Fault check_modes(const NodeSpan& span) {
     int unused = kNoBody;
     int& known = span.child > 0 ? across_[at(span.child)] : unused;
     for (const int link : {span.inner, span.carrier}) {
@@ -86,11 +86,11 @@ class DummyRules {
     return {};
   }
 
-  std::vector<int> merged_, parent_;  // by body: that it is merged into; that its joint is on
-  std::vector<int> flexible_;         // whose node it is
+  std::vector<int> merged_, parent_;  // by body: the body it is merged into; the body that carries its joint
+  std::vector<int> flexible_;         // by body: the flexible body of which it is a node
   std::vector<char> is_node_;
   std::vector<bool> is_free_;
-  std::vector<int> across_;  // whose nodes dummies across the body's joint have ends at
+  std::vector<int> across_;  // by body: flexible body whose nodes hold ends of dummies across its joint
 };
 
 class StartRules {
@@ -98,7 +98,7 @@ class StartRules {
   StartRules(const MechanicsDef& mechanics, std::span<const Pose> poses, Problems& problems)
       : m_(mechanics), poses_(poses), problems_(problems) {}
 
-  // what the joint holds must agree at the start, or nearly
+  // directions held by the joint must agree at the start within the tolerance
   void check_frames(const JointDef& joint) {
     if (joint.type == JointType::floating || joint.type == JointType::node) return;
     const JointFrames frames = joint_frames(joint, pose_of(joint.body1), pose_of(joint.body2));
@@ -135,7 +135,7 @@ class StartRules {
     }
   }
 
-  // a limit that is passed at the start would throw the machine
+  // a start beyond a limit would throw the machine
   void check_limits(const JointDef& joint, const JointFrames& frames) {
     for (int number = 0; number < coordinate_count(joint.type); ++number) {
       check_limits(joint, number, start_coordinates(joint.type, frames)[static_cast<std::size_t>(number)]);
@@ -167,9 +167,9 @@ class StartRules {
     for (const ForceDummyDef& dummy : m_.force_dummies) {
       for (const TranslationalForceDef& force : m_.translational_forces) {
         if (force.name != dummy.relative_to) continue;
-        const DummyRules::Verdict verdict = rules.check(number_of_(force.body1), number_of_(force.body2));
-        if (verdict.what == nullptr) continue;
-        add(dummy.name + ".relative_to", fmt::format("'{}' {}", force.name, verdict.what), verdict.expected);
+        const DummyRules::Fault fault = rules.check(number_of_(force.body1), number_of_(force.body2));
+        if (fault.what == nullptr) continue;
+        add(dummy.name + ".relative_to", fmt::format("'{}' {}", force.name, fault.what), fault.expected);
       }
     }
   }

@@ -1,5 +1,5 @@
-// What must hold of joints, spring-dampers and force dummies in the poses that a scene starts from. Internal to the
-// library: validate.cpp calls it.
+// Rules for joints, spring-dampers and force dummies in the start poses of a scene. Internal to the library:
+// validate.cpp calls it.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace slew::multibody {
 
-// Frames of joints, their limits, lengths of massless links and forces, neighbours of dummies. poses: of all bodies;
-// all names are known.
+// Frames of joints, their limits, lengths of massless links and forces, neighbours of dummies. poses: those of all
+// bodies; all names exist.
 void check_start(const MechanicsDef& mechanics, std::span<const Pose> poses, const std::vector<TreeEdge>& tree,
                  Problems& problems);
 

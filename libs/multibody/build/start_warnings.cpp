@@ -18,7 +18,7 @@ using math::Vec3;
 
 namespace {
 
-// a body's mass may lie outside of its points, but hardly by more than this
+// ratio by which a body's mass may extend beyond its points
 constexpr double kLargestGyration = 3;
 
 void find_start_deflections(const Model& model, Problems& warnings) {
@@ -27,7 +27,7 @@ void find_start_deflections(const Model& model, Problems& warnings) {
       warnings.push_back(
           {part.name + ".flex_modes",
            "the body starts undeformed, moves as a rigid one that the joints allow, and swings: in a mechanism with "
-           "loops no rest is looked for",
+           "loops no static equilibrium is computed",
            "nothing to do, or damping that ends it", ""});
     }
     const std::span<const double> q(model.start_q.data() + part.q, part.modes);
@@ -49,10 +49,11 @@ void find_start_bends(const Model& model, Problems& warnings) {
   for (const SegmentedPart& part : model.segmented) {
     if (!part.is_free || (model.has_closing_rows() && part.start == SegmentStart::at_rest)) {
       warnings.push_back({part.name + ".segments",
-                          part.is_free ? "the body starts undeformed, moves as a rigid one that the joints allow, and "
-                                         "swings: in a mechanism with loops no rest is looked for"
-                                       : "the body starts undeformed, moves as a rigid one that the joints allow, and "
-                                         "swings: no rest is looked for where joints hold more of it than its root",
+                          part.is_free
+                              ? "the body starts undeformed, moves as a rigid one that the joints allow, and "
+                                "swings: in a mechanism with loops no static equilibrium is computed"
+                              : "the body starts undeformed, moves as a rigid one that the joints allow, and "
+                                "swings: no static equilibrium is computed if joints hold more of it than its root",
                           "nothing to do, or damping that ends it", ""});
     }
     const LargestBend bend = largest_bend(model, part, ws);
@@ -122,7 +123,7 @@ void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings) {
     if (body.type != BodyType::rigid) continue;
     const double largest = math::symmetric_eigenvalues(inertia_about_center(body))[2];
     const double gyration = std::sqrt(std::max(0.0, largest) / body.mass);
-    // a body whose points all lie in its centre says nothing about its size
+    // a body with all points in its centre gives no size
     if (extent[b + 1] == 0 || gyration <= kLargestGyration * extent[b + 1]) continue;
     warnings.push_back({body.name + ".inertia",
                         fmt::format("the radius of gyration is {:.3g} m, all points on the body are within {:.3g} m of "

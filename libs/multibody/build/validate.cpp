@@ -33,9 +33,9 @@ namespace {
 using math::Mat3;
 using math::Vec3;
 
-// no machine has a part of this radius of gyration; beyond it masses and moments lose each other in double precision
+// no machine has a part with this radius of gyration; beyond it double precision loses masses beside moments
 constexpr double kLargestRadius = 1e6;  // m
-// directions f1 and g1 are exact in practice; more than this is a wrong number
+// directions f1 and g1 are exact in practice; a larger angle means a wrong number
 constexpr double kRightAngleTolerance = 1e-3;
 // transverse moments of a cylinder as CAD prints them
 constexpr double kTransverseTolerance = 1e-2;
@@ -119,7 +119,7 @@ class Validator {
         fmt::format("{} or own", fmt::join(names, ", ")));
   }
 
-  // ranges of the field tables, for Defs that no scene reader has seen
+  // ranges of the field tables, for Defs made in code
   void check_ranges() {
     check_fields("mechanics", mechanics_fields(), const_cast<MechanicsDef*>(&m_));
     const auto check_all = [this](const auto& defs, std::size_t section, auto type_of) {
@@ -151,7 +151,7 @@ class Validator {
       if (row.type == FieldType::choice) continue;
       if (row.type == FieldType::number) {
         const double value = *static_cast<double*>(row.member(def));
-        // a limit that is not set is infinite, which no scene can write
+        // an unset limit is infinite, which no scene can write
         if (!row.range.contains(value) && !std::isinf(value)) report_range(owner, row, value);
         if (std::isinf(value) && !is_open_ended(row.key)) report_range(owner, row, value);
       } else if (row.type == FieldType::integer) {
@@ -283,27 +283,27 @@ class Validator {
   void check_axis(const JointDef& joint, int number) {
     const JointAxisDef axis = axis_of(joint, number);
     const std::string_view suffix = suffix_of(joint.type, number);
-    const auto complain = [&](std::string_view key, std::string what, std::string expected) {
+    const auto report_problem = [&](std::string_view key, std::string what, std::string expected) {
       add(fmt::format("{}.{}{}", joint.name, key, suffix), std::move(what), std::move(expected));
     };
     if (axis.limit_min >= axis.limit_max) {
-      complain("limit_min",
-               fmt::format("lower limit {} is not below the upper limit {}", axis.limit_min, axis.limit_max),
-               "limit_min < limit_max");
+      report_problem("limit_min",
+                     fmt::format("lower limit {} is not below the upper limit {}", axis.limit_min, axis.limit_max),
+                     "limit_min < limit_max");
     }
     if (axis.bristle_stiffness > 0 && axis.coulomb_friction == 0) {
-      complain("bristle_stiffness", "the bristles have no dry friction to hold with", "coulomb_friction > 0");
+      report_problem("bristle_stiffness", "the bristles have no dry friction to hold with", "coulomb_friction > 0");
     }
     if (axis.bristle_stiffness == 0 && (axis.bristle_damping > 0 || axis.breakaway_ratio > 1)) {
       add(joint.name, "bristle_damping or breakaway_ratio without bristles", "bristle_stiffness > 0");
     }
     if (!has_limits(axis) && (axis.limit_stiffness > 0 || axis.limit_damping > 0)) {
-      complain(axis.limit_stiffness > 0 ? "limit_stiffness" : "limit_damping",
-               "nothing reads this key: the joint has no limits", "limit_min or limit_max, or no such key");
+      report_problem(axis.limit_stiffness > 0 ? "limit_stiffness" : "limit_damping",
+                     "nothing reads this key: the joint has no limits", "limit_min or limit_max, or no such key");
     }
     if (has_limits(axis) && axis.limit_stiffness == 0) {
-      complain("limit_stiffness", "the joint has limits but they have no stiffness",
-               "limit_stiffness > 0, or no limits");
+      report_problem("limit_stiffness", "the joint has limits but they have no stiffness",
+                     "limit_stiffness > 0, or no limits");
     }
   }
 
@@ -356,12 +356,12 @@ class Validator {
     }
     if (dummy.center_of_mass[1] != 0 || dummy.center_of_mass[2] != 0) {
       add(dummy.name + ".center_of_mass", "the centre of mass is off the line of force",
-          "y = z = 0: two points do not say where y and z point");
+          "y = z = 0: two points do not define the directions of y and z");
     }
     const auto [xx, yy, zz] = dummy.inertia;
     if (std::abs(yy - zz) > kTransverseTolerance * std::max(yy, zz)) {
       add(dummy.name + ".inertia", fmt::format("Iyy {} and Izz {} kg m2 differ by more than 1 %", yy, zz),
-          "Iyy = Izz: two points do not say where y and z point");
+          "Iyy = Izz: two points do not define the directions of y and z");
     }
     if (xx > yy + zz + kInertiaTolerance * std::max({xx, yy, zz})) {
       add(dummy.name + ".inertia", fmt::format("moments {}, {}, {} kg m2 break the triangle rule", xx, yy, zz),
@@ -384,7 +384,7 @@ class Validator {
     const Model model = build_model(given_, {}, report);
     if (!report.is_settled) {
       add(model.segmented.empty() ? model.parts.front().name : model.segmented.front().name,
-          "no rest is found for the flexible bodies under the load of the start",
+          "the flexible bodies have no static equilibrium under the load of the start",
           "a load below the buckling load, or a start of its own");
     }
     for (const AssemblyReport::Row& row : report.held_twice) {

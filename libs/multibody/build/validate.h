@@ -1,9 +1,9 @@
-// Everything that is wrong with the mechanics of a scene, found before anything is built.
+// All problems of a scene's mechanics, found before the model is built.
 //
 // Checked: names, masses, inertia (triangle rule, positive definite), directions, limits, that the joints lead to
 // Ground, that the frames of every joint agree at the start within the assembly's tolerance and lie inside its limits,
 // that loops close and allow the speeds given, that dummies sit on forces between neighbours. Ranges of single numbers
-// are the field tables' matter and checked here as well, so that a Def made in code is safe.
+// (from the field tables) are checked too, so that a Def made in code is safe.
 #pragma once
 
 #include "core/problem.h"
@@ -11,7 +11,7 @@
 
 namespace slew::multibody {
 
-// Appends to problems; nothing is appended for a sound Def. Paths are "Element.key".
+// Appends to problems; none for a sound Def. Paths are "Element.key".
 void validate(const MechanicsDef& mechanics, Problems& problems);
 
 // Appends a warning for every body that the start moves onto its joints, and for every redundant row of a joint.
@@ -19,13 +19,13 @@ void validate(const MechanicsDef& mechanics, Problems& problems);
 void find_start_changes(const MechanicsDef& mechanics, Problems& warnings);
 
 // Appends a warning for every body whose largest radius of gyration about its centre of mass is several times the
-// distance of the points that joints and forces have on it: its inertia is likely another body's, or in other units.
-// Pre-condition: validate() found nothing.
+// distance of the points that joints and forces have on it: its inertia probably belongs to another body, or has other
+// units. Pre-condition: validate() found nothing.
 void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings);
 
 // Appends a warning for every pair whose shapes start deep in each other. Pre-condition: validate() found nothing.
-// Contacts that answer an impact faster than the shortest part of a sub-step [s] of the scene's own rule resolves, each
-// body as if it were free and hit in its centre of mass.
+// Also warns about contacts whose impact is too fast for the shortest part of a sub-step [s] of the scene's own rule,
+// each body taken as free and hit in its centre of mass.
 void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems& problems);
 void find_unlikely_contacts(const MechanicsDef& mechanics, Problems& warnings);
 

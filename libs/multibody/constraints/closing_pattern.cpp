@@ -36,7 +36,7 @@ class Machines {
     owner_[at(std::max(a, b))] = std::min(a, b);
   }
 
-  // what rides on the modes of one part, and what cylinders between such nodes carry
+  // links on the modes of one part, and masses of cylinders between such nodes
   void join_nodes(const Model& model) noexcept {
     std::vector<int> rider(model.parts.size(), 0);
     int any = 0;
@@ -55,7 +55,7 @@ class Machines {
   std::vector<int> owner_;  // by link: itself, or a smaller one of its set
 };
 
-// speeds that the links pass a force on to
+// speeds to which the links pass a force
 std::vector<std::size_t> speeds_of(const Model& model, std::span<const int> supports) {
   std::vector<char> is_pushed(model.start_u.size(), model.node_dummies.empty() ? 0 : 1);
   const auto push = [&](int first, std::size_t count) { std::fill_n(is_pushed.begin() + first, count, 1); };

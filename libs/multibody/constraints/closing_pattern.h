@@ -1,11 +1,11 @@
-// Which closing rows and ports of a mechanism are coupled. Internal to the library.
+// Coupling of the closing rows and ports of a mechanism. Internal to the library.
 //
 // The tree passes the force of a row on to the links between its bodies and Ground alone. So an entry of the rows'
 // mobility
 //   W_kl = sum over u of r_k d_l                                                                       (1)
 // (loops.h, (1)) is zero unless both rows have such links in common, and only the speeds of these links are in its sum.
 // Trees that closing rows connect, or modes of a part on Ground, are one machine; a row is coupled to rows of its own
-// machine alone. What is left out are zeros: every sum keeps its bits.
+// machine alone. Only zeros are omitted: every sum keeps its bits.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct ClosingGroup {
 struct ClosingBlock {
   int group = 0, other = 0;
   std::vector<std::size_t> speeds;
-  std::vector<int> entries;  // by row of the group: where those with the rows of the other begin in W
+  std::vector<int> entries;  // by row of the group: start in W of its entries with the rows of the other
 };
 
 struct ClosingPattern {
@@ -39,12 +39,12 @@ struct ClosingPattern {
   std::vector<ClosingBlock> blocks;       // by group, then by other
   std::vector<std::vector<int>> coupled;  // by closing row: the rows before it that it is coupled to
   struct Port {
-    std::vector<int> groups, rows;  // of its machines, ascending
+    std::vector<int> groups, rows;  // groups and rows of its machines, ascending
     std::vector<int> machines;      // ascending; one, or the two between which it acts
   };
   std::vector<Port> ports;  // by Model::rows
 
-  // Whether both act in one machine.
+  // True if both act in one machine.
   [[nodiscard]] bool are_coupled(std::size_t port, std::size_t other) const noexcept;
 
  private:

@@ -23,7 +23,7 @@ ConstraintRow perpendicular(int axis1, int axis2, double offset = 0) {
   return {.form = RowForm::perpendicular, .axis1 = axis1, .axis2 = axis2, .offset = offset};
 }
 
-// a frame's point and axes in Ground, and what moves with it
+// a frame's point and axes in Ground, and their motion
 struct Side {
   Vec3 s, P, w, v;   // from the link's origin [m], m, rad/s, m/s
   Vec3 centripetal;  // w x (w x s) [m/s2]
@@ -110,7 +110,7 @@ RowValue evaluate(const ConstraintRow& row, const Side& one, const Side& two) no
   return {};
 }
 
-// less what its law says
+// subtract the value of its law
 RowValue evaluate(const ConstraintRow& row, const Side& one, const Side& two,
                   std::span<const MotionValue> drives) noexcept {
   constexpr double kTurn = 2 * 3.14159265358979323846;

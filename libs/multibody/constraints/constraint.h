@@ -1,5 +1,5 @@
-// What a joint forbids, as scalar rows between two links: value, gradient and the part of the second derivative that
-// does not depend on accelerations.
+// The constraints of a joint as scalar rows between two links: value, gradient and the part of the second derivative
+// that does not depend on accelerations.
 //
 // Joint frame i (point P_i, axes x_i y_i z_i) is fixed to link i; d = P_2 - P_1. Three laws make every joint:
 //   in_plane(a)          g = a_1 . d - c           P_2 stays in a plane of frame 1 with the normal a_1       (1)
@@ -32,8 +32,8 @@ namespace slew::multibody {
 inline constexpr double kShortestLink = 1e-9;  // m
 
 // The rows of a joint type for frames that stand to each other as given (frame 2 in frame 1). The massless links (two
-// balls, hinge and ball, two hinges about z_1 and z_2) keep the lengths and angles that they are given, the others are
-// closed at offset zero. Empty for a floating joint. Allocates.
+// balls, hinge and ball, two hinges about z_1 and z_2) keep their given lengths and angles, the others are closed at
+// offset zero. Empty for a floating joint. Allocates.
 [[nodiscard]] std::vector<ConstraintRow> rows_of(JointType type, const math::Mat3& R_12, math::Vec3 p_12);
 
 // The row of a joint's coordinate, as coordinate() counts them. Pre-condition: the joint has it.
@@ -46,7 +46,7 @@ inline constexpr double kShortestLink = 1e-9;  // m
 // A joint of the scene between the links of its bodies, without rows.
 [[nodiscard]] Constraint constraint_between(const Model& model, int joint);
 
-// What a row holds, "position along x" or "angle between z and x": for messages. Allocates.
+// Name of a row, "position along x" or "angle between z and x", for messages. Allocates.
 [[nodiscard]] std::string describe(const ConstraintRow& row);
 
 // One value per row of the constraint. drives: values of the laws that its rows follow, by Model::drives.
@@ -66,11 +66,11 @@ void evaluate(const Constraint& constraint, const LinkMotion& link1, const LinkM
 [[nodiscard]] RowValue coordinate(JointType type, int number, const Constraint& constraint, const LinkMotion& link1,
                                   const LinkMotion& link2) noexcept;
 
-// A single row that the constraint need not have, between the constraint's frames.
+// A single row between the constraint's frames, not necessarily one of the constraint.
 [[nodiscard]] RowValue evaluate(const ConstraintRow& row, const Constraint& constraint, const LinkMotion& link1,
                                 const LinkMotion& link2, std::span<const MotionValue> drives) noexcept;
 
-// What a row's law adds to G v for its rate, with the opposite sign; 0 without one.
+// Speed of a row's law, which its rate subtracts from G v; 0 without a law.
 [[nodiscard]] inline double prescribed_rate(const Constraint& constraint, std::size_t row,
                                             std::span<const MotionValue> drives) noexcept {
   const int drive = constraint.rows[row].drive;

@@ -26,7 +26,7 @@ struct MechanicsDef;
 // A coordinate that a gear holds to another.
 struct GearEnd {
   int joint = 0;      // Model::joints
-  int link = 0;       // that the joint moves
+  int link = 0;       // link that the joint moves
   int q = 0, u = 0;   // its coordinate and speed
   double factor = 1;  // dg/dq: -r at joint 1, 1 at joint 2
 };
@@ -47,17 +47,17 @@ struct Gear {
 // Gears of the scene. Pre-condition: the tree has their joints. Allocates.
 void add_gears(const MechanicsDef& mechanics, Model& model);
 
-// (1) in joint coordinates; bias: what prescribed coordinates add to g''. The gradient stays empty.
+// (1) in joint coordinates; bias: part of g'' by prescribed coordinates. The gradient stays empty.
 [[nodiscard]] RowValue gear_value(const Gear& gear, const Model& model, std::span<const double> q,
                                   std::span<const double> u, const Workspace& ws) noexcept;
 
 // (1) over the velocities of links, from the motion.
 struct GearRow {
-  std::array<int, 4> links{};  // Ground's entries do not count; a link may be there twice
+  std::array<int, 4> links{};  // Ground's entries do not count; a link may occur twice
   std::array<math::Vec3, 4> v, w;
   double g = 0, rate = 0, bias = 0;
 };
-// near: joint coordinates, whose whole turns the angles continue.
+// near: joint coordinates; the angles continue their whole turns.
 [[nodiscard]] GearRow gear_row(const Model& model, const BodyModel& body, const State& near, const Gear& gear,
                                const Workspace& ws) noexcept;
 

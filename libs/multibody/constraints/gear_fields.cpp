@@ -10,12 +10,13 @@ constexpr Field kJoint1 = field<&GearDef::joint1>(
 constexpr Field kJoint2 = field<&GearDef::joint2>(
     "joint2", {.presence = Presence::required, .reference = "joint", .doc = "joint whose coordinate follows"});
 constexpr Field kRatio = field<&GearDef::ratio>(
-    "ratio",
-    {.presence = Presence::required, .doc = "coordinate of joint 2 over that of joint 1; negative: the other way"});
+    "ratio", {.presence = Presence::required,
+              .doc = "coordinate of joint 2 over that of joint 1; negative: opposite direction"});
 constexpr Field kRadius = field<&GearDef::ratio>(
-    "radius", {.dimension = length,
-               .presence = Presence::required,
-               .doc = "of the pinion: way of joint 2 per radian of joint 1; of a screw its lead over 2 pi"});
+    "radius",
+    {.dimension = length,
+     .presence = Presence::required,
+     .doc = "radius of the pinion: displacement of joint 2 per radian of joint 1; for a screw its lead over 2 pi"});
 
 constexpr Field offset_row(Dimension position) {
   return field<&GearDef::offset>(

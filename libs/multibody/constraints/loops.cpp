@@ -15,8 +15,9 @@ using math::Vec3;
 namespace {
 
 constexpr int kMostClosingCorrections = 40;  // Newton with one matrix: an error of 1e-2 is gone after five
-constexpr int kPolish = 2;                   // more of them near a singular position, where (1) divides by little
-constexpr int kRenewal = 8;                  // corrections after which the matrix is made again
+constexpr int kPolish = 2;                   // additional corrections near a singular position, where (1) divides by a
+                                             // small number
+constexpr int kRenewal = 8;                  // corrections after which the matrix is rebuilt
 
 // sum += the group's rows of `by_row` (rows x speeds) times their forces
 void add_rows(const ClosingGroup& group, const std::vector<double>& by_row, const std::vector<double>& forces,
@@ -34,7 +35,7 @@ void add_rows(const LoopWorkspace& loops, std::span<double> residual) noexcept {
   for (const ClosingGroup& group : loops.pattern.groups) add_rows(group, loops.residual, loops.multipliers, residual);
 }
 
-// loops.step = M^-1 J^T W^-1 of what loops.multipliers hold
+// loops.step = M^-1 J^T W^-1 times loops.multipliers
 void find_step(const Model& model, Workspace& ws) noexcept {
   LoopWorkspace& loops = ws.loops;
   loops.factor.solve(loops.multipliers);
@@ -43,7 +44,7 @@ void find_step(const Model& model, Workspace& ws) noexcept {
   solve_forward(model, ws, ws.residual, loops.step);
 }
 
-// change in the space of the speeds that takes away what the rows show
+// change in the space of the speeds that removes the rows' violation
 template <typename Value>
 void find_step(const Model& model, Workspace& ws, Value value) noexcept {
   LoopWorkspace& loops = ws.loops;
@@ -204,7 +205,7 @@ void reduce_row(std::size_t port, Workspace& ws, std::span<double> residual, std
 }
 
 bool project(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws) noexcept {
-  // near a singular position the matrix of the stage before leads astray
+  // near a singular position the matrix of the previous stage is not valid
   if (is_near_singular(ws)) {
     renew_matrix(model, q, u, ws);
   } else {
@@ -224,7 +225,7 @@ bool project(const Model& model, std::span<double> q, std::span<double> u, Works
 
 namespace {
 
-// what a small displacement, which solve_forward() has just found, makes of a row
+// change of a row by the small displacement of the last solve_forward()
 double change_of(const RowValue& row, const Cut& cut, const Workspace& ws) noexcept {
   const std::size_t link1 = at(cut.link1), link2 = at(cut.link2);
   return dot(row.G.v1, ws.delta_a[link1]) + dot(row.G.w1, ws.delta_alpha[link1]) + dot(row.G.v2, ws.delta_a[link2]) +
@@ -259,7 +260,7 @@ void aim(const Model& model, double h, std::span<double> u, Workspace& ws) noexc
 
 bool project_step(const Model& model, double h, std::span<double> q, std::span<double> u, Workspace& ws) noexcept {
   constexpr int kMostQuickCorrections = 4;
-  // the square of what is opened less, which shift() does not see, is far below kClosedByEuler
+  // the second-order change, which shift() neglects, is far below kClosedByEuler
   constexpr double kSmall = 1e-5;
   if (is_near_singular(ws)) return project(model, q, u, ws);
   show_rows(model, q, u, ws);

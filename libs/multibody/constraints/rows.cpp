@@ -19,7 +19,7 @@ using math::Vec3;
 
 namespace {
 
-// what the unit force of a row does to a link on its way: a force at a point, or a torque
+// unit force of a row on a link of its path: a force at a point, or a torque
 struct UnitWrench {
   Vec3 force, torque;  // torque about the link's origin
 };
@@ -74,7 +74,7 @@ void write_jacobian(const Model& model, const Workspace& ws, const Row& row, std
   const RowValue cut = row.kind == RowKind::joint  ? coordinate_of_cut(model, row, ws)
                        : row.kind == RowKind::ball ? turn_of_ball(model, row, ws)
                                                    : RowValue{};
-  // two nodes of one part on the way
+  // two nodes of one part on the path
   for_each_mode(model, [&](std::size_t, std::size_t u) { J[u] = 0; });
   for (int i = row.first_path; i < row.path_end; ++i) {
     const PathEntry& entry = model.paths[at(i)];

@@ -17,7 +17,7 @@ void evaluate_rows(const Model& model, const State& state, Workspace& ws) noexce
 [[nodiscard]] double joint_bristle_rate(const Model& model, std::size_t row, std::span<const double> v,
                                         double z) noexcept;
 
-// The law of a joint's row, that of a ball in the first of its rows; and the size of its angular velocity.
+// The law of a joint's row (a ball has it in the first of its rows), and the size of its angular velocity.
 [[nodiscard]] const JointLaw& law_of(const Model& model, std::size_t row) noexcept;
 [[nodiscard]] double ball_speed(const Model& model, std::size_t row, std::span<const double> v) noexcept;
 

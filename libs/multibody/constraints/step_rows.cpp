@@ -49,7 +49,7 @@ class SpeedProduct final : public LinkMatrix {
   std::span<double> product_;
 };
 
-// accelerations as body coordinates have them: of no link on its own
+// accelerations in body coordinates: none of a single link
 void forget_accelerations(Workspace& ws) noexcept {
   for (std::size_t i = 1; i < ws.motion.size(); ++i) {
     ws.motion[i].alpha = Vec3();

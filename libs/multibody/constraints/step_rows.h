@@ -1,8 +1,8 @@
 // The rows of a mechanism over a whole step H: free acceleration and mobility with the springs and dampers inside.
 //
-// At an instant (dynamics.h) a row answers with the mass that hangs on it rigidly, M^-1. Over a step whatever is soft
-// behind it answers as well: modes, beams between segments, bushings, spring-dampers, tyres, contacts. With the
-// acceleration a constant over the step their forces at its end are those of
+// At an instant (dynamics.h) a row responds with its rigidly connected mass, M^-1. Over a step all soft elements behind
+// it respond too: modes, beams between segments, bushings, spring-dampers, tyres, contacts. With the acceleration a
+// constant over the step their forces at its end are those of
 //   u + H a,   q (+) (H u + H^2/2 a)                                                                              (1)
 // so that, with K and D their stiffness and damping and G the joints' rows,
 //   [ M + H D + H^2/2 K  G^T ] [ a  ]   [ Q - H K u + J^T f ]
@@ -10,14 +10,14 @@
 //   x'' = a_free + W f                                                                                            (3)
 // The implicit Euler method has H^2 in the place of H^2/2: there a mode much faster than H comes to rest within the
 // step, and its oil sees half of its compliance. With H^2/2 the displacement H^2/2 a of a stiff spring is f/k.
-// Against each other and against steps of their own: docs/models/coupling_levels.md.
+// Comparison of the two: docs/models/coupling_levels.md.
 //
-// M, K, D and G in body coordinates (body_coordinates.h, integrators.h), whatever the formulation: K and D as an
-// implicit step has them, positive semi-definite. In H K u pulls are left out, which turn with the links.
-// Not covered: laws of rows, joint friction and limits among them, which their owner condenses on top; changes of G and
-// of the velocity terms over H; stops and contacts that are reached within it.
+// M, K, D and G in body coordinates (body_coordinates.h, integrators.h) for any formulation: K and D as in an implicit
+// step, positive semi-definite. H K u omits pulls, which turn with the links.
+// Not covered: laws of rows, joint friction and limits among them, which their owner condenses in addition; changes of
+// G and of the velocity terms over H; stops and contacts that are reached within it.
 //
-// Cost: one factorisation in body coordinates and one solution a row, as an evaluation of `lagrange`. Nothing but the
+// Cost: one factorisation in body coordinates and one solution a row, as an evaluation of `lagrange`. Only the
 // constructor allocates.
 #pragma once
 
@@ -28,8 +28,8 @@
 
 namespace slew::multibody {
 
-// Shares of (2): position of H^2 K, rate of H D, strain of H K u. Those of (1), or those with which the trapezoidal
-// rule answers a force that is held: (M + H/2 D + H^2/4 K) a = Q - H/2 K u + J^T F, exact for what is linear.
+// Shares of (2): position of H^2 K, rate of H D, strain of H K u. Those of (1), or those of the trapezoidal rule's
+// response to a held force: (M + H/2 D + H^2/4 K) a = Q - H/2 K u + J^T F, exact for linear elements.
 struct StepShares {
   double position = 0.5, rate = 1, strain = 1;
 };
@@ -57,7 +57,7 @@ class StepRows {
   std::vector<double> strain_;  // H K u by first_row()
 };
 
-// Whether anything in the mechanism has K or D.
+// True if any element of the mechanism has K or D.
 [[nodiscard]] bool has_springs(const Model& model) noexcept;
 
 }  // namespace slew::multibody

@@ -10,12 +10,12 @@
 
 namespace slew::multibody {
 
-// Both joints are there and have one coordinate, of the kind that the gear's type says. False otherwise: starts then
-// cannot be looked at.
+// Checks that both joints exist and have one coordinate of the kind of the gear's type. False otherwise: starts then
+// cannot be checked.
 [[nodiscard]] bool check_gears(const MechanicsDef& mechanics, Problems& problems);
 
-// Both joints belong to the tree, and their start positions fit the gear within the assembly's tolerance. poses: of all
-// bodies; all names are known.
+// Checks that both joints belong to the tree, and that their start positions fit the gear within the assembly's
+// tolerance. poses: those of all bodies; all names exist.
 void check_gear_starts(const MechanicsDef& mechanics, std::span<const Pose> poses, const std::vector<TreeEdge>& tree,
                        Problems& problems);
 

@@ -7,7 +7,7 @@
 namespace slew::multibody {
 namespace {
 
-// an index that no mesh has, for numbers that are none; the check of the mesh names it
+// an impossible index for invalid numbers; the check of the mesh reports it
 constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 
 std::uint32_t vertex_index(double number) {

@@ -7,7 +7,7 @@ namespace slew::multibody {
 
 [[nodiscard]] contact::ShapeDef contact_shape(const ShapeDef& shape);
 
-// With the friction that it names, if there is one of that name.
+// A pair with its named friction, if that exists.
 [[nodiscard]] contact::PairDef contact_pair(const MechanicsDef& mechanics, const ContactPairDef& pair);
 
 }  // namespace slew::multibody

@@ -1,4 +1,4 @@
-// What a scene says about contact: shapes on bodies, the pairs of shapes that are tested, and named sets of friction.
+// Definition of contact: shapes on bodies, the pairs of shapes that are tested, and named sets of friction.
 //
 // A shape has a pose in its body's frame; its own axes are those of contact/contact_def.h (a plane is solid below its
 // z, cylinders and capsules lie along z, a height field rises along z). Only declared pairs are tested.
@@ -24,11 +24,11 @@ struct ShapeDef {
   double length = 0;     // m, > 0
   Triple size{};         // m, > 0: edges of a box
   std::string file{};    // mesh file, which the scene reads into vertices and triangles
-  double file_unit = std::numeric_limits<double>::infinity();  // m, > 0: one unit of the file; infinite: not told
+  double file_unit = std::numeric_limits<double>::infinity();  // m, > 0: one unit of the file; infinite: not given
   std::string file_up{};            // "y" or "z": the axis of the file that becomes y of the shape
   std::vector<double> vertices{};   // m, x y z of one vertex after the other
   std::vector<double> triangles{};  // indices of vertices, three a triangle, counter-clockwise seen from outside
-  std::int64_t columns = 0;         // of a height field, along x, >= 2
+  std::int64_t columns = 0;         // points of a height field along x, >= 2
   std::int64_t rows = 0;            // along y, >= 2
   double spacing_x = 0;             // m, > 0
   double spacing_y = 0;             // m, > 0
@@ -42,7 +42,7 @@ struct ContactPairDef {
   std::string shape_a{}, shape_b{};
   std::string friction{};            // name of a FrictionDef; empty: frictionless
   std::int64_t point_variables = 4;  // contact points that are variables, 0 .. contact::kMaxPointsPerPair
-  bool tested = true;                // false: known by name, never searched
+  bool tested = true;                // false: named in the scene, never searched
 };
 
 // A named friction as in table 12.

@@ -1,8 +1,8 @@
-// The contacts of a mechanism, ready to be searched: which frames on which links, which pairs.
+// The contacts of a mechanism, ready for searches: frames on links, and pairs.
 //
 // Immutable and shared by all copies of a Model (live parameters do not reach it). A pair of shapes that cannot move
-// against each other (both on Ground, or on bodies that fixed joints merge), or that the scene has not tested, is known
-// by name and never searched.
+// against each other (both on Ground, or on bodies that fixed joints merge), or that the scene excludes from tests,
+// keeps its name and is never searched.
 #pragma once
 
 #include <memory>
@@ -42,7 +42,7 @@ struct ContactElements {
 // there.
 [[nodiscard]] std::shared_ptr<const ContactElements> build_contacts(const MechanicsDef& mechanics, const Model& model);
 
-// Appends what is wrong with shapes, pairs and frictions. Pre-condition: the rest of the mechanics is sound.
+// Appends the problems of shapes, pairs and frictions. Pre-condition: the rest of the mechanics is sound.
 void validate_contacts(const MechanicsDef& mechanics, Problems& problems);
 
 }  // namespace slew::multibody

@@ -86,9 +86,10 @@ constexpr Field kPairFields[] = {
     field<&ContactPairDef::friction>("friction",
                                      {.reference = "friction", .doc = "friction between them; without it none"}),
     field<&ContactPairDef::point_variables>(
-        "point_variables", {.range = kPointSlots, .doc = "contact points that are variables, with place and forces"}),
+        "point_variables",
+        {.range = kPointSlots, .doc = "contact points that are variables, with position and forces"}),
     field<&ContactPairDef::tested>(
-        "tested", {.doc = "false: the pair is known by name and never searched, for one that does not come together"}),
+        "tested", {.doc = "false: the pair keeps its name and is never searched, for shapes that never meet"}),
 };
 
 // the pair's own rows, then those of its normal law

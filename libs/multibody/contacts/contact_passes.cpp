@@ -19,11 +19,11 @@ using math::Vec3;
 
 namespace {
 
-// a way that leads into something thin is taken in parts of a quarter of its half thickness, but not in more than this;
-// stiff contacts may ask for more
+// a path into a thin shape is divided into parts of a quarter of its half thickness, up to this number; stiff contacts
+// may require more
 constexpr double kPartsPerThickness = 4;
 constexpr double kMostParts = 256;
-// a sub-step that is a multiple but for rounding does not get one part more
+// a multiple of the part to rounding does not get one part more
 constexpr double kContactRounding = 1e-9;
 
 void place_frames(const ContactElements& elements, const Workspace& ws, std::span<contact::Pose> poses) noexcept {
@@ -57,7 +57,7 @@ struct Touch {
     const LinkMotion& link = ws.motion[at(elements.frames[frame].link)];
     return link.v + cross(link.w, point.p_W - link.p);
   }
-  // from the frame's origin to the material that is here now, as it stood at the start
+  // from the frame's origin to the present material point, in the attitude of the start
   [[nodiscard]] Vec3 arm_at_start(std::size_t frame) const noexcept {
     const contact::Pose& pose = contacts.poses[frame];
     return contacts.start_poses[frame].R_WF * transpose_multiply(pose.R_WF, point.p_W - pose.p_WF);
@@ -77,7 +77,7 @@ struct Touch {
   }
 };
 
-// (1), (2): what the contact remembers, from the start of the sub-step to now; its normal force
+// (1), (2): the contact's state, from the start of the sub-step to now; its normal force
 contact::NormalForce carry(const ContactPair& pair, const Touch& touch, RememberedContact& state) noexcept {
   const ContactPoint& point = touch.point;
   const double rate = touch.rate();
@@ -119,7 +119,7 @@ Touch touch_of(const ContactElements& elements, const Workspace& ws, const Conta
       elements, *ws.contact, ws, point, elements.model.frame_of(pair.shape_a), elements.model.frame_of(pair.shape_b)};
 }
 
-// pairs that were apart at the start and are apart now, or touch from the other side, but met on the way
+// pairs that were apart at the start and are apart now, or touch from the other side, but met between
 bool find_passed(const ContactElements& elements, ContactWorkspace& contacts) noexcept {
   const std::span<const ContactPoint> points = contacts.set.points();
   for (std::size_t pair = 0; pair < contacts.was_touching.size(); ++pair) {
@@ -135,7 +135,7 @@ bool find_passed(const ContactElements& elements, ContactWorkspace& contacts) no
   return false;
 }
 
-// where the speeds of the start lead within h
+// poses reached with the speeds of the start within h
 void look_ahead(double h, ContactWorkspace& contacts) noexcept {
   for (std::size_t i = 0; i < contacts.ahead.size(); ++i) {
     const contact::Pose& from = contacts.start_poses[i];
@@ -182,7 +182,7 @@ void update_contacts(const Model& model, Workspace& ws) noexcept {
   const std::span<const ContactPoint> points = contacts.set.points();
   contacts.force_count = points.size();
   if (points.empty()) return;
-  contacts.now.follow(contacts.before, elements.model, contacts.poses, contacts.set);
+  contacts.now.advance(contacts.before, elements.model, contacts.poses, contacts.set);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ContactPair& pair = elements.model.pairs()[points[i].pair];
     contacts.forces[i] = force_at(pair, touch_of(elements, ws, points[i]), contacts.now.states()[i]);
@@ -240,7 +240,7 @@ void accept_contacts(const Model& model, double h, State& state, Workspace& ws) 
   place_frames(elements, ws, contacts.poses);
   find_contacts(elements.model, contacts.poses, contacts.set);
   contacts.is_lost = find_passed(elements, contacts) || contacts.is_lost;
-  state.contacts.follow(contacts.before, elements.model, contacts.poses, contacts.set);
+  state.contacts.advance(contacts.before, elements.model, contacts.poses, contacts.set);
   const std::span<const ContactPoint> points = contacts.set.points();
   contacts.is_hit = false;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -255,7 +255,7 @@ void accept_contacts(const Model& model, double h, State& state, Workspace& ws) 
 
 namespace {
 
-// what contacts that answer fast make of a number of parts that is enough otherwise
+// number of parts that fast contacts require, from the number sufficient otherwise
 ContactParts stiff_parts(const Model& model, double parts, double needed, StepKind kind, Workspace& ws) noexcept {
   if (kind == StepKind::settling && needed > kWorthSettling * parts && !has_impact(model, ws)) {
     const int count = static_cast<int>(std::ceil(parts));
@@ -273,7 +273,7 @@ ContactParts contact_parts(const Model& model, double h, StepKind kind, Workspac
   ContactWorkspace& contacts = *ws.contact;
   look_ahead(h, contacts);
   contacts.is_near = !contacts.before.states().empty() || !contacts.set.points().empty();
-  // parts that are short against what they lead through
+  // parts that are short against the thickness on their path
   double parts = std::ceil(h / elements.substep * (1 - kContactRounding)), met_rate = 0;
   for (std::size_t pair = 0; pair < contacts.was_touching.size(); ++pair) {
     const contact::Meeting meeting = sweep(elements.model, pair, contacts.start_poses, contacts.ahead, contacts.set);
@@ -288,7 +288,7 @@ ContactParts contact_parts(const Model& model, double h, StepKind kind, Workspac
   if (!contacts.is_near) return {};
   parts = std::clamp(parts, 1.0, kMostParts);
   if (kind == StepKind::implicit) return {.count = static_cast<int>(std::ceil(parts))};
-  // what is about to be hit is resolved
+  // resolve an imminent impact
   if (met_rate > 0 && kind == StepKind::settling) kind = StepKind::explicit_rule;
   return stiff_parts(model, parts, h * std::max(contact_rate(model, ws), met_rate) / reach_of(kind), kind, ws);
 }

@@ -1,22 +1,23 @@
 // Contact within a sub-step. Internal to the library.
 //
 // Impact speeds and bristles (contact/contact_memory.h) are state: they change when a sub-step is accepted. An
-// evaluation t after the start of the sub-step sees them carried along from there:
+// evaluation t after the start of the sub-step uses values advanced from there:
 //   z(t) = exact solution of the bristles' law with the mean sliding velocity since the start,      (1)
-//          the way of the material points that touch now, over t
+//          the displacement of the presently touching material points, over t
 //   v0   = the largest of the remembered one, the speed of approach now and, for a contact that was open at the
 //          start, the speed of approach there                                                          (2)
-// so that an impact without other forces has its exact v0, and sticking follows the way of the integrator to the bit.
+// so that an impact without other forces has its exact v0, and sticking follows the integrator's displacement to the
+// bit.
 #pragma once
 
 #include "multibody/model/state.h"
 
 namespace slew::multibody {
 
-// At the start of a sub-step, before the first update: the evaluations to come belong to this state.
+// Call at the start of a sub-step, before the first update: later evaluations belong to this state.
 void begin_contacts(const Model& model, const State& state, Workspace& ws) noexcept;
 
-// Before an evaluation that belongs to `later` [s] after the start.
+// Call before an evaluation at `later` [s] after the start.
 inline void set_stage_time(const Model& model, const State& start, double later, Workspace& ws) noexcept {
   set_time(model, start.time + later, ws);
   if (ws.contact != nullptr) ws.contact->time = later;
@@ -28,16 +29,16 @@ void update_contacts(const Model& model, Workspace& ws) noexcept;
 // Subtracts the forces from the bias wrenches.
 void apply_contacts(const Model& model, Workspace& ws) noexcept;
 
-// After a sub-step of h [s], with the motion of the new state in ws: the memory of the state becomes that of the end.
-// Shapes that went through each other unseen set ws.contact->is_lost, a blow ws.contact->is_hit.
+// Call after a sub-step of h [s], with the motion of the new state in ws: the memory of the state becomes that of the
+// end. Shapes that passed through each other set ws.contact->is_lost, an impact sets ws.contact->is_hit.
 void accept_contacts(const Model& model, double h, State& state, Workspace& ws) noexcept;
 
-// How a sub-step treats contacts: by a rule that has to resolve them, by such a rule with an implicit one at hand for
-// what rests or is pressed (formulation.h), by corrections without their slopes (`augmented`), or with their slopes
-// inside the iteration.
+// Treatment of contacts in a sub-step: by a rule that must resolve them, by such a rule together with an implicit one
+// for resting or pressed contacts (formulation.h), by corrections without their slopes (`augmented`), or with their
+// slopes inside the iteration.
 enum class StepKind { explicit_rule, settling, corrected, implicit };
 
-// At most so many parts of a sub-step for contacts that answer fast.
+// Limit of parts of a sub-step for fast contacts.
 inline constexpr double kMostStiffParts = 1024;
 // Longest part times fastest rate: Runge-Kutta's rule is stable to 2.7, with a stack of ten boxes on bristles to 2.1;
 // in the trapezoid of `augmented` corrections shrink by a half at 1.
@@ -50,23 +51,23 @@ inline constexpr double kWorthSettling = 2;
 
 struct ContactParts {
   int count = 1;
-  bool is_settling = false;  // by the implicit rule; what it leaves to the other one
-  int pieces = 1;            // is resolved in at least so many pieces of each part
+  bool is_settling = false;  // true: by the implicit rule
+  int pieces = 1;            // least number of pieces of each part for the other rule
 };
 
-// In how many equal parts a sub-step of h [s] from here should go, after an evaluation at its start: one when nothing
-// touches and the present speeds lead into nothing within h; there is then no search until the next start. Contacts
-// that touch are resolved as fast as they answer (contact_rate.h); those too fast for the shortest part set
-// ws.contact->is_lost. `settling`: where nothing hits anything and that would take kWorthSettling times as many parts
-// as contact_substep, the implicit rule takes over, which need not resolve how fast a load is damped.
+// Number of equal parts for a sub-step of h [s], after an evaluation at its start: one if no shapes touch and none meet
+// within h at the present speeds; there is then no search until the next start. Touching contacts are resolved at their
+// rate (contact_rate.h); contacts too fast for the shortest part set ws.contact->is_lost. `settling`: without an
+// impact, and if the explicit rule would need kWorthSettling times as many parts as contact_substep, the implicit rule
+// is used, which need not resolve the damping of a load.
 [[nodiscard]] ContactParts contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) noexcept;
 
-// The same for one of `parts` of the sub-step, of what has come to touch on the way.
+// The same for one of `parts` of the sub-step, for contacts closed meanwhile.
 [[nodiscard]] ContactParts contact_parts_again(const Model& model, double h, int parts, StepKind kind,
                                                Workspace& ws) noexcept;
 
-// What the force of one contact point loses by a small motion of shape A against shape B, after update_contacts() at an
-// instant after the start: position and rate of the weights, ways beginning at the start.
+// Loss of one contact point's force by a small motion of shape A against shape B, after update_contacts() at an instant
+// after the start: position and rate of the weights, displacements from the start.
 struct ContactSlopes {
   int link_a = 0, link_b = 0;
   math::Vec3 n_W;         // unit

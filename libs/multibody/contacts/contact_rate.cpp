@@ -12,9 +12,9 @@ using math::Vec3;
 
 namespace {
 
-// L^-1 of the inertia about the centre of mass, L its lower triangle; 0 of a point mass
+// L^-1 of the inertia about the centre of mass, L its lower triangle; 0 for a point mass
 Mat3 inverse_root(const Link& link) noexcept {
-  constexpr double kPointMass = 1e-12;  // of the largest moment, below which rounding decides
+  constexpr double kPointMass = 1e-12;  // share of the largest moment, below which rounding decides
   const Vec3 c = link.h_L * (1 / link.mass);
   const Mat3 I = link.I_L - (Mat3::identity() * dot(c, c) - outer(c, c)) * link.mass;
   const double least = kPointMass * std::max({I(0, 0), I(1, 1), I(2, 2)});
@@ -37,7 +37,7 @@ void begin(const Link& link, const LinkMotion& motion, ContactRates& rates) noex
   rates.turning = inverse_root(link) * transpose(motion.R);
 }
 
-// Where a contact point pushes a link: L^-1 J of direction d is (per_root_mass d, S d).
+// Action of a contact point on a link: L^-1 J of direction d is (per_root_mass d, S d).
 struct Leverage {
   Leverage(const ContactRates& link, Vec3 p_W, Vec3 normal)
       : n_W(normal),
@@ -113,7 +113,7 @@ struct Pushed {
         ws(at_now) {}
 
   [[nodiscard]] bool moves(int link) const noexcept { return link != 0 && model.links[at(link)].mass > 0; }
-  // f (n L^-1 J)^2 along the normal, summed; its reciprocal is the mass that the point feels [kg]
+  // f (n L^-1 J)^2 along the normal, summed; its reciprocal is the effective mass of the point [kg]
   [[nodiscard]] double mass(const ContactRates (&as_free)[2], Vec3 p_W, Vec3 n_W) const noexcept {
     double inverse = 0;
     for (std::size_t i = 0; i < 2; ++i) {
@@ -179,11 +179,12 @@ double impact_rate(const Model& model, const Workspace& ws, std::size_t pair, co
   ContactRates as_free[2] = {pushed.as_free(0), pushed.as_free(1)};
   Vec3 apart;
   for (std::size_t i = 0; i < 2; ++i) {
-    // where they have come to
-    const Vec3 way = (ws.contact->ahead[frames[i]].p_WF - ws.contact->start_poses[frames[i]].p_WF) * meeting.share;
-    as_free[i].c_W = as_free[i].c_W + way;
+    // their positions at the meeting
+    const Vec3 displacement =
+        (ws.contact->ahead[frames[i]].p_WF - ws.contact->start_poses[frames[i]].p_WF) * meeting.share;
+    as_free[i].c_W = as_free[i].c_W + displacement;
     const LinkMotion& link = ws.motion[at(pushed.links[i])];
-    const Vec3 v_W = link.v + cross(link.w, meeting.p_W - way - link.p);
+    const Vec3 v_W = link.v + cross(link.w, meeting.p_W - displacement - link.p);
     apart = i == 0 ? v_W : apart - v_W;
   }
   const double approach = std::max(meeting.travel / h, -dot(meeting.n_W, apart));

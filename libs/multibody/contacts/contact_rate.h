@@ -1,4 +1,4 @@
-// How fast the contacts of an instant answer: what an explicit step has to resolve. Internal to the library.
+// Rate of the contacts at an instant, which an explicit step must resolve. Internal to the library.
 //
 // With slopes k, c of the laws along the directions d of all contact points (normal: spring and damping at the present
 // depth; tangents: bristles), J = [d, r x d] on a link from its centre of mass and the link's own mass M = L L^T,
@@ -9,8 +9,8 @@
 // The rate is an upper bound of the fastest damping rate and of the highest angular frequency of bodies that are free;
 // joints only make bodies heavier, so it is one for a mechanism as well. A point mass has no rotation.
 //
-// What goes deeper answers faster on its way: the normal slopes are those at the deepest point that a free mass gets to
-// from here (contact/normal_law.h, (4)), which for a ball that comes from outside is sqrt(2 k a/m) of its damping.
+// A deepening contact becomes faster: the normal slopes are those at the deepest point that a free mass reaches from
+// here (contact/normal_law.h, (4)); for a ball from outside the damping then gives sqrt(2 k a/m).
 #pragma once
 
 #include "contact/sweep.h"
@@ -21,11 +21,11 @@ namespace slew::multibody {
 // (1) [1/s] for the contacts of the last evaluation; 0 when nothing touches. Real-time safe.
 [[nodiscard]] double contact_rate(const Model& model, Workspace& ws) noexcept;
 
-// The same [1/s] for a pair that does not touch yet and meets on the way of the next h [s]; pair: of those tested.
+// The same [1/s] for a pair that does not touch yet and meets within the next h [s]; pair: index of the tested pairs.
 [[nodiscard]] double impact_rate(const Model& model, const Workspace& ws, std::size_t pair,
                                  const contact::Meeting& meeting, double h) noexcept;
 
-// Whether a contact point closes or opens faster than the slowest impact that its law knows.
+// True if a contact point closes or opens faster than the smallest impact speed of its law.
 [[nodiscard]] bool has_impact(const Model& model, const Workspace& ws) noexcept;
 
 }  // namespace slew::multibody

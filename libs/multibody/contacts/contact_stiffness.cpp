@@ -13,7 +13,7 @@ using math::Vec3;
 
 namespace {
 
-// Symmetric part of a matrix across n, its eigenvalues cut to what is not negative: of two tangents its entries are
+// Symmetric part of a matrix across n, with negative eigenvalues set to zero: of two tangents its entries are
 // a, b, b, c.
 Mat3 definite_across(Vec3 n, const Mat3& A) noexcept {
   const Vec3 other = std::fabs(n[0]) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);

@@ -20,7 +20,7 @@ using contact::find_named;
 
 namespace {
 
-// deeper than any load presses shapes that a scene puts onto each other
+// depth above that of any load on resting shapes
 constexpr double kDeepStart = 1e-2;  // m
 
 bool is_mesh(const ShapeDef& shape) {
@@ -30,7 +30,7 @@ bool is_mesh(const ShapeDef& shape) {
 class ContactValidator {
  public:
   ContactValidator(const MechanicsDef& mechanics, Problems& problems) : m_(mechanics), problems_(problems) {
-    Problems known;  // the tree's problems are told by others
+    Problems known;  // problems of the tree are reported elsewhere
     carrier_ = merged_into(m_, find_tree(m_, known));
   }
 
@@ -83,7 +83,7 @@ class ContactValidator {
     return carrier_[static_cast<std::size_t>(number_of_(shape.body))];
   }
 
-  // everything, but pairs that cannot move against each other only with their law
+  // check everything; for pairs without relative motion only the law
   contact::ContactDef definition() {
     contact::ContactDef def;
     for (const ShapeDef& shape : m_.shapes) {
@@ -140,7 +140,7 @@ void find_deep_starts(const MechanicsDef& m, Problems& warnings) {
   }
 }
 
-// sqrt(k/m) or c/m, for the slowest impact that the law knows
+// sqrt(k/m) or c/m, for the smallest impact speed of the law
 double rate_of_impact(const Model& model, const contact::ContactPair& pair) {
   const int links[2] = {model.contact->frames[model.contact->model.frame_of(pair.shape_a)].link,
                         model.contact->frames[model.contact->model.frame_of(pair.shape_b)].link};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kPerPair = 11, kPerPoint = 11;
 
-// What the points of one pair add up to.
+// Sums over the points of one pair.
 struct PairSum {
   double count = 0, depth = 0, pressure = 0;
   Vec3 normal_W, friction_W, moment_W;  // N, N, N m: points weighted by their normal force
@@ -38,8 +38,8 @@ PairSum sum_of(std::size_t pair, const ContactWorkspace& contacts) noexcept {
   return sum;
 }
 
-// The points of a pair that its slots show, as indices of ContactWorkspace::forces in the order of the search; the
-// deepest when there are more of them than slots.
+// The points of a pair in its slots, as indices of ContactWorkspace::forces in the order of the search; the deepest
+// when there are more of them than slots.
 using Slots = StaticVector<std::size_t, contact::kMaxPointsPerPair>;
 
 Slots slots_of(std::size_t pair, std::size_t count, const ContactWorkspace& contacts) noexcept {

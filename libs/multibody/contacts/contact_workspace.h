@@ -1,4 +1,4 @@
-// What a search for contacts and their forces leaves behind, and what a sub-step needs to carry contacts along.
+// Results of a search for contacts and their forces, and the data that a sub-step needs to advance contacts.
 #pragma once
 
 #include <vector>
@@ -26,9 +26,9 @@ struct ScaledSlopes {
   math::Mat3 push, mixed, turn;
 };
 
-// A link as if it were free, and what its contacts add up to, scaled by its mass (contact_rate.h).
+// A link taken as free, and the sums of its contacts, scaled by its mass (contact_rate.h).
 struct ContactRates {
-  bool is_touched = false;   // or nothing else is valid
+  bool is_touched = false;   // false: the other members are not valid
   math::Vec3 c_W;            // m, centre of mass
   double per_root_mass = 0;  // 1/sqrt(kg)
   math::Mat3 turning;        // from a moment in Ground axes [1/(kg^0.5 m)]
@@ -40,7 +40,7 @@ struct ContactWorkspace {
   explicit ContactWorkspace(const ContactElements& elements);
 
   struct FrameSpeed {
-    math::Vec3 v_W;  // m/s, of the origin
+    math::Vec3 v_W;  // m/s, velocity of the origin
     math::Vec3 w_W;  // rad/s
   };
 
@@ -50,15 +50,15 @@ struct ContactWorkspace {
   std::vector<contact::Pose> poses, start_poses, ahead;  // by frame: now, at the start, where the start's speeds lead
   std::vector<FrameSpeed> start_speeds;                  // by frame
   std::vector<unsigned char> was_touching;               // by pair, at the start: 0 or 1
-  std::vector<ContactForce> forces;                      // of the last search
+  std::vector<ContactForce> forces;                      // forces of the last search
   std::size_t force_count = 0;
   std::vector<ContactRates> rates;  // by link, up to the last one with a shape
   double time = 0;                  // s, since the start of the sub-step
-  bool is_near = true;  // something touches or may touch within the sub-step; false: no search until its end
-  bool is_hit = false;  // in the last accepted sub-step something touched or went deeper faster than the slowest impact
-                        // that its law knows
-  bool is_lost = false;  // since this was last cleared, shapes went through each other unseen, or contacts answered
-                         // faster than the shortest part
+  bool is_near = true;   // something touches or may touch within the sub-step; false: no search until its end
+  bool is_hit = false;   // in the last accepted sub-step a contact closed or deepened faster than the smallest impact
+                         // speed of its law
+  bool is_lost = false;  // since this was last cleared, shapes passed through each other, or contacts were faster than
+                         // the shortest part
 };
 
 }  // namespace slew::multibody

@@ -98,7 +98,7 @@ void evaluate_node(const Model& model, const Constraint& joint, Workspace& ws, s
                    std::span<double> modal) noexcept {
   const auto index = at(joint.node);
   const FlexibleNode& node = model.nodes[index];
-  // as the frame moves without accelerations: those are the row's own business
+  // from the frame's motion without accelerations, which the row adds itself
   LinkMotion frame = ws.motion[at(joint.link1)], place;
   frame.a = frame.alpha = Vec3();
   move_node(node, frame, ws.parts[at(node.part)], ws.nodes[index], place);

@@ -22,7 +22,7 @@ struct ModalBlock {
   int node = 0;
   std::size_t part = 0;              // Model::parts
   std::size_t first = 0, count = 0;  // modes
-  std::size_t place = 0;             // of the first among all modes
+  std::size_t place = 0;             // place of the first among all modes
 };
 
 // Appends nodes for the modes of all parts to a pattern, coupled to their frames' links and to the nodes' links, whose
@@ -40,7 +40,7 @@ struct ModalBlock {
 // Parts and nodes' places of the motion in ws, whose links have theirs; q, u: of all modes.
 void see_parts(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept;
 
-// What accelerations of all modes add to the wrenches and biases of update_inertia().
+// Adds the accelerations of all modes to the wrenches and biases of update_inertia().
 void add_modal_accelerations(const Model& model, std::span<const double> rate, Workspace& ws) noexcept;
 
 // Scratch for a block of the matrix.

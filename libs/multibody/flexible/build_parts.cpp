@@ -94,7 +94,7 @@ void add_parts(const MechanicsDef& mechanics, Model& model) {
       model.start_is_given.push_back(0);
     }
     Link& link = model.links[at(part.link)];
-    // without modes it is its link, and nothing of it is computed
+    // without modes the node is its link and needs no computation
     if (part.modes == 0) {
       model.parts.push_back(std::move(part));
       continue;

@@ -6,7 +6,7 @@
 
 namespace slew::multibody {
 
-// Of the node that the body's joint of the type `node` holds, for frames as they stand at the start.
+// The node held by the body's joint of the type `node`, for the frames at the start.
 [[nodiscard]] FlexibleNode build_node(const MechanicsDef& mechanics, const JointDef& joint, const Body& flexible);
 
 // Appends the parts with their coordinates, after the bodies and joints; nodes are bound to them. Start coordinates are

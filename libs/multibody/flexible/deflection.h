@@ -1,4 +1,4 @@
-// How far flexible bodies bend.
+// Deflection of flexible bodies.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,12 @@ namespace slew::multibody {
 [[nodiscard]] math::Vec3 deflection(const ModalNode& node, std::span<const double> q) noexcept;
 
 // Beyond it small-deflection theory is off by more than a percent.
-inline constexpr double kSmallDeflection = 0.1;  // of the body's length
-// Twice its length is as far as a node can get from where it was on the undeformed body, and half as much again is left
-// to a theory that lengthens what bends.
-inline constexpr double kLostDeflection = 3;  // of the body's length
+inline constexpr double kSmallDeflection = 0.1;  // share of the body's length
+// A node can move by twice the body's length from its undeformed place; half as much again allows for a theory that
+// lengthens bent bodies.
+inline constexpr double kLostDeflection = 3;  // in body lengths
 
-// Nodes that move most in one of the modes, and the last node: so few that their number is the modes', not the nodes'.
+// Nodes that move most in one of the modes, and the last node: their number grows with the modes, not the nodes.
 [[nodiscard]] std::vector<std::size_t> widest_nodes(const ModalBody& body);
 
 // Largest distance between two nodes [m].
@@ -29,7 +29,7 @@ struct LargestDeflection {
   std::int64_t node = 0;  // id
   double size = 0;        // m
 };
-// Of some nodes. No allocation.
+// Largest deflection of some nodes. No allocation.
 [[nodiscard]] LargestDeflection largest_deflection(const ModalBody& body, std::span<const std::size_t> nodes,
                                                    std::span<const double> q) noexcept;
 

@@ -11,7 +11,7 @@
 namespace slew::multibody {
 namespace {
 
-// of a matrix whose numbers came through another program's text or arithmetic
+// tolerance of a matrix from another program's text or arithmetic
 constexpr double kSymmetric = 1e-9;
 
 bool is_symmetric(std::span<const double> A, std::size_t n) noexcept {
@@ -73,7 +73,7 @@ Status check_elastic_law(const Model& model, std::size_t part, const ElasticLaw&
   };
   if (law.Q.size() != n || law.q_ref.size() != n || law.u_ref.size() != n || law.K.size() != n * n ||
       law.D.size() != n * n) {
-    return wrong(fmt::format("the flex node states {} modes, mechanics has {}: the nodes run different scenes",
+    return wrong(fmt::format("the flex node publishes {} modes, mechanics has {}: the nodes run different scenes",
                              law.Q.size(), n));
   }
   for (const auto values : {law.Q, law.q_ref, law.u_ref, law.K, law.D}) {

@@ -23,7 +23,7 @@ class Expander {
       take_mass(*flexible.modes, *find(def_.bodies, flexible.body));
     }
     for (const SegmentedBodyDef& segmented : def_.segmented_bodies) add_lumps(segmented);
-    // bodies first that something is placed at, so that their order is that of the file
+    // bodies with attached elements first, so that their order is that of the file
     for (JointDef& joint : def_.joints) attach(joint.body1, joint.point1), attach(joint.body2, joint.point2);
     for (TranslationalForceDef& force : def_.translational_forces) {
       attach(force.body1, force.point1), attach(force.body2, force.point2);
@@ -51,7 +51,7 @@ class Expander {
     return found == bodies.end() ? nullptr : &*found;
   }
 
-  // the body of a node, made where it is new
+  // the body of a node, created if new
   std::string use(const FlexibleBodyDef& flexible, std::size_t index) {
     const ModalNode& node = flexible.modes->nodes[index];
     std::string name = node_name(flexible.body, node.id);
@@ -107,7 +107,7 @@ class Expander {
       def_.joints.push_back({.name = name, .type = JointType::floating, .body1 = ground, .body2 = name});
       connect(def_.joints.back());
     };
-    // a root without joints is free where joints hold other lumps; else the scene has forgotten the body
+    // a root without joints is free if joints hold other lumps; else the scene lacks a joint for the body
     const std::size_t root = segmented.chain->root, count = segmented.chain->lumps.size();
     bool is_held = false;
     for (std::size_t i = 0; i < count; ++i) {
@@ -119,7 +119,7 @@ class Expander {
     }
   }
 
-  // the body of a node that rides on a lump, made where it is new
+  // the body of a node that rides on a lump, created if new
   std::string use(const SegmentedBodyDef& segmented, const SegmentNode& node) {
     std::string name = node_name(segmented.body, node.id);
     if (!used_.insert(name).second) return name;
@@ -131,7 +131,7 @@ class Expander {
     return name;
   }
 
-  // whether body was one of a segmented one
+  // true if the body belongs to a segmented one
   bool attach_to_lump(std::string& body, Triple& point) {
     for (const SegmentedBodyDef& segmented : def_.segmented_bodies) {
       const SegmentChain& chain = *segmented.chain;

@@ -14,15 +14,15 @@ namespace slew::multibody {
 [[nodiscard]] std::string lump_name(const SegmentedBodyDef& segmented, std::size_t lump);
 
 // The same mechanics with, for every node of a flexible body at which something is attached, a massless body and a
-// joint of the type `node` that holds it; whatever referred to the flexible body at a point refers to the nearest node
-// then, and what names a node to that. What is attached at the root stays with the body. Flexible bodies have the mass
+// joint of the type `node` that holds it; references to the flexible body at a point then refer to the nearest node,
+// and references by name to the named node. Attachments at the root stay with the body. Flexible bodies have the mass
 // and the inertia of their modes' source.
 // Segmented bodies become rigid ones, their root lumps, and their other lumps are bodies, free of Ground where no joint
-// of the scene holds them; what refers to such a body at a point refers to the nearest lump then, and nodes that are
-// used are massless bodies fixed to the lump that holds them. Beams are not in it: add_segments(). Allocates.
+// of the scene holds them; references to such a body at a point then refer to the nearest lump, and used nodes are
+// massless bodies fixed to the lump that holds them. Beams are added by add_segments(). Allocates.
 [[nodiscard]] MechanicsDef with_nodes(const MechanicsDef& mechanics);
 
-// Whether with_nodes() changes anything.
+// True if with_nodes() changes the mechanics.
 [[nodiscard]] inline bool has_parts(const MechanicsDef& mechanics) noexcept {
   return !mechanics.flexible_bodies.empty() || !mechanics.segmented_bodies.empty();
 }

@@ -1,4 +1,4 @@
-// What a scene says about flexible bodies.
+// Definition of flexible bodies.
 #pragma once
 
 #include <memory>
@@ -9,15 +9,16 @@
 
 namespace slew::multibody {
 
-// Makes a body of the scene flexible. Its mass and inertia are then those of the modes' source. Points of the body at
-// which something is attached ride on the node that is nearest, with the distance between as a rigid arm; a node can be
-// named as if it were a body: "Truck_JibBoom.Node20", its frame at the node, its axes those of the body.
+// Makes a body of the scene flexible. Its mass and inertia are then those of the modes' source. Attachment points of
+// the body ride on the nearest node, with the distance as a rigid arm; a node can be named like a body:
+// "Truck_JibBoom.Node20", its frame at the node, its axes those of the body.
 struct FlexibleBodyDef {
-  std::string body{};                        // of the scene
+  std::string body{};                        // name of the scene's body
   std::shared_ptr<const ModalBody> modes{};  // selected
   std::vector<double>
       relative_damping{};       // zeta by mode: 2 zeta omega on the normalised mode; one for all, or empty: 0
-  std::vector<double> start{};  // q by mode; empty: as it rests in the start's pose, in a mechanism with loops zero
+  std::vector<double> start{};  // q by mode; empty: static equilibrium in the start's pose, zero in a mechanism with
+                                // loops
 };
 
 struct BodyDef;

@@ -13,7 +13,7 @@
 //   f   = m a + alpha x s + b u' + w x (w x s) + 2 w x (b u) + (G u) u                                  (4)
 //   n   = s x a + J alpha + c u' + w x (J w) + (dJ/dt) w + w x (c u) + ax(H u u)                         (5)
 //   0   = b . a + c . alpha + M u' + 2 w . ax(Y_lk) u_l - 1/2 w . (dJ/dq_k) w + K q + D u - Q_0          (6)
-// so that energy and momentum of (3) are kept whatever the truncation of (3). Equations 34 to 36 of the flexible-body
+// so that energy and momentum of (3) are kept at any truncation of (3). Equations 34 to 36 of the flexible-body
 // tutorial thesis (2017), -A u~ G as in the errata; quadratic terms as Shabana, chapter 5.
 //
 // The recursion takes the modes as coordinates outside of the frame's joint:
@@ -39,25 +39,25 @@ namespace slew::multibody {
 
 // Pairs k, l at k * modes + l; vectors and matrices in the axes of the link, moments about its origin.
 struct FlexiblePart {
-  std::string name{};  // of the body
+  std::string name{};  // name of the body
   int body = 0;        // Model::bodies
   int link = 0;        // its frame
   int q = 0, u = 0;    // first modal coordinate in State::q and State::u
   std::size_t modes = 0;
   bool is_start_given = false;
   std::shared_ptr<const ModalBody> source{};  // the body before it was turned into the link's axes
-  std::vector<std::size_t> watched{};         // nodes of it that move most in one of the modes, and the last one
+  std::vector<std::size_t> watched{};         // its nodes that move most in one of the modes, and the last one
   double length = 0;                          // m, length_of() it
   std::vector<math::Vec3> C, G;
   std::vector<math::Mat3> Z, Y, H;
   std::vector<math::Vec3> Y_cross, H_cross;  // ax(Y), ax(H) by pair
   std::vector<double> mass_matrix, stiffness, damping;
-  std::vector<double> preload;  // elastic force at q = 0, u = 0, by mode; 0 unless a partner states it
-  bool is_diagonal = false;     // stiffness and damping, as modes of the whole body have them
+  std::vector<double> preload;  // elastic force at q = 0, u = 0, by mode; 0 unless a partner publishes it
+  bool is_diagonal = false;     // stiffness and damping are diagonal, as for modes of the whole body
   [[nodiscard]] bool is_shortening() const noexcept { return !G.empty(); }
 };
 
-// Of a link with LinkJoint::node.
+// Node of a link with LinkJoint::node.
 struct FlexibleNode {
   int part = 0;                         // Model::parts
   math::Vec3 x;                         // m, undeformed, in the frame's link
@@ -66,8 +66,8 @@ struct FlexibleNode {
   std::vector<math::Vec3> shortening;   // g by pair; empty: none
 };
 
-// At one instant. In the axes of the frame's link: s and J less their values at q = 0; the others in Ground axes about
-// its origin.
+// A part at one instant. In the axes of the frame's link: s and J less their values at q = 0; the others in Ground axes
+// about its origin.
 struct PartMotion {
   explicit PartMotion(std::size_t modes);
   std::vector<double> q, u;
@@ -75,18 +75,18 @@ struct PartMotion {
   math::Mat3 J_L;  // kg m2
   math::Vec3 s;    // the same in Ground axes
   math::Mat3 J;
-  math::Vec3 f, n;                       // of (4), (5), what speeds alone make [N, N m]
-  std::vector<math::Vec3> b, c;          // of (4), (5)
+  math::Vec3 f, n;                       // terms of (4), (5) by speeds alone [N, N m]
+  std::vector<math::Vec3> b, c;          // coefficients of (4), (5)
   std::vector<math::Mat3> W_q;           // dW/dq_k, in the axes of the frame's link
   std::vector<double> bias;              // right side of (6) with u' = 0
-  std::vector<math::Vec3> B_lin, B_ang;  // of (7)
+  std::vector<math::Vec3> B_lin, B_ang;  // columns of (7)
   std::vector<double> E;                 // then its Cholesky factor (small_cholesky.h)
   std::vector<math::Vec3> X_lin, X_ang;  // E^-1 B^T, by mode
 };
 
 struct NodeMotion {
   explicit NodeMotion(std::size_t modes) : Phi(modes), Psi(modes) {}
-  std::vector<math::Vec3> Phi, Psi;  // of (2)
+  std::vector<math::Vec3> Phi, Psi;  // columns of (2)
 };
 
 struct Model;
@@ -111,7 +111,7 @@ void add_part(const FlexiblePart& part, const LinkMotion& frame, PartMotion& mot
 void add_node(const Model& model, std::size_t link, Workspace& ws) noexcept;
 void eliminate_modes(const Model& model, std::size_t part, Workspace& ws) noexcept;
 
-// solve_forward(): accelerations of the modes once the frame has its own, and what they add to those of a node's link.
+// solve_forward(): accelerations of the modes after those of the frame, and their part in those of a node's link.
 void solve_modes(const Model& model, std::size_t part, const Workspace& ws, std::span<const double> residual,
                  std::span<double> udot) noexcept;
 void follow_node(const Model& model, std::size_t link, std::span<const double> udot, Workspace& ws) noexcept;

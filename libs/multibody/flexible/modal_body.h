@@ -1,8 +1,8 @@
-// What a flexible body is made of: the modes of its deformation with their inertia, as numbers that do not change.
+// Modal description of a flexible body: the modes of its deformation with their inertia, as constant numbers.
 //
 // A material point x of the undeformed body stands, in the body's frame, at
 //   p(q) = x + sum_k phi_k q_k + 1/2 sum_kl g_kl q_k q_l                                          (1)
-// q: modal coordinates; phi_k: shape of a mode; g_kl: what bending takes off the length (geometric stiffening), zero
+// q: modal coordinates; phi_k: shape of a mode; g_kl: shortening by bending (geometric stiffening), zero
 // in a linear body. Integrals over the mass, x, phi, g at the material point:
 //   s_0 = int x,  W_0 = int x x^T,  C_k = int phi_k,  Z_k = int x phi_k^T,  Y_kl = int phi_k phi_l^T,
 //   G_kl = int g_kl,  H_kl = int x g_kl^T                                                          (2)

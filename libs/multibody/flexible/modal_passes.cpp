@@ -54,7 +54,7 @@ void eliminate_modes(const Model& model, std::size_t index, Workspace& ws) noexc
   ArticulatedInertia& I = ws.inertia[at(part.link)];
   const std::size_t n = part.modes;
   const int size = static_cast<int>(n);
-  // what is singular shows as accelerations that are not finite
+  // a singular matrix gives accelerations that are not finite
   if (!math::factorize_cholesky(motion.E.data(), size)) motion.E[0] = 0;
   substitute(motion.E, motion.B_ang, motion.X_ang);
   substitute(motion.E, motion.B_lin, motion.X_lin);

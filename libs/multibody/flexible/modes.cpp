@@ -79,7 +79,7 @@ void see_part(const FlexiblePart& part, std::span<const double> q, std::span<con
               PartMotion& motion) noexcept {
   const std::size_t n = part.modes;
   Vec3 s;
-  Mat3 half;  // of W less W_0, but for its transpose
+  Mat3 half;  // half of W less W_0, without its transpose
   for (std::size_t k = 0; k < n; ++k) {
     motion.q[k] = q[k];
     motion.u[k] = u[k];
@@ -143,7 +143,7 @@ void move_node(const FlexibleNode& node, const LinkMotion& frame, const PartMoti
 void add_part(const FlexiblePart& part, const LinkMotion& frame, PartMotion& motion,
               ArticulatedInertia& inertia) noexcept {
   const std::size_t n = part.modes;
-  if (n == 0) return;  // as motion was made: nothing beyond the undeformed body
+  if (n == 0) return;  // no modes: nothing beyond the undeformed body
   const Vec3 w = transpose_multiply(frame.R, frame.w);
   Vec3 flow, spin, curl_lin, curl_ang;  // b u, c u in Ground; (G u) u, ax(H u u) in the link's axes
   Mat3 W_dot;

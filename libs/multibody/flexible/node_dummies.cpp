@@ -77,7 +77,7 @@ void see_outer(const Model& model, const Workspace& ws, const NodeDummy& dummy, 
   }
 }
 
-// (4) but for Z
+// (4) without Z
 void eliminate_outer_modes(const Model& model, const Workspace& ws, const NodeDummy& dummy,
                            NodeDummyMotion& m) noexcept {
   if (dummy.outer_part < 0) return;
@@ -107,7 +107,7 @@ Vec3 of_joint(const Link& link, std::span<const double> x) noexcept {
   return count == 2 ? load_pair(x, link.u) : Vec3(x[at(link.u)], 0, 0);
 }
 
-// (5) but for Z; then p about the origin of the link that carries the joint
+// (5) without Z; then p about the origin of the link that carries the joint
 void eliminate_joint(const Link& link, const LinkMotion& motion, const JointFactor& factor,
                      std::span<const double> residual, NodeDummyMotion& m) noexcept {
   for (int z = 0; z < 3; ++z) m.R.c[z] = along_joint(link.joint, motion, m.p_ang.c[z], m.p_lin.c[z]);
@@ -251,7 +251,7 @@ void couple_node_dummies(const Model& model, std::size_t index, Workspace& ws) n
 
 namespace {
 
-// z' with the motion of the frame and the modes that u' has so far
+// z' with the motion of the frame and of the modes computed so far
 Vec3 point_of(const Model& model, const NodeDummy& dummy, const NodeDummyMotion& m, std::span<const double> udot,
               const Workspace& ws) noexcept {
   Vec3 z = ws.delta_a[at(dummy.frame)] + cross(ws.delta_alpha[at(dummy.frame)], m.arm);
@@ -293,8 +293,8 @@ void pull_modes(const Model& model, std::size_t index, std::span<double> udot, c
   }
 }
 
-void push_back(const Model& model, std::size_t index, const Workspace& ws, std::span<double> residual,
-               std::span<const double> rate, std::span<Vec3> n, std::span<Vec3> f) noexcept {
+void back_substitute(const Model& model, std::size_t index, const Workspace& ws, std::span<double> residual,
+                     std::span<const double> rate, std::span<Vec3> n, std::span<Vec3> f) noexcept {
   const Link& link = model.links[index];
   const Vec3 joint = of_joint(link, rate);
   for (int i = link.first_node_dummy; i < link.node_dummy_end; ++i) {

@@ -4,11 +4,12 @@
 // Their quadratic form in the velocities of both points is exact: with x_B further from Ground than x_A,
 //   T = 1/2 x_B^T A_BB x_B + x_B^T A_AB x_A + 1/2 x_A^T A_AA x_A                                        (1)
 // The first and the last term are a mass at a point of one link, node or frame, and join the link's inertia before the
-// recursion begins. What is left couples x_B with z = x_A, of a body nearer to Ground. A lies on the body that carries
-// the joint of B's (frame F, speeds V_F, u_F of its modes), B on the body that the joint moves (link C, modes u_C):
+// recursion begins. The remaining term couples x_B with z = x_A, a point of a body nearer to Ground. A lies on the body
+// that carries the joint of B's (frame F, speeds V_F, u_F of its modes), B on the body that the joint moves (link C,
+// modes u_C):
 //   z = J V_F + sum_k y_k u_Fk,   y_k = Phi_k + Psi_k x s_A,   J = [1, -(P_A - p_F)~]                    (2)
-// Seen from C, z is one more thing that its modes and its joint depend on, like the motion of the parent. Columns for z
-// of the wrench on C and of the forces on u_C:
+// For C, z is one more input of its modes and its joint, like the motion of the parent. Columns for z of the wrench on
+// C and of the forces on u_C:
 //   p = (s_B~, 1) A_AB,   r_k = A_AB (Phi_k + Psi_k x s_B)     (no r where B is on the frame itself)    (3)
 // and as modes and joint are eliminated, with E, B, U, S, D of flexible_part.h and articulated.cpp,
 //   X = E^-1 r,  p <- p - B X,  Z_ij -= r_i^T X_j,  h += X^T residual_C                                 (4)
@@ -49,7 +50,7 @@ struct NodeDummy {
   bool is_point1_outer = false;
 };
 
-// At one instant.
+// Values at one instant.
 struct NodeDummyMotion {
   NodeDummyMotion(std::size_t inner_modes, std::size_t outer_modes)
       : y(inner_modes), g(inner_modes), r(outer_modes), X(outer_modes) {}
@@ -57,8 +58,8 @@ struct NodeDummyMotion {
   math::Vec3 h;               // N
   math::Mat3 p_ang, p_lin;    // first about C's origin, then about F's
   math::Mat3 R, DR;           // R, D^-1 R: rows by coordinate of the joint
-  std::vector<math::Vec3> y;  // of (2)
-  std::vector<math::Vec3> g;  // of (6)
+  std::vector<math::Vec3> y;  // columns of (2)
+  std::vector<math::Vec3> g;  // columns of (6)
   std::vector<math::Vec3> r, X;
 };
 
@@ -66,19 +67,19 @@ struct NodeDummyMotion {
 // not take as those of a joint. Allocates.
 void add_node_dummies(Model& model, std::size_t first);
 
-// Before factorize() begins: (1), and (6) of what lies on one body.
+// Call before factorize(): (1), and (6) of dummies on one body.
 void begin_node_dummies(const Model& model, Workspace& ws) noexcept;
 
-// After the elimination of the modes and the joint of a link: (3) to (6).
+// Call after the elimination of the modes and the joint of a link: (3) to (6).
 void couple_node_dummies(const Model& model, std::size_t link, Workspace& ws) noexcept;
 
 // solve_forward(): (7) for the joint, once its rates are known without z, and then for the modes.
 void pull_joint(const Model& model, std::size_t link, std::span<double> udot, Workspace& ws) noexcept;
 void pull_modes(const Model& model, std::size_t link, std::span<double> udot, const Workspace& ws) noexcept;
 
-// solve_backward(): what the residuals of a link's modes and the rates of its joint put on A, into the wrenches n, f on
-// all links and the residuals of the modes.
-void push_back(const Model& model, std::size_t link, const Workspace& ws, std::span<double> residual,
-               std::span<const double> rate, std::span<math::Vec3> n, std::span<math::Vec3> f) noexcept;
+// solve_backward(): adds the load on A by the residuals of a link's modes and the rates of its joint to the wrenches n,
+// f on all links and the residuals of the modes.
+void back_substitute(const Model& model, std::size_t link, const Workspace& ws, std::span<double> residual,
+                     std::span<const double> rate, std::span<math::Vec3> n, std::span<math::Vec3> f) noexcept;
 
 }  // namespace slew::multibody

@@ -12,10 +12,10 @@ namespace slew::multibody {
 namespace {
 
 constexpr int kMostIterations = 500;
-constexpr double kAlike = 1e-6;         // of two iterations
+constexpr double kAlike = 1e-6;         // relative change of two iterations
 constexpr double kSegmentProbe = 1e-8;  // m, rad
 
-// the masses and the chains, nothing else that pushes
+// the masses and the chains, without other forces
 Model bare(const Model& model) {
   Model stripped = model;
   stripped.gravity = {};

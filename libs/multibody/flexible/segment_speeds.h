@@ -1,4 +1,4 @@
-// How fast bodies of finite segments move by themselves. Internal to the library.
+// Natural frequencies of bodies of finite segments. Internal to the library.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace slew::multibody {
 struct FastestSegments {
   double omega = 0;      // rad/s
   double decay = 0;      // 1/s, beta omega^2
-  std::size_t part = 0;  // Model::segmented, that moves most in it
+  std::size_t part = 0;  // part with the largest motion, Model::segmented
 };
 
 // Largest frequency of the mechanism at its start with the segments' beams as its only springs: by power iteration with

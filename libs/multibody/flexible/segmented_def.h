@@ -1,4 +1,4 @@
-// What a scene says about bodies made of finite segments, and what such a body is made of.
+// Definition of bodies made of finite segments, and the data of such a body.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace slew::multibody {
 
-// Rigid, with its mass around a place of the beam.
+// A rigid lump with its mass around a point of the beam.
 struct SegmentLump {
   math::Vec3 station;  // m, frame of the whole body
   double mass = 0;     // kg
@@ -20,7 +20,7 @@ struct SegmentLump {
   math::Mat3 inertia;  // kg m2 about the centre, axes of that frame
 };
 
-// Massless, between two lumps; near is the one on the way to the root.
+// A massless connector between two lumps; near is the one towards the root.
 struct SegmentConnector {
   std::size_t near = 0, far = 0;
   math::Mat3 axes;  // columns x from near to far, y, z, undeformed; frame of the whole body
@@ -38,19 +38,19 @@ struct SegmentChain {
   std::string source{};                      // for messages
   std::vector<SegmentLump> lumps{};          // from one end of the beam to the other
   std::vector<SegmentConnector> connectors;  // each after the one that carries its near lump
-  std::size_t root = 0;                      // lump that the scene's body becomes
-  std::vector<SegmentNode> nodes{};          // of the source; the last is the tip
-  double first_frequency = 0;                // of the source, omega_1 [rad/s]
+  std::size_t root = 0;                      // lump that represents the scene's body
+  std::vector<SegmentNode> nodes{};          // nodes of the source; the last is the tip
+  double first_frequency = 0;                // omega_1 of the source [rad/s]
 };
 
-// straight, of one body: all of the mechanism start so.
+// straight, for one body: all segmented bodies of the mechanism start so.
 enum class SegmentStart : int { at_rest, straight };
 
 // Makes a body of the scene a chain of lumps: the root lump is the body itself, with its frame; the others are bodies
-// "Boom.Segment2", counted from the beam's end, each with its frame at its station. Points of the body at which
-// something is attached ride on the nearest lump, nodes ("Boom.Node20") on the lump that holds them.
+// "Boom.Segment2", counted from the beam's end, each with its frame at its station. Attachment points of the body ride
+// on the nearest lump, nodes ("Boom.Node20") on the lump that holds them.
 struct SegmentedBodyDef {
-  std::string body{};                           // of the scene
+  std::string body{};                           // name of the scene's body
   std::shared_ptr<const SegmentChain> chain{};  // from its files
   double relative_damping = 0;                  // zeta of the first mode: beta = 2 zeta/omega_1
   SegmentStart start = SegmentStart::at_rest;

@@ -1,7 +1,7 @@
-// A body of finite segments in the mechanism: links that move freely of each other, and the beams between them.
+// A body of finite segments in the mechanism: links that move independently, and the beams between them.
 //
-// The lumps' links are floating ones, with the pose in Ground as coordinates, but for the root's and for those that
-// joints of the scene hold; all that bends is in the elements (elements/beam.h), so that no pass knows of segments.
+// The lumps' links are floating ones, with the pose in Ground as coordinates, except the root's and those held by
+// joints of the scene; all elasticity is in the elements (elements/beam.h), so that no pass depends on segments.
 #pragma once
 
 #include <memory>
@@ -18,19 +18,20 @@ struct Model;
 struct Workspace;
 
 struct SegmentedPart {
-  std::string name;                            // of the body
+  std::string name;                            // name of the body
   std::vector<int> bodies{};                   // Model::bodies, by lump
   std::size_t first_beam = 0;                  // ElementSet::beams, one for each connector
   double length = 0;                           // m, of all connectors
-  bool is_free = false;                        // no joint holds a lump but the root: its start can be looked for
-  SegmentStart start = SegmentStart::at_rest;  // as the scene wants it
+  bool is_free = false;                        // no joint holds a lump other than the root: its static equilibrium can
+                                               // be computed
+  SegmentStart start = SegmentStart::at_rest;  // start selected by the scene
   std::shared_ptr<const SegmentChain> source{};
 };
 
 // Beyond it eq. 29 of a connector is off by half a percent (theta^2/8).
 inline constexpr double kLargestBend = 0.2;  // rad
 
-// Of the lumps and nodes against where they would be on a rigid body that moves with the root [m], root's frame.
+// Displacement of the lumps and nodes from a rigid body that moves with the root [m], root's frame.
 // After a motion in ws. None of these allocates.
 [[nodiscard]] math::Vec3 tip_deflection(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept;
 [[nodiscard]] LargestDeflection largest_deflection(const Model& model, const SegmentedPart& part,
@@ -46,13 +47,13 @@ struct LargestBend {
 // Appends the parts and their beams; the bodies are those of with_nodes().
 void add_segments(const struct MechanicsDef& mechanics, Model& model);
 
-// Puts the lumps where the root carries them, undeformed, at its speed: into q and u. Pre-condition: start_q of the
-// joints stands.
+// Sets q and u of the lumps to the undeformed chain that moves with the root. Pre-condition: start_q of the joints
+// stands.
 void straighten_segments(const Model& model, std::span<double> q, std::span<double> u);
 
 // Puts chains at rest in the pose that the joints have at the start, in the connectors' relative coordinates x:
-//   R_1^T sum F = 0,   R_1^T sum M = 0     of all that acts beyond each connector, about its far end           (1)
-//   x <- x + K_b^-1 (1) of each connector, and where that does not shrink by half, Newton's method             (2)
+//   R_1^T sum F = 0,   R_1^T sum M = 0     of all loads beyond each connector, about its far end           (1)
+//   x <- x + K_b^-1 (1) of each connector, and if that does not shrink by half, Newton's method             (2)
 // with gravity, springs, constant loads and the beams themselves, all joints held; row forces are not in it. False: no
 // rest is found, as beyond a buckling load; the chains stay straight.
 [[nodiscard]] bool settle_segments(Model& model);

@@ -1,4 +1,4 @@
-// Where bodies of finite segments stand at the start.
+// Static equilibrium of bodies of finite segments at the start.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -21,8 +21,8 @@ namespace {
 
 constexpr int kMostSettlingCorrections = 60;
 constexpr int kMostSettlingHalvings = 12;
-constexpr int kPatience = 3;                // corrections by compliance that need not shrink
-constexpr double kShrinks = 0.5;            // more slowly: Newton's method
+constexpr int kPatience = 3;                // corrections by compliance without required decrease
+constexpr double kShrinks = 0.5;            // required decrease; otherwise Newton's method
 constexpr double kSegmentsSettled = 1e-12;  // largest correction: m over the connector's length, rad
 constexpr double kSettlingRounding = 1e-8;  // below it corrections that do not shrink any more are rounding
 constexpr double kSettlingProbe = 1e-7;     // step of the differences, the same
@@ -148,7 +148,7 @@ class Settling {
     chains_.place(x, state_.q, rest_, ws_);
     apply_all(model_, state_.q, ws_);
     for (const CoupledMass& mass : model_.coupled) add_coupled(mass);
-    // what must act on a link for rest, gathered inwards about the links' origins
+    // loads required for equilibrium of a link, summed inwards about the links' origins
     const std::vector<int>& order = chains_.order();
     for (std::size_t i = order.size(); i-- > 0;) {
       const int link = order[i], carrier = chains_.carrier(link);
@@ -238,7 +238,7 @@ class Settling {
     return largest;
   }
 
-  // x moved by the step, or by the half of it and so on while (1) grows
+  // x moved by the step, which is halved while (1) grows
   double go(const std::vector<double>& step, double merit, std::vector<double>& x, std::vector<double>& r) {
     const std::vector<double> from = x;
     double found = merit, share = 1;

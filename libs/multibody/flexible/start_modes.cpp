@@ -17,8 +17,8 @@ namespace slew::multibody {
 namespace {
 
 constexpr int kMostModeCorrections = 200;
-constexpr double kModesSettled = 1e-11;  // correction, of the largest modal coordinate
-constexpr double kModeProbe = 1e-4;      // step of the differences, of the scale of the modes
+constexpr double kModesSettled = 1e-11;  // correction, relative to the largest modal coordinate
+constexpr double kModeProbe = 1e-4;      // step of the differences, relative to the scale of the modes
 
 class ModalSettling {
  public:
@@ -31,7 +31,7 @@ class ModalSettling {
       const double change = correct();
       if (!std::isfinite(change)) return false;
       if (change <= kModesSettled) return keep();
-      // differences of a potential end in its rounding
+      // differences of a potential are limited by its rounding
       if (i > 1 && change >= before && change < 1e3 * kModesSettled) return keep();
       before = change;
     }

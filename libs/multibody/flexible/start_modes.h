@@ -5,9 +5,8 @@
 
 namespace slew::multibody {
 
-// Puts flexible bodies whose start the scene leaves open to rest in the pose that the joints have at the start: modal
-// coordinates at which gravity, the springs of the mechanism and the point loads of time zero, all joints held, balance
-// the modes,
+// Static equilibrium, in the start pose of the joints, of flexible bodies without a given start: modal coordinates at
+// which gravity, the springs of the mechanism and the point loads of time zero, all joints held, balance the modes,
 //   q <- q + K^-1 (Q - dV/dq),   V the potential energy, Q the generalised forces of the loads            (1)
 // Row forces are not in it. False: (1) does not settle, as beyond a buckling load; the modes start at zero.
 [[nodiscard]] bool settle_modes(Model& model);

@@ -26,10 +26,10 @@ const FlexibleBodyDef* flexible_part_of(const MechanicsDef& mechanics, const std
   return found == mechanics.flexible_bodies.end() ? nullptr : &*found;
 }
 
-// what does not fit a list of one number by mode
+// faults of a list with one number by mode
 void check_count(const FlexibleBodyDef& def, const char* key, std::size_t count, bool may_be_one, Problems& problems) {
   const std::size_t modes = def.modes->modes();
-  // without modes they wait for the modes to come back
+  // without modes the numbers are kept unused
   if (count == 0 || modes == 0 || count == modes || (may_be_one && count == 1)) return;
   problems.push_back({def.body + "." + key, fmt::format("holds {} numbers for {} modes", count, modes),
                       fmt::format("{} numbers{}", modes, may_be_one ? ", or one for all" : ""), ""});
@@ -74,7 +74,7 @@ void check_chains(const MechanicsDef& mechanics, Problems& problems) {
 // where the explicit rules end on the imaginary and on the real axis (Hairer and Wanner, IV.2)
 struct LongestStep {
   double seconds = 0;
-  bool is_swing = true;  // because of the frequency, not of the decay
+  bool is_swing = true;  // limited by the frequency, not by the decay
 };
 LongestStep longest_step(Integrator rule, double omega, double decay) {
   const bool is_rk4 = rule == Integrator::rk4;

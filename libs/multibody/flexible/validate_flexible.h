@@ -1,4 +1,4 @@
-// What is wrong with flexible bodies before anything is built of them. Internal to the library.
+// Problems of flexible bodies before the model is built. Internal to the library.
 #pragma once
 
 #include <string>
@@ -12,13 +12,13 @@ namespace slew::multibody {
 // modes. False: with_nodes() cannot take the mechanics.
 [[nodiscard]] bool check_flexible_bodies(const MechanicsDef& mechanics, Problems& problems);
 
-// "1 to 20" of the flexible body whose node `name` pretends to be; empty when it names none.
+// "1 to 20", the nodes of the flexible body in a node's name `name`; empty if it names none.
 [[nodiscard]] std::string nodes_beside(const MechanicsDef& mechanics, const std::string& name);
 
-// Modes that an explicit integrator cannot follow in its sub-steps as the mechanism holds them at the start.
-// Pre-condition: nothing else is wrong.
+// Checks for modes too fast for an explicit integrator's sub-steps, held by the mechanism at the start. Pre-condition:
+// nothing else is wrong.
 void check_mode_speeds(const MechanicsDef& mechanics, Problems& problems);
-// The same of bodies of finite segments.
+// The same for bodies of finite segments.
 void check_segment_speeds(const MechanicsDef& mechanics, Problems& problems);
 
 }  // namespace slew::multibody

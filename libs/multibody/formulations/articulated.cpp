@@ -4,9 +4,9 @@
 //   delta_A_i = X_i delta_A_parent + S_i u'_i,   X: (alpha, a) -> (alpha, a + alpha x r)            (1)
 //   U = (IA + E) S,  D = S^T U,  Ia = IA + E - U D^-1 U^T,  passed on to the parent through X       (2)
 // D^-1 is zero along directions that are prescribed (motions/drive.h).
-// E is what dummies between the link and its parent add. They see both links' motion, so E differs between the two
-// sides of (2): E_Vq and E_qq for motion of the joint alone, E_VV for motion of both links as one rigid body. Those
-// with a point on another node: flexible/node_dummies.h.
+// E is the contribution of dummies between the link and its parent. They depend on both links' motion, so E differs
+// between the two sides of (2): E_Vq and E_qq for motion of the joint alone, E_VV for motion of both links as one rigid
+// body. Those with a point on another node: flexible/node_dummies.h.
 #include <cstddef>
 
 #include "core/index.h"
@@ -180,7 +180,7 @@ Mat3 inverse_pair(double a, double b, double d) noexcept {
   return {Vec3(d * scale, -b * scale, 0), Vec3(-b * scale, a * scale, 0), Vec3()};
 }
 
-// of the directions that are not prescribed
+// only the directions that are not prescribed
 Mat3 inverse_of_free(const Link& link, double a, double b, double d) noexcept {
   if (!link.is_driven) return inverse_pair(a, b, d);
   Mat3 inverse;

@@ -19,12 +19,12 @@ namespace {
 // thousand
 constexpr int kMostStepCorrections = 30;
 constexpr double kStepSettled = 1e-12;
-// under stiff springs rounding ends the way down before that
+// under stiff springs rounding ends the decrease earlier
 constexpr double kRounded = 1e-9;
 constexpr double kStepStalled = 0.5;
-// the matrix is made anew when a correction shrinks by less
+// the matrix is rebuilt if a correction shrinks by less
 constexpr double kSlowStep = 0.1;
-constexpr double kClosedRate = 1e-12;  // m/s, 1/s of its speed
+constexpr double kClosedRate = 1e-12;  // m/s, 1/s, relative to the mechanism's speed
 
 math::Quaternion turned(Vec3 turn, const math::Quaternion& attitude) noexcept {
   const double angle = norm(turn);
@@ -54,7 +54,7 @@ class Trapezoid {
             double h) noexcept
       : model_(model), body_(body), start_(start), ws_(ws), pws_(pws), h_(h) {}
 
-  // from accelerations that stay as they are
+  // from unchanged accelerations
   void predict() noexcept {
     for (std::size_t k = 0; k < pws_.displacement.size(); ++k) {
       pws_.displacement[k] = h_ * (start_.u[k] + 0.5 * h_ * pws_.udot[k]);

@@ -68,15 +68,15 @@ void solve_forward(const Model& model, Workspace& ws, std::span<const double> re
 
 namespace {
 
-// Rows that are passed back together: row k of the wrenches at k * links, of the results at k * speeds.
+// Rows passed back together: wrenches of row k at k * links, its results at k * speeds.
 struct Rows {
   std::size_t count = 0;
-  const double* tau = nullptr;  // of one row; none: zeros
+  const double* tau = nullptr;  // generalised forces of one row; none: zeros
   double* residual = nullptr;
   double* rate = nullptr;
 };
 
-// one row through one link: in n, f the sum of minus the wrenches further out, out what goes on to the parent
+// one row through one link: n, f hold minus the sum of the wrenches further out, then the wrench passed to the parent
 inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& factor, const double* tau,
                       double* residual, double* rate, Vec3& n, Vec3& f) noexcept {
   const auto given = [tau](int k) { return tau == nullptr ? 0.0 : tau[k]; };
@@ -127,7 +127,7 @@ inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& 
   }
 }
 
-// One row through the modes of a link: residual holds minus what the nodes gave them.
+// One row through the modes of a link: residual holds minus the contributions of the nodes.
 [[gnu::noinline]] void pass_modes(const Model& model, const Workspace& ws, const Link& link, const double* tau,
                                   double* residual, double* rate, Vec3& n, Vec3& f) noexcept {
   for (int k = link.first_part; k < link.part_end; ++k) {
@@ -164,8 +164,8 @@ inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& 
 [[gnu::noinline]] void push_to_dummies(const Model& model, Workspace& ws, std::size_t link, const Rows& rows) noexcept {
   const std::size_t links = model.links.size(), speeds = ws.udot.size();
   for (std::size_t k = 0; k < rows.count; ++k) {
-    push_back(model, link, ws, {rows.residual + k * speeds, speeds}, {rows.rate + k * speeds, speeds},
-              std::span(ws.pass_n).subspan(k * links, links), std::span(ws.pass_f).subspan(k * links, links));
+    back_substitute(model, link, ws, {rows.residual + k * speeds, speeds}, {rows.rate + k * speeds, speeds},
+                    std::span(ws.pass_n).subspan(k * links, links), std::span(ws.pass_f).subspan(k * links, links));
   }
 }
 

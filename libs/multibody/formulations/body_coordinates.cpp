@@ -18,7 +18,7 @@ using math::Vec3;
 
 namespace {
 
-// those of dummies between links that no joint connects
+// couplings of dummies between links that no joint connects
 void couple_points(const Model& model, BodyModel& body) {
   std::vector<std::pair<int, int>>& couplings = body.pattern.couplings;
   for (const NodeDummy& dummy : model.node_dummies) {
@@ -46,7 +46,7 @@ BodyModel build_body_model(const Model& model) {
     joint.link1 = link.parent;
     joint.link2 = static_cast<int>(i);
     joint.node = link.node;
-    // a node's place is itself the frame
+    // the point of a node is itself the frame
     joint.R_L1 = link.node < 0 ? link.R_PJ : Mat3::identity();
     joint.p_L1 = link.node < 0 ? link.p_PJ : Vec3();
     joint.R_L2 = Mat3::identity();
@@ -159,7 +159,7 @@ void update_body_motion(const Model& model, const BodyState& state, Workspace& w
 
 namespace {
 
-// the angle that differs by whole turns and is nearest to the one before
+// the angle plus whole turns that is nearest to the previous one
 double continued(double angle, double before) noexcept {
   constexpr double turn = 2 * std::numbers::pi;
   return angle + turn * std::round((before - angle) / turn);

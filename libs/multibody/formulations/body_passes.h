@@ -9,17 +9,17 @@ namespace slew::multibody {
 
 inline constexpr int kBody = 6;  // speeds of a link
 
-// Poses and velocities of all links; accelerations with u' = 0, as LinkMotion says.
+// Poses and velocities of all links; accelerations with u' = 0, as in LinkMotion.
 void update_body_motion(const Model& model, const BodyState& state, Workspace& ws) noexcept;
 
-// The same, and what acts there (apply_all()); joints: as of find_joint_coordinates().
+// The same, and the loads (apply_all()); joints: as in find_joint_coordinates().
 void apply_all(const Model& model, const BodyState& state, State& joints, Workspace& ws) noexcept;
 
 // Rows of all joints and gears, from the motion. near: joint coordinates whose whole turns the gears' angles continue.
 void evaluate_joints(const Model& model, const BodyModel& body, const State& near, Workspace& ws,
                      BodyWorkspace& bws) noexcept;
 
-// Minus what the joints' rows show, into the right-hand side bws.solution.
+// Writes minus the violation of the joints' rows into the right-hand side bws.solution.
 template <typename Value>
 void put_rows(const BodyModel& body, BodyWorkspace& bws, Value value) noexcept {
   for (std::size_t i = 1; i < body.joints.size(); ++i) {
@@ -39,14 +39,14 @@ void put_rows(const BodyModel& body, BodyWorkspace& bws, Value value) noexcept {
 [[nodiscard]] bool prepare(const Model& model, const BodyModel& body, const BodyState& state, State& joints,
                            Workspace& ws, BodyWorkspace& bws) noexcept;
 
-// Into the right-hand side: minus the wrenches that the links and the dummies between them need, at the accelerations
-// that the motion holds, and minus b of the joints' rows.
+// Writes into the right-hand side: minus the wrenches that the links and the dummies between them need, at the
+// accelerations that the motion holds, and minus b of the joints' rows.
 void put_bias(const Model& model, const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept;
 
 // The matrix of equation (1) into bws.ldl, from inertias, joints and coupled masses.
 void fill_matrix(const Model& model, const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept;
 
-// A row in body coordinates: what its unit force does to two links, and x'' with u' = 0.
+// A row in body coordinates: the action of its unit force on two links, and x'' with u' = 0.
 struct BodyRow {
   int link1 = 0, link2 = 0;
   RowGradient J;

@@ -43,7 +43,7 @@ double moving_mass(const Model& model) noexcept {
   double mass = 0;
   for (std::size_t i = 1; i < model.links.size(); ++i) mass += model.links[i].mass;
   for (const CoupledMass& coupled : model.coupled) mass += coupled.m1 + coupled.m2;
-  // a body whose frame is held by Ground moves in its modes alone
+  // a body whose frame is fixed to Ground moves in its modes alone
   for (const FlexiblePart& part : model.parts) {
     if (part.link == 0 && part.modes > 0) mass += part.source->mass;
   }
@@ -61,7 +61,7 @@ double penalty_length(const Model& model, std::span<const Constraint> constraint
     if (constraint.link1 > 0) square = std::max(square, dot(constraint.p_L1, constraint.p_L1));
     if (constraint.link2 > 0) square = std::max(square, dot(constraint.p_L2, constraint.p_L2));
   }
-  // point masses at their joints: any length does
+  // point masses at their joints: any length is valid
   return square > 0 ? std::sqrt(square) : 1.0;
 }
 
@@ -84,7 +84,7 @@ PenaltyModel build_penalty_model(const Model& model, Formulation formulation, st
   }
   body.first_row.push_back(static_cast<int>(body.alpha.size()));
   for (const Gear& gear : model.gears) {
-    // what the row adds to either coordinate stays within alpha
+    // the row's contribution to either coordinate stays within alpha
     double inertia = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < 2; ++k) {
       const double own = is_angle(gear.kind, k) ? alpha * length * length : alpha;

@@ -1,4 +1,4 @@
-// The fourth-order Runge-Kutta step of body coordinates, for every way to find their accelerations. Internal to the
+// The fourth-order Runge-Kutta step of body coordinates, for every method to find their accelerations. Internal to the
 // library.
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace slew::multibody {
 
-// From accelerations in work.udot at the start; find(state) puts those of a stage there, with the rows' forces in
-// work.row_force. work: BodyWorkspace or PenaltyWorkspace. Leaves the new state with unit quaternions; false when a
-// stage was.
+// Starts from accelerations in work.udot; find(state) writes those of a stage there, with the rows' forces in
+// work.row_force. work: BodyWorkspace or PenaltyWorkspace. The new state has unit quaternions. False if find() failed
+// in a stage.
 template <typename Work, typename Find>
 [[nodiscard]] bool step_by_runge_kutta(const Model& model, BodyState& state, State& joints, Workspace& ws, Work& work,
                                        double h, std::span<const double> mean, std::span<const double> slope,

@@ -39,7 +39,7 @@ void displace(const BodyModel& body, BodyState& state, const BodyWorkspace& bws)
   }
 }
 
-// adds a share of what a solution says of links and modes to speeds
+// adds a share of a solution's link and mode entries to speeds
 void add_bodies(const BodyModel& body, const math::BlockLdl& ldl, std::span<const double> solution, double share,
                 std::span<double> u) noexcept {
   const std::size_t links = static_cast<std::size_t>(body.links) - 1;
@@ -51,7 +51,7 @@ void add_bodies(const BodyModel& body, const math::BlockLdl& ldl, std::span<cons
   for (const ModalBlock& block : body.modal) add(block.node, block.count, 6 * links + block.place);
 }
 
-// the displacement or change of speed that takes away what the joints' rows show
+// the displacement or change of speed that removes the violation of the joints' rows
 template <typename Value>
 void solve_violation(const BodyModel& body, BodyWorkspace& bws, Value value) noexcept {
   std::fill(bws.solution.begin(), bws.solution.end(), 0.0);
@@ -63,7 +63,7 @@ void solve_violation(const BodyModel& body, BodyWorkspace& bws, Value value) noe
 
 bool project(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,
              BodyWorkspace& bws) noexcept {
-  // (3), both with the matrix of where the projection begins
+  // (3), both with the matrix at the start of the projection
   const bool is_regular = prepare(model, body, state, joints, ws, bws);
   const Extent extent = extent_of(ws);
   const double closed = kClosed * extent.length, steady = kClosed * extent.speed;

@@ -150,7 +150,7 @@ bool advance_free(const Model& model, State& state, Workspace& ws, double h) noe
 }
 
 int substep_count(const Model& model, double step) noexcept {
-  // a step that is a multiple but for rounding does not get one sub-step more
+  // a multiple of the sub-step to rounding does not get one sub-step more
   constexpr double kRounding = 1e-9;
   return std::max(1, static_cast<int>(std::ceil(step / model.max_substep * (1 - kRounding))));
 }

@@ -1,4 +1,4 @@
-// Semi-implicit Euler in joint coordinates, (1) of integrators.h: the cheapest step, so without what it does not need.
+// Semi-implicit Euler in joint coordinates, (1) of integrators.h: the cheapest step, with the minimum of passes.
 #include <cstddef>
 
 #include "multibody/constraints/loops.h"

@@ -18,9 +18,9 @@ namespace slew::multibody {
 
 namespace {
 
-// a sub-step whose iteration does not settle is taken in 2, 4, ... parts, at most so many
+// greatest number of parts (2, 4, ...) of a sub-step whose iteration does not converge
 constexpr int kMostPartsOfAStep = 8;
-// An iteration that did not settle even then and left speeds so many times larger has run away.
+// Growth of the speeds above which an iteration without convergence has diverged.
 constexpr double kMostGrowth = 1e3;
 
 }  // namespace
@@ -56,7 +56,7 @@ struct Dynamics::Stages {
     part_mean.resize(mechanism.rows.size());
   }
 
-  // The start of a sub-step, for another try in parts.
+  // The start of a sub-step, for a repetition in parts.
   struct Start {
     State joints;
     BodyState bodies;
@@ -82,12 +82,12 @@ struct Dynamics::Stages {
   std::optional<BodyWorkspace> matrix;
   Start start;
   std::vector<double> part_mean;
-  int iterations = 0, parts = 1;  // of the last sub-step
+  int iterations = 0, parts = 1;  // counts of the last sub-step
 };
 
 namespace {
 
-// by the motion at the start of a sub-step; not finite: no
+// by the motion at the start of a sub-step; false if not finite
 bool is_resolved(const Workspace& ws, double h) noexcept {
   constexpr double kSquare = kLargestTurn * kLargestTurn;
   for (const LinkMotion& m : ws.motion) {
@@ -100,7 +100,7 @@ bool take_lost(Workspace& ws) noexcept {
   return ws.contact != nullptr && std::exchange(ws.contact->is_lost, false);
 }
 
-// what a sub-step must leave behind
+// conditions on the end of a sub-step
 bool is_right(const Model& model, const State& state, Workspace& ws) noexcept {
   const bool is_lost = take_lost(ws);
   return !is_lost && is_finite(state) && are_drives_defined(model, state.time);
@@ -160,7 +160,7 @@ struct Dynamics::PartOfStep {
   ContactParts pieces;
   std::span<const double> mean, slope;
 
-  // means of the rows' forces, which go on along their lines, over a piece of it
+  // means of the rows' forces, continued along their lines, over a piece of it
   void put_forces(int count, int piece, std::span<double> forces) const noexcept {
     const double later = (index * count + piece + 0.5) * (h / parts.count / count) - 0.5 * h;
     for (std::size_t k = 0; k < mean.size(); ++k) forces[k] = mean[k] + later * slope[k];
@@ -219,12 +219,12 @@ bool Dynamics::settle_part(const Model& model, State& state, Workspace& ws, doub
   if (bodies != nullptr) {
     is_sound = multibody::evaluate(model, s.model, *bodies, state, ws, *s.matrix) && is_sound;
   } else {
-    // nothing is carried from part to part
+    // no values are carried from part to part
     s.matrix->ldl.set_smallest_pivot(model.has_closing_rows() ? ws.loops.factor.smallest_pivot() : 1.0);
   }
   is_sound =
       is_sound && multibody::advance(model, s.model, s.rule, {state, bodies}, ws, *s.matrix, s.ws, h, mean, slope);
-  // a corner that comes down beside what rests is a blow
+  // a corner that lands beside resting contacts is an impact
   if (is_sound && !ws.contact->is_hit && is_finite(state)) return true;
   ws.contact->is_lost = was_lost;
   s.go_back(state, bodies);
@@ -263,7 +263,7 @@ bool Dynamics::advance_by_rule(const Model& model, State& state, Workspace& ws, 
   s.iterations = 0;
   bool is_sound = true;
   for (s.parts = 1;; s.parts *= 2) {
-    // what does not settle is tried again in twice as many parts; the rows' forces go on along their lines
+    // without convergence, repeat in twice as many parts; the rows' forces continue along their lines
     const double part = h / s.parts;
     is_sound = true;
     for (int i = 0; i < s.parts && (is_sound || s.parts == most); ++i) {
@@ -278,7 +278,7 @@ bool Dynamics::advance_by_rule(const Model& model, State& state, Workspace& ws, 
     if (s.parts == most) break;
     s.go_back(state, bodies);
   }
-  // what has run away is held where it was
+  // hold a diverged sub-step at its start
   if (most > 1 && !(fixed_max_abs(state.u) <= kMostGrowth * std::max(1.0, fixed_max_abs(s.start.joints.u)))) {
     s.go_back(state, bodies);
     evaluate(model, state, ws);
@@ -332,7 +332,7 @@ void Dynamics::visit(Self& self, Bytes& bytes) {
   auto& ws = self.stages_->ws;
   bytes.numbers(ws.algorithmic);
   for (auto& turn : ws.algorithmic_turn) visit_vector(bytes, turn);
-  // an implicit stage in joint coordinates begins with how near to singular the last one was
+  // an implicit stage in joint coordinates begins with the distance of the last one from singularity
   if (!self.stages_->matrix) return;
   double pivot = self.stages_->matrix->ldl.smallest_pivot();
   bytes.number(pivot);

@@ -13,7 +13,7 @@ using math::Vec3;
 namespace {
 
 [[gnu::noinline]] void add_parts(const Model& model, Workspace& ws) noexcept {
-  // Ground's own takes what its nodes pass on, which nothing reads
+  // Ground's entry receives the contributions of its nodes and is not used
   ws.inertia[0] = ArticulatedInertia();
   for (std::size_t k = 0; k < model.parts.size(); ++k) {
     const auto link = at(model.parts[k].link);

@@ -16,13 +16,13 @@ using math::Vec3;
 
 namespace {
 
-// Newton's method with a kept matrix gains a digit or two a correction; a jump that is halved in on takes more
+// Newton's method with a kept matrix gains one or two digits per correction; bisection to a jump takes more
 constexpr int kMostCorrections = 80;
-// a correction that is larger than so much of the one before asks for a new matrix
+// ratio of a correction to the previous one above which the matrix is renewed
 constexpr double kSlowStage = 0.3;
-// of an impact, rate times sub-step
+// rate of an impact times sub-step
 constexpr double kUnresolved = 4;
-// share of the mechanism's size that rounding leaves in the coordinates
+// rounding of the coordinates as a share of the mechanism's size
 constexpr double kStageRounding = 1e-14;
 
 double product(std::span<const double> a, std::span<const double> b) noexcept {
@@ -44,7 +44,8 @@ double largest_speed(const StageContext& at) noexcept {
   return largest;
 }
 
-// Motion of the stage put onto the joints: near a singular position accelerations divide by little what it violates.
+// Projects the motion of the stage onto the joints: near a singular position accelerations divide its violation by a
+// small number.
 bool show_on_joints(const StageContext& at) noexcept {
   if (at.moving.bodies != nullptr) {
     at.bws.stage = *at.moving.bodies;
@@ -53,17 +54,17 @@ bool show_on_joints(const StageContext& at) noexcept {
   at.ws.q_stage = at.moving.joints.q;
   at.ws.u_stage = at.moving.joints.u;
   // stiffness makes the stage's pivots smaller than those of the mass alone, by which project() renews its matrix; the
-  // one that is there has factors of the start and inertias of the stage
+  // present one has factors of the start and inertias of the stage
   renew_matrix(at.model, at.ws.q_stage, at.ws.u_stage, at.ws);
   return project(at.model, at.ws.q_stage, at.ws.u_stage, at.ws);
 }
 
-// (4), from the present speeds; they, coordinates and motion are those of the stage then
+// (4), from the present speeds; afterwards speeds, coordinates and motion are those of the stage
 bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) noexcept {
   StageWorkspace& s = at.stages;
   const std::span<double> u = at.u();
   double share = 1, last = INFINITY;
-  int fresh = -1;  // correction for which the matrix was made
+  int fresh = -1;  // correction at which the matrix was built
   s.has_multipliers = false;
   set_stage_time(at.model, at.moving.joints, stage.time, at.ws);
   place(at, stage.sigma);
@@ -84,7 +85,7 @@ bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) n
     if (!std::isfinite(size)) return false;
     if (size > kSlowStage * last && fresh != i && size > settled) {
       fresh = -1;
-      // from now on with what the joints pull
+      // include the pull of the joints from now on
       for (std::size_t k = 0; k < s.multipliers.size(); ++k) s.multipliers[k] = at.bws.solution[k] / stage.tau;
       s.has_multipliers = true;
       place(at, stage.sigma);
@@ -127,14 +128,13 @@ void take_start(const StageContext& at) noexcept {
   }
 }
 
-// whether a stop is touched that was not at the start, or the other way round, or what kept the iteration from settling
-// was a stop or a singular position
+// true if the contact state of a stop changed since the start, or a stop or a singular position prevented convergence
 bool has_touched(const StageContext& at, bool has_settled) noexcept {
   see_stops(at.model, at.ws, at.stages.stops);
   return at.stages.stops != at.stages.stops_0 || (!has_settled && (at.stages.has_stops || at.stages.is_near_singular));
 }
 
-// a sub-step in which a stop is touched or left, from its start again
+// a sub-step in which a stop is touched or left, repeated from its start
 bool take_touch(const StageContext& at, double tolerance, const RowForces& forces) noexcept {
   StageWorkspace& s = at.stages;
   std::copy(s.u_0.begin(), s.u_0.end(), at.u().begin());
@@ -147,8 +147,8 @@ bool take_touch(const StageContext& at, double tolerance, const RowForces& force
   return solve_stage(at, {forces.h, forces.h, forces.h}, tolerance);
 }
 
-// A contact in the middle of an impact that the rules of order 2 step over; whatever touches so stiffly where A carries
-// what was between two searches.
+// A contact in the middle of an impact that the rules of order 2 step over; with a carried A, any contact of this
+// stiffness.
 bool is_blow(const StageContext& at, Integrator integrator, double h) noexcept {
   if (at.ws.contact == nullptr) return false;
   const bool concerns = integrator == Integrator::generalised_alpha || has_impact(at.model, at.ws);
@@ -220,7 +220,7 @@ bool take_generalised_alpha(const StageContext& at, const StepRule& rule, const 
   }
   const bool has_settled = solve_stage(at, {tau, sigma, h}, rule.iteration_tolerance);
   if (has_touched(at, has_settled)) return take_touch(at, rule.iteration_tolerance, forces);
-  // A - f at the end, from what the speeds became
+  // A - f at the end, from the new speeds
   const std::span<const double> u = at.u();
   const auto carried = [&](auto lead, auto f_0, auto f_1) {
     return ((f_0 - f_1) * (alpha_f - alpha_m) - lead * alpha_m) * (1 / (1 - alpha_m));
@@ -300,7 +300,7 @@ bool take_rule(const StageContext& at, const StepRule& rule, const RowForces& fo
   return false;
 }
 
-// back onto the joints
+// projection onto the joints
 bool close(const StageContext& at) noexcept {
   State& joints = at.moving.joints;
   if (at.moving.bodies != nullptr) return project(at.model, at.body, *at.moving.bodies, joints, at.ws, at.bws);
@@ -370,7 +370,7 @@ StageWorkspace::StageWorkspace(const Model& model, const BodyModel& body, Coordi
       add_turning(link.joint, static_cast<std::size_t>(link.u), turning);
     }
   }
-  // what is prescribed follows its law, whatever the step
+  // prescribed coordinates follow their law at any step
   for (const Drive& drive : model.drives) {
     if (!is_body && drive.u >= 0) std::erase(turning, static_cast<std::size_t>(drive.u));
   }

@@ -12,31 +12,30 @@
 //     q_1 = q_0 (+) (h u_0 + h^2 ((1/2 - beta) A_0 + beta A_1)),   alpha_m = (2 rho - 1)/(rho + 1),
 //     alpha_f = rho/(rho + 1), gamma = 1/2 - alpha_m + alpha_f, beta = (1/2 + gamma)^2/4                     (3)
 //     carried is A - f, so that a jump of f between two sub-steps is one of A as well.
-//     What the rows' forces are in the mean makes an acceleration r at the start, which is not part of f and A: they
-//     add h r and h^2/2 r, so that a blow or a friction that changes from sub-step to sub-step is over with its own.
-// (+) adds what is a coordinate and turns quaternions by the exponential in Ground axes; (1) turns a link on a ball
-// with the angular velocity that the new speeds give it about the axes of q_0. f: accelerations of the mechanism, of
-// the form (1) of body_coordinates.h whichever coordinates are integrated, so that stiff elements, joints and loops are
-// solved for together. Newton's method in body coordinates:
+//     The mean rows' forces give an acceleration r at the start, which is not part of f and A: they add h r and h^2/2
+//     r, so that an impact, or friction that varies by sub-step, has no effect on later sub-steps.
+// (+) adds plain coordinates and turns quaternions by the exponential in Ground axes; (1) turns a link on a ball with
+// the angular velocity that the new speeds give it about the axes of q_0. f: accelerations of the mechanism, of the
+// form (1) of body_coordinates.h for any integrated coordinates, so that stiff elements, joints and loops are solved
+// together. Newton's method in body coordinates:
 //   [ M + tau D + tau sigma K  G^T ] [ delta ]         [ Q - M a  ]
 //   [ G                        0   ] [ mu    ]  =  tau [ -b - G a ]                                          (4)
 // M a - Q by Newton and Euler with all forces at the stage, so that the result does not depend on the left side; K and
 // D: those of all force elements and contacts (link_stiffness.h) and, once the iteration proves slow, the pull of a
-// joint's force F at s from a link's origin, (F . s) across s where it is positive. Left out of it: gyroscopic and
-// centrifugal terms, row forces, pushing joints. In joint coordinates delta is read off as relative speeds. A force
-// that jumps at the edge of a stop takes a value between its two there: (4) is relaxed when it goes to and fro. A
-// sub-step in which a stop is touched or left, or whose iteration a stop or a singular position keeps from settling, is
-// taken with tau = sigma = h, u* = u_0, d = 0 in the place of the rule: of order 1, but it never gains energy from a
-// spring that only pushes, as the others do when the touch is shorter than h. So is one in the middle of an impact that
-// swings or is damped faster than kUnresolved/h. After the step the state is put onto the
-// joints (project()).
+// joint's force F at s from a link's origin, (F . s) across s where it is positive. It omits gyroscopic and centrifugal
+// terms, row forces, pushing joints. In joint coordinates delta is read off as relative speeds. A force that jumps at
+// the edge of a stop takes a value between its two there: (4) is relaxed if it alternates. A sub-step in which a stop
+// is touched or left, or whose convergence a stop or a singular position prevents, uses tau = sigma = h, u* = u_0, d =
+// 0 instead of the rule: of order 1, but without energy gain from a spring that only pushes, unlike the other rules for
+// contacts shorter than h. The same holds in the middle of an impact with a frequency or damping rate above
+// kUnresolved/h. After the step the state is projected onto the joints (project()).
 //
-// The trapezoid leaves h^2/12 (a_1 - a_0) out of a turn, the others nearly as much. A sub-step in which that is more
-// than kLargestTurnError and than the turn itself has not followed a whip; ringing of stiff laws by little passes.
-// For any coordinate that turns:  min(h^2/12 |a_1 - a_0|, h/2 |u_0 + u_1|) <= kLargestTurnError                (5)
+// The trapezoid has an error of h^2/12 (a_1 - a_0) in a turn, the others nearly as much. A sub-step in which it exceeds
+// both kLargestTurnError and the turn itself has not resolved a whip; small ringing of stiff laws passes. For any
+// angular coordinate:  min(h^2/12 |a_1 - a_0|, h/2 |u_0 + u_1|) <= kLargestTurnError                (5)
 //
-// Row forces are the owner's, linear in time over the sub-step (dynamics.h). The number of corrections is fixed at
-// most, an iteration that did not settle is reported. Nothing here allocates but the builders.
+// Row forces are the owner's, linear in time over the sub-step (dynamics.h). The number of corrections is bounded, an
+// iteration without convergence is reported. Only the builders allocate.
 // Sources: trapezoidal rule, sdirk2: Alexander 1977; (3) Chung and Hulbert 1993, with rotations as Brüls, Cardona and
 // Arnold 2012. Deviation: positions are not part of the iteration's unknowns, and joints are held by accelerations
 // inside it, by projection after it.
@@ -50,30 +49,30 @@
 
 namespace slew::multibody {
 
-// The rule that a formulation has unless its scene chooses, and all that it has, that one first.
+// The default rule of a formulation, and all its rules, the default first.
 [[nodiscard]] Integrator own_integrator(Formulation formulation) noexcept;
 [[nodiscard]] std::span<const Integrator> integrators_of(Formulation formulation) noexcept;
 
 struct StepRule {
   Integrator integrator = Integrator::rk4;
   double spectral_radius = 0.8;       // rho of (3)
-  double iteration_tolerance = 1e-9;  // of the mechanism's largest speed, at least 1 m/s, 1 rad/s
+  double iteration_tolerance = 1e-9;  // relative to the mechanism's largest speed, at least 1 m/s, 1 rad/s
 };
 [[nodiscard]] StepRule step_rule(const MechanicsDef& mechanics) noexcept;  // its integrator is never `own`
-// What an implicit sub-step may leave out of a turn, by (5).
+// Largest error of a turn in an implicit sub-step, by (5).
 inline constexpr double kLargestTurnError = 3e-3;  // rad
 [[nodiscard]] constexpr bool is_implicit(Integrator integrator) noexcept {
   return integrator >= Integrator::trapezoidal && integrator <= Integrator::sdirk2;
 }
 
-// What runs: in joint coordinates, or in body coordinates with joint coordinates beside them.
+// Integrated state: in joint coordinates, or in body coordinates with joint coordinates beside them.
 struct Moving {
   State& joints;
   BodyState* bodies = nullptr;  // null: joint coordinates
 };
 
 struct StageWorkspace {
-  enum class Coordinates { joint, body };  // that are integrated
+  enum class Coordinates { joint, body };  // integrated coordinates
   StageWorkspace(const Model& model, const BodyModel& body, Coordinates coordinates);
 
   std::vector<double> q_0, u_0;                 // at the start of the sub-step
@@ -81,19 +80,19 @@ struct StageWorkspace {
   std::vector<double> fixed, base;              // u* and d of (2), by u
   std::vector<double> algorithmic;              // A - f of (3) at the end of the last sub-step, by u
   std::vector<double> step, last_step;          // by u
-  std::vector<std::size_t> turning;             // of u, free angular velocities
-  std::vector<math::Vec3> turn;                 // d of the quaternions of joint coordinates, by link
+  std::vector<std::size_t> turning;             // entries of u that are free angular velocities
+  std::vector<math::Vec3> turn;                 // d for the quaternions of joint coordinates, by link
   std::vector<math::Vec3> turn_0, turn_rate_0;  // angular velocity and acceleration at the start, by link
   std::vector<math::Vec3> algorithmic_turn;     // A of the same
   std::vector<double> row_rate;                 // r of (3)
   std::vector<math::Vec3> row_turn_rate;        // r of the same, by link
-  std::vector<signed char> stops, stops_0;      // what pushes on one side only, as see_stops(): now, at the start
+  std::vector<signed char> stops, stops_0;      // one-sided forces, as see_stops(): now, at the start
   std::vector<double> row_force;
-  std::vector<double> multipliers;  // of the joints, by BlockLdl::first_row(), once they are asked for
+  std::vector<double> multipliers;  // multipliers of the joints, by BlockLdl::first_row(), after the first request
   bool has_multipliers = false;
   bool has_stops = false;
-  bool is_near_singular = false;  // in the sub-step, as loops.h
-  int iterations = 0;             // of the last sub-step
+  bool is_near_singular = false;  // near a singular position in the sub-step, as in loops.h
+  int iterations = 0;             // iterations of the last sub-step
 };
 
 // The body model with a coupling for every force element, whose stiffness becomes part of (4). Allocates.

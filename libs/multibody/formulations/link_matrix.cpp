@@ -9,7 +9,7 @@ namespace slew::multibody {
 using math::Vec3;
 
 void add_points(int link_a, Vec3 s_a, int link_b, Vec3 s_b, const math::Mat3& A, LinkMatrix& matrix) noexcept {
-  // of the two blocks between two links one is the other's transposed
+  // the two blocks between two links are transposes of each other
   if (link_a == 0 || link_b == 0 || link_a < link_b) return;
   matrix.add(link_a, link_b, point_mass_block(A, s_a, s_b));
 }

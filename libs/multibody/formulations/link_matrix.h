@@ -1,5 +1,4 @@
-// Symmetric matrices over the speeds of all links, filled block by block, whatever holds the blocks. Internal to the
-// library.
+// Symmetric matrices over the speeds of all links, filled block by block into any storage. Internal to the library.
 #pragma once
 
 #include "multibody/formulations/spatial_block.h"
@@ -9,11 +8,11 @@ namespace slew::multibody {
 class LinkMatrix {
  public:
   virtual ~LinkMatrix() = default;
-  // Ground has no rows: both links are at least 1, and of two links only the block with row > column is given.
+  // Ground has no rows: both links are at least 1, and for two links only the block with row > column is given.
   virtual void add(int row_link, int column_link, const SpatialBlock& block) noexcept = 0;
 };
 
-// Inertias of the links and of what cylinders and pistons carry between them.
+// Inertias of the links and of cylinders and pistons between them.
 void add_masses(const Model& model, const Workspace& ws, LinkMatrix& matrix) noexcept;
 
 // The part of a matrix between two points of the same or of two links, at s [m] from their origins.

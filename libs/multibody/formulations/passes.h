@@ -10,7 +10,7 @@ namespace slew::multibody {
 // Poses, velocities and the accelerations with u' = 0 of all links, from Ground outwards.
 void update_motion(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept;
 
-// Length, angle and their rates of the force elements: of those that a step needs, or of all for their variables.
+// Length, angle and their rates of the force elements: those that a step needs, or all for their variables.
 enum class Elements { used, all };
 void update_elements(const Model& model, std::span<const double> q, Elements which, Workspace& ws) noexcept;
 
@@ -25,7 +25,7 @@ void update_elements(const Model& model, std::span<const double> q, Elements whi
 void update_inertia(const Model& model, Workspace& ws) noexcept;
 void update_coupled(const Model& model, Workspace& ws) noexcept;
 
-// All that acts at the motion in ws but rows, with inertias and coupled masses: elements and contacts found at these
+// All loads except rows at the motion in ws, with inertias and coupled masses: elements and contacts found at these
 // joint coordinates and subtracted from the bias wrenches.
 void apply_all(const Model& model, std::span<const double> q, Workspace& ws) noexcept;
 
@@ -38,14 +38,14 @@ void factorize(const Model& model, Workspace& ws) noexcept;
 void solve_forward(const Model& model, Workspace& ws, std::span<const double> residual,
                    std::span<double> udot) noexcept;
 
-// Moves the coordinates by a small displacement in the space of the speeds, which solve_forward() has just found; the
-// links' turns are taken from ws.delta_alpha. Quaternions stay normalised.
+// Moves the coordinates by the small displacement of the last solve_forward() in the space of the speeds; the links'
+// turns are taken from ws.delta_alpha. Quaternions stay normalised.
 void displace(const Model& model, const Workspace& ws, std::span<const double> step, std::span<double> q) noexcept;
 
 // Backward pass of generalised forces tau alone (no bias, no velocities) with the factors of factorize(), over the
 // links of `supports` (outermost first), outside of which tau is zero. Gives the residual r and the rate D^-1 r: the
 // product of two right-hand sides through M^-1 is the sum of one's residual times the other's rate. Entries of other
-// links are left alone.
+// links are not changed.
 void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, std::span<const double> tau,
                     std::span<double> residual, std::span<double> rate) noexcept;
 
@@ -61,10 +61,10 @@ struct Displacement {
   std::span<const double> base;      // by u [rad or m]
   std::span<const math::Vec3> turn;  // rad
 };
-void move_from(const Model& model, std::span<const double> start, const Displacement& way, std::span<const double> u,
-               std::span<double> q, Workspace& ws) noexcept;
+void move_from(const Model& model, std::span<const double> start, const Displacement& displacement,
+               std::span<const double> u, std::span<double> q, Workspace& ws) noexcept;
 
-// Unit quaternions, whatever their length was.
+// Normalises quaternions of any length.
 void normalize_quaternions(const Model& model, std::span<double> q) noexcept;
 
 // q' of the coordinates for speeds u; needs the motion of the same q and u.

@@ -7,7 +7,7 @@ namespace slew::multibody {
 
 namespace {
 
-// what (2) or (3) asks of G u', with the sign of b
+// G u' required by (2) or (3), with the sign of b
 void put_target(const Model& model, const PenaltyModel& body, PenaltyWorkspace& pws) noexcept {
   const double omega = pws.frequency, xi = model.penalty.damping;
   for (std::size_t row = 0; row < pws.rows.size(); ++row) {

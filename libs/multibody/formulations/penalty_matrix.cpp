@@ -56,7 +56,7 @@ class PenaltyMatrix final : public LinkMatrix {
   math::BlockLdl& ldl_;
 };
 
-// products of the ends of a gear's row; a link at two of them has both, and the products of the two
+// products of the ends of a gear's row; a link at two ends has both, and their cross products
 void add_gear(const GearRow& gear, double alpha, math::BlockLdl& ldl) noexcept {
   for (std::size_t i = 0; i < gear.links.size(); ++i) {
     for (std::size_t j = 0; j < gear.links.size(); ++j) {
@@ -111,8 +111,8 @@ void add_modal_rows(const Model& model, const PenaltyModel& body, std::size_t in
   }
 }
 
-// of the link's own weight and inertia at its centre of mass, and of the multipliers: light links between heavy ones
-// are strings
+// pulls of the link's own weight and inertia at its centre of mass, and of the multipliers: light links between heavy
+// ones are strings
 void add_pulls(const Model& model, const PenaltyModel& body, const Workspace& ws, const PenaltyWorkspace& pws,
                double weight, LinkMatrix& matrix) noexcept {
   for (std::size_t link = 1; link < model.links.size(); ++link) {
@@ -166,7 +166,7 @@ bool factorize(const Model& model, const PenaltyModel& body, Workspace& ws, Pena
     add_modal_stiffness(model, body.modal, weights, ws, pws.ldl);
     add_pulls(model, body, ws, pws, weights.position, matrix);
   }
-  return pws.ldl.factorize(0);  // there are no closing nodes
+  return pws.ldl.factorize(0);  // no closing nodes
 }
 
 }  // namespace slew::multibody

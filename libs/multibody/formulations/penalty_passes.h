@@ -8,7 +8,7 @@
 
 namespace slew::multibody {
 
-// Motion, elements, inertias and constraint rows of a state; everything that the right-hand sides are made of.
+// Motion, elements, inertias and constraint rows of a state: all inputs of the right-hand sides.
 void see(const Model& model, const PenaltyModel& body, const BodyState& state, State& joints, Workspace& ws,
          PenaltyWorkspace& pws) noexcept;
 
@@ -21,12 +21,12 @@ void see(const Model& model, const PenaltyModel& body, const BodyState& state, S
 void put_free_forces(const Model& model, const Workspace& ws, std::span<double> y) noexcept;
 void subtract_mass(const Model& model, const Workspace& ws, std::span<const double> x, std::span<double> y) noexcept;
 
-// One row's gradient over the speeds: of two links, and of modes; or of a gear. row: among all rows.
+// One row's gradient over the speeds: of two links, and of modes; or of a gear. row: index among all rows.
 struct HeldRow {
   int link1 = 0, link2 = 0;
   const RowGradient& G;
   std::span<const double> modal;
-  std::size_t place = 0;  // of the first of these modes among the speeds
+  std::size_t place = 0;  // place of the first of these modes among the speeds
   const GearRow* gear = nullptr;
 };
 [[nodiscard]] HeldRow present_row(const PenaltyModel& body, const PenaltyWorkspace& pws, std::size_t constraint,

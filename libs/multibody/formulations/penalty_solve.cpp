@@ -16,16 +16,16 @@ using math::Vec3;
 
 namespace {
 
-// rounds of (4), each worth a factor of f; a well-conditioned mechanism needs three
+// rounds of (4), each with a gain of f; a well-conditioned mechanism needs three
 constexpr int kMostRounds = 10;
 // corrections below this share of the solution are rounding, and so are small ones that stop shrinking
 constexpr double kRounding = 1e-14;
 constexpr double kSmall = 1e-9;
 constexpr double kStalled = 0.5;
-// Rows that come near to depending on each other leave the direction that they are about to give free to more rounds
-// than there are: what is left is a share of its acceleration. More than that is a matrix that does not fit.
+// Nearly dependent rows would need more rounds than the limit in the direction that they are about to release: the
+// residual is a share of its acceleration. A larger residual means a wrong matrix.
 constexpr double kSettled = 1e-3;
-// m/s2, rad/s2: of a mechanism at rest nothing but rounding is left, and is no measure of itself
+// m/s2, rad/s2: a mechanism at rest has only rounding, which is no scale for itself
 constexpr double kAtRest = 1e-14;
 
 Vec3 vector_at(const double* x) noexcept {
@@ -40,7 +40,7 @@ const double* link_at(std::span<const double> x, int link) noexcept {
   return x.data() + kLinkSpeeds * (at(link) - 1);
 }
 
-// of the modes of a part, with each other and with their frame
+// inertia of a part's modes, with each other and with their frame
 void subtract_modal_mass(const Model& model, const Workspace& ws, std::size_t index, std::span<const double> x,
                          std::span<double> y) noexcept {
   const FlexiblePart& part = model.parts[index];
@@ -200,7 +200,7 @@ bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, Pe
   std::fill(multipliers.begin(), multipliers.end(), 0.0);
   double before = 0, whole = kAtRest, share = 0;
   for (int round = 0; round < kMostRounds; ++round) {
-    // what is left of the equation of motion; of a plain penalty the multipliers are those of x alone
+    // residual of the equation of motion; in a plain penalty the multipliers are those of x alone
     std::copy(force.begin(), force.end(), pws.correction.begin());
     if (round > 0) subtract_mass(model, ws, x, pws.correction);
     for_each_factored(body, pws, [&](std::size_t row, const HeldRow& held) {
@@ -210,7 +210,7 @@ bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, Pe
     });
     pws.ldl.solve(pws.correction);
     for (std::size_t k = 0; k < x.size(); ++k) x[k] += pws.correction[k];
-    // forces that nearly balance leave less than their rounding
+    // nearly balanced forces have a sum below their rounding
     const double size = fixed_max_abs(pws.correction);
     whole = std::max(whole, fixed_max_abs(x));
     share = size / whole;

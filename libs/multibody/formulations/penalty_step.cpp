@@ -11,13 +11,13 @@ namespace slew::multibody {
 namespace {
 
 // c and omega times part of (9): measured on A02 with 1 to 40 loops. Larger ones lose energy in a flat position, the
-// second by how fast a row closes, both by what the Runge-Kutta method leaves open.
+// second by how fast a row closes, both by the error of the Runge-Kutta method.
 constexpr double kMostChange = 0.1, kPartFrequency = 0.2;
-// Of whole steps: the whip of A11's chain is more than 0.4, without any such position.
+// Limit for whole steps: the whip of A11's chain exceeds 0.4, without any such position.
 constexpr double kMostChangeOfAStep = 0.4;
 // Parts of a step that are shorter than this share close faster; that whip needs none.
 constexpr int kClosingParts = 32;
-// smallest part of a step, and how many are halved before the rest goes unresolved
+// smallest part of a step, and the number of halved parts before the rest stays unresolved
 constexpr int kSmallestParts = 65536, kMostHalvings = 512;
 
 void keep_determinants(PenaltyWorkspace& pws) noexcept {
@@ -43,7 +43,7 @@ bool find_accelerations(const Model& model, const PenaltyModel& body, std::span<
   return solve(model, body, ws, pws, pws.force, pws.target, pws.udot, pws.multipliers) && is_regular;
 }
 
-// leaves the state before it in pws.sum
+// keeps the previous state in pws.sum
 bool take_part(const Model& model, const PenaltyModel& body, BodyState& state, State& joints, Workspace& ws,
                PenaltyWorkspace& pws, double h, std::span<const double> slope) noexcept {
   for (std::size_t k = 0; k < slope.size(); ++k) pws.row_force[k] = pws.part_mean[k] - 0.5 * h * slope[k];
@@ -54,7 +54,7 @@ bool take_part(const Model& model, const PenaltyModel& body, BodyState& state, S
                              [&](const BodyState&) { return find_accelerations(model, body, pws.row_force, ws, pws); });
 }
 
-// before another part of so many smallest ones
+// before the next part, with this number of smallest ones
 bool begin_part(const Model& model, const PenaltyModel& body, const BodyState& state, State& joints, Workspace& ws,
                 PenaltyWorkspace& pws, double h, int part) noexcept {
   const double least = part <= kSmallestParts / kClosingParts ? kPartFrequency * kSmallestParts / (part * h) : 0;
@@ -70,7 +70,7 @@ bool advance_by_runge_kutta(const Model& model, const PenaltyModel& body, BodySt
   bool is_sound = true;
   int halvings = 0;
   for (int done = 0, part = kSmallestParts; done < kSmallestParts;) {
-    // the rows' forces go on along their lines
+    // the rows' forces continue along their lines
     const double share = static_cast<double>(part) / kSmallestParts;
     const double later = h * (static_cast<double>(done) / kSmallestParts + 0.5 * share - 0.5);
     for (std::size_t k = 0; k < mean.size(); ++k) pws.part_mean[k] = mean[k] + later * slope[k];

@@ -18,7 +18,7 @@ bool is_singular(const Link& link, const Workspace& ws, std::size_t i) {
   const ArticulatedInertia& I = ws.inertia[i];
   const JointFactor& factor = ws.factor[i];
   const double turning = I.J(0, 0) + I.J(1, 1) + I.J(2, 2);
-  // a singular joint further out spoils what it passes on: that one is named
+  // a singular joint further out corrupts the inertia it passes on: name that joint
   if (!std::isfinite(turning)) return false;
   switch (link.joint) {
     case LinkJoint::revolute:
@@ -43,7 +43,7 @@ bool is_singular(const Link& link, const Workspace& ws, std::size_t i) {
   return !(1 / largest > kSmallestShare * turning);
 }
 
-// What hangs on the joint has inertia as long as no flexible body is bent: the name of the body that is bent furthest.
+// The joint's load has inertia if no flexible body is bent: returns the body with the largest bend.
 std::string bent_body(const Model& model, const State& state, std::size_t link, Workspace& ws) {
   State straight = state;
   for_each_mode(model, [&](std::size_t q, std::size_t) { straight.q[q] = 0; });
@@ -79,7 +79,7 @@ void find_singular_joints(const MechanicsDef& mechanics, Problems& problems) {
       continue;
     }
     problems.push_back({joint.name,
-                        "what hangs on this joint has no inertia about a direction that it leaves free",
+                        "the load of this joint has no inertia about one of its free directions",
                         "inertia about every free axis: a point mass must not turn about itself",
                         {}});
   }

@@ -1,4 +1,4 @@
-// Joints that nothing resists: a part without inertia about a free axis. Internal to the library.
+// Detection of singular joints: a part without inertia about a free axis. Internal to the library.
 #pragma once
 
 #include "core/problem.h"
@@ -6,7 +6,7 @@
 
 namespace slew::multibody {
 
-// Pre-condition: the Def is sound otherwise. Looks at the start position.
+// Pre-condition: the Def is sound otherwise. Checks the start position.
 void find_singular_joints(const MechanicsDef& mechanics, Problems& problems);
 
 }  // namespace slew::multibody

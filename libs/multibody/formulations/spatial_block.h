@@ -49,8 +49,8 @@ struct RelativeMatrix {
   math::Mat3 vv, vw, ww;
 };
 
-// What it is between a link from whose origin the point is at s_row, and one from whose it is at s_column:
-// X_row^T A X_column with X = [1 -s~; 0 1]. Of two links it is negative.
+// Its block between two links, with the point at s_row and s_column from their origins:
+// X_row^T A X_column with X = [1 -s~; 0 1]. For two different links it is negative.
 [[nodiscard]] inline SpatialBlock relative_block(const RelativeMatrix& A, math::Vec3 s_row,
                                                  math::Vec3 s_column) noexcept {
   const math::Mat3 S_row = math::skew(s_row), S_column = math::skew(s_column), wv = transpose(A.vw);

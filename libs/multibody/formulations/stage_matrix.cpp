@@ -15,8 +15,8 @@ using math::Vec3;
 
 namespace {
 
-// A joint's force F at s from a link's origin turns it back when it pulls: (F . s) across s. Where it pushes nothing is
-// added, the matrix stays definite.
+// A joint's pulling force F at s from a link's origin turns it back: (F . s) across s. A pushing force is omitted, so
+// that the matrix stays definite.
 void add_pulls(const StageContext& at, double weight, LinkMatrix& matrix) noexcept {
   for (std::size_t i = 1; i < at.body.joints.size(); ++i) {
     const Constraint& joint = at.body.joints[i];

@@ -106,7 +106,7 @@ void add_accelerations(const StageContext& at, std::span<const double> rate) noe
 
 namespace {
 
-// of all modes, in the stage
+// accelerations of all modes in the stage
 std::span<const double> modal_rate(const StageContext& at) noexcept {
   const std::size_t first =
       at.moving.bodies != nullptr ? 6 * at.moving.bodies->links() : slew::at(at.model.parts.front().u);
@@ -119,7 +119,7 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
   StageWorkspace& s = at.stages;
   const std::span<const double> u = at.u();
   for (std::size_t j = 0; j < u.size(); ++j) s.rate[j] = (u[j] - s.fixed[j]) / stage.tau;
-  // of these the motion holds the accelerations
+  // the motion holds the accelerations of these links
   if (at.moving.bodies == nullptr) clear_prescribed(at.model, s.rate);
   update_elements(at.model, at.moving.joints.q, Elements::used, at.ws);
   update_contacts(at.model, at.ws);

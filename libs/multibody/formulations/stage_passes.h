@@ -29,23 +29,23 @@ struct StageContext {
 // Coordinates and motion for the present speeds; joint coordinates where bodies are integrated.
 void place(const StageContext& at, double sigma) noexcept;
 
-// Accelerations that the speeds' rates cause, on top of those that the motion holds.
+// Adds the accelerations by the speeds' rates to those of the motion.
 void add_accelerations(const StageContext& at, std::span<const double> rate) noexcept;
 
-// What pushes on one side only, by element: on which side of its range an end damper does (-1, 0, 1), LimitedForce of
-// ropes and tyres, the pushing contact points of a pair. Needs the elements' motion and a search for contacts.
+// State of one-sided forces, by element: the side of its range on which an end damper pushes (-1, 0, 1), LimitedForce
+// of ropes and tyres, the pushing contact points of a pair. Needs the elements' motion and a search for contacts.
 [[nodiscard]] std::size_t stop_count(const Model& model) noexcept;
 void see_stops(const Model& model, const Workspace& ws, std::span<signed char> stops) noexcept;
 
-// Right side of (4) into bws.solution; elements, inertia and joints' rows on the way. Needs place(), and the time of
-// the stage in ws.
+// Right side of (4) into bws.solution; evaluates elements, inertia and joints' rows. Needs place(), and the time of the
+// stage in ws.
 void find_residual(const StageContext& at, const Stage& stage) noexcept;
 
 // Left side of (4), after find_residual(); with the pull of the joints when their multipliers are known. False:
 // singular to working precision.
 [[nodiscard]] bool factorize_stage(const StageContext& at, const Stage& stage) noexcept;
 
-// delta of bws.solution in the speeds that are integrated.
+// delta of bws.solution in the integrated speeds.
 void read_step(const StageContext& at, std::span<double> step) noexcept;
 
 }  // namespace slew::multibody

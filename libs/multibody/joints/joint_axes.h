@@ -1,4 +1,4 @@
-// Coordinates of joints as friction, limits and variables name them.
+// Numbers and suffixes of joint coordinates for friction, limits and variables.
 //
 // Number 0 or 1: revolute and prismatic 0; universal about z of frame 1, of frame 2; cylindrical angle, displacement.
 // Keys and variables of a coordinate end with its suffix: "limit_min_2", "position_angle".
@@ -23,7 +23,7 @@ namespace slew::multibody {
 // Friction and limits of a coordinate.
 [[nodiscard]] JointAxisDef axis_of(const JointDef& joint, int number) noexcept;
 [[nodiscard]] bool has_limits(const JointAxisDef& axis) noexcept;
-// Whether the axis has friction or limits, so that the mechanism has a row for it.
+// True if the axis has friction or limits; the mechanism then has a row for it.
 [[nodiscard]] bool has_row(const JointAxisDef& axis) noexcept;
 
 // Rows of friction and limits: one a coordinate; of a spherical joint three, about the axes of frame 1, for its

@@ -110,8 +110,8 @@ constexpr std::array<Field, 6> kFrames = {kBody1, kPoint1, kOrientation1, kBody2
 
 constexpr std::array<Field, 1> initial_velocity_row(const AxisDimensions& d) {
   return {field<&JointDef::initial_velocity>(
-      "initial_velocity",
-      {.dimension = d.speed, .doc = "rate of the joint coordinate at the start; none: 0, or what a loop makes of it"})};
+      "initial_velocity", {.dimension = d.speed,
+                           .doc = "rate of the joint coordinate at the start; none: 0, or the rate given by a loop"})};
 }
 
 constexpr auto kRevoluteFields = joined(kFrames, initial_velocity_row(kRotation), axis_rows<0>(kRotation, kPlain));
@@ -160,7 +160,7 @@ constexpr Field kInLineFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoin
 constexpr Field kPerpendicularFields[] = {kBody1, kOrientation1, kBody2, kOrientation2};
 
 constexpr Field kLength = field<&JointDef::length>(
-    "length", {.dimension = length, .range = kNotNegative, .doc = "length of the link; 0: as the points stand"});
+    "length", {.dimension = length, .range = kNotNegative, .doc = "length of the link; 0: distance of the points"});
 constexpr Field kLinkFields[] = {kBody1, kPoint1, kBody2, kPoint2, kLength};
 constexpr Field kHingedLinkFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2, kLength};
 constexpr Field kTwiceHingedLinkFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2, kOrientation2, kLength};

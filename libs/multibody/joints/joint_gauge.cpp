@@ -33,7 +33,7 @@ std::vector<Constraint> joint_constraints(const Model& model) {
   std::vector<Constraint> constraints;
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    // no joint of the scene, and its frames move apart as the body bends
+    // not a joint of the scene; its frames move apart as the body bends
     if (joint.type == JointType::node) continue;
     if (joint.cut >= 0) {
       const Cut& cut = model.cuts[at(joint.cut)];

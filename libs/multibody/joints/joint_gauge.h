@@ -1,11 +1,11 @@
-// How far the joints of a mechanism are open, measured on the poses and velocities of its links.
+// Violation of a mechanism's joints, measured on the poses and velocities of its links.
 //
-// Every joint of the scene forbids what its rows say (constraint.h): g = 0 and g' = 0. The gauge evaluates all of them,
-// joints with coordinates and rows that others imply included, from the links' motion alone. So its figures mean the
-// same for every formulation, whatever that one integrates and corrects: in joint coordinates the joints of the tree
-// are closed but for rounding, in body coordinates every joint shows what the correction has left.
+// Every joint of the scene demands g = 0 and g' = 0 for its rows (constraint.h). The gauge evaluates all rows, also of
+// joints with coordinates and redundant ones, from the links' motion alone. So its figures are comparable between all
+// formulations: in joint coordinates the joints of the tree are closed to rounding, in body coordinates every joint
+// shows the residual of the correction.
 //
-// Not covered: fixed joints, whose bodies are one link, and what joints allow (limits, friction).
+// Not covered: fixed joints, whose bodies are one link, and forces along free coordinates (limits, friction).
 #pragma once
 
 #include <vector>
@@ -22,7 +22,7 @@ namespace slew::multibody {
 struct JointGap {
   double position = 0;  // largest |g|, m or rad
   double rate = 0;      // largest |g'|, m/s or rad/s
-  int joint = -1;       // of the scene, the most open one; -1: all are closed exactly
+  int joint = -1;       // joint of the scene with the largest violation; -1: all are closed exactly
 };
 
 class JointGauge {

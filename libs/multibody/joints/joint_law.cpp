@@ -103,7 +103,7 @@ JointForce evaluate(const JointLaw& law, double x, double v) noexcept {
 JointForce evaluate(const JointLaw& law, double x, double v, double h, double z) noexcept {
   if (!has_bristles(law)) return evaluate(law, x, v);
   JointForce result = without_dry_friction(law, x, v);
-  // a live change may take the dry friction away
+  // a live change may set the dry friction to 0
   if (!(law.coulomb > 0)) return result;
   const contact::FrictionForce bristles = bristle_force(law, v, h, z);
   result.force -= bristles.f_W.x();

@@ -40,17 +40,18 @@ struct JointForce {
   double force = 0;  // F [N m or N]
   double d_x = 0;    // dF/dx
   double d_v = 0;    // dF/dv
-  double limit = 0;  // of it, F_min - F_max [N m or N]
+  double limit = 0;  // F_min - F_max, contained in force [N m or N]
 };
 
-// (1); of a law without bristles.
+// (1), for a law without bristles.
 [[nodiscard]] JointForce evaluate(const JointLaw& law, double x, double v) noexcept;
 
 [[nodiscard]] inline bool has_bristles(const JointLaw& law) noexcept {
   return law.bristle_stiffness > 0;
 }
 
-// Of either law, at the end of h [s] at the speed v that began with the bending z [rad or m]; h = 0: at the instant.
+// Force of either law at the end of h [s] at the speed v that began with the bending z [rad or m]; h = 0: at the
+// instant.
 [[nodiscard]] JointForce evaluate(const JointLaw& law, double x, double v, double h, double z) noexcept;
 
 // One of the three parts of (5) at the part v of the speed. s is held: the law is linear in v, and stays implicit where
@@ -59,10 +60,10 @@ struct JointForce {
 [[nodiscard]] double bent_part(const JointLaw& law, double v, double s, double h, double z) noexcept;
 [[nodiscard]] double bristle_rate_part(const JointLaw& law, double v, double s, double z) noexcept;
 
-// The bending after h at the speed v.
+// Bending after h at the speed v.
 [[nodiscard]] double bent(const JointLaw& law, double v, double h, double z) noexcept;
 
-// z' of (4) [rad/s or m/s]; 0 of a law without bristles.
+// z' of (4) [rad/s or m/s]; 0 for a law without bristles.
 [[nodiscard]] double bristle_rate(const JointLaw& law, double v, double z) noexcept;
 
 [[nodiscard]] inline bool touches_limit(const JointLaw& law, double x) noexcept {

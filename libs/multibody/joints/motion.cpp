@@ -103,7 +103,7 @@ void move_floating(const LinkMotion& ground, std::span<const double> q, std::spa
   m.a = ground.a;
 }
 
-// what the laws say of a joint's accelerations
+// prescribed accelerations of a joint
 void add_prescribed(const Link& link, const Workspace& ws, LinkMotion& m) noexcept {
   const auto acceleration = [&](std::size_t k) {
     return link.drive[k] < 0 ? 0.0 : ws.drives[static_cast<std::size_t>(link.drive[k])].acceleration;
@@ -173,7 +173,7 @@ void move_link(const Model& model, std::size_t i, std::span<const double> q, std
 void update_motion(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   ws.loops.is_shown = false;
   ws.motion[0].a = -model.gravity;
-  // what is rigid does not pay for modes
+  // rigid mechanisms skip the modes
   if (model.parts.empty()) {
     for (std::size_t i = 1; i < model.links.size(); ++i) move_link(model, i, q, u, ws);
     return;
@@ -250,12 +250,13 @@ void displace(const Model& model, const Workspace& ws, std::span<const double> s
   for_each_mode(model, [&](std::size_t q_k, std::size_t u_k) { q[q_k] += step[u_k]; });
 }
 
-void move_from(const Model& model, std::span<const double> start, const Displacement& way, std::span<const double> u,
-               std::span<double> q, Workspace& ws) noexcept {
+void move_from(const Model& model, std::span<const double> start, const Displacement& displacement,
+               std::span<const double> u, std::span<double> q, Workspace& ws) noexcept {
   ws.loops.is_shown = false;
   ws.motion[0].a = -model.gravity;
-  for_each_mode(model,
-                [&](std::size_t q_k, std::size_t u_k) { q[q_k] = start[q_k] + way.base[u_k] + way.scale * u[u_k]; });
+  for_each_mode(model, [&](std::size_t q_k, std::size_t u_k) {
+    q[q_k] = start[q_k] + displacement.base[u_k] + displacement.scale * u[u_k];
+  });
   see_parts(model, 0, q, u, ws);
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
@@ -265,17 +266,18 @@ void move_from(const Model& model, std::span<const double> start, const Displace
       for (int k = 0; k < speed_count(link.joint); ++k, ++qi) {
         const std::size_t j = ui + static_cast<std::size_t>(k);
         const int drive = link.drive[static_cast<std::size_t>(k)];
-        q[qi] = drive < 0 ? start[qi] + way.base[j] + way.scale * u[j]
+        q[qi] = drive < 0 ? start[qi] + displacement.base[j] + displacement.scale * u[j]
                           : ws.drives[static_cast<std::size_t>(drive)].position;
       }
     } else {
       Vec3 w = vector_at(u, ui) + ws.motion[static_cast<std::size_t>(link.parent)].w;
       if (link.joint == LinkJoint::floating) {
-        for (std::size_t k = 0; k < 3; ++k, ++qi) q[qi] = start[qi] + way.base[ui + k] + way.scale * u[ui + k];
+        for (std::size_t k = 0; k < 3; ++k, ++qi)
+          q[qi] = start[qi] + displacement.base[ui + k] + displacement.scale * u[ui + k];
         w = vector_at(u, ui + 3);
       }
       const math::Quaternion turned =
-          math::normalized(math::turn_by(way.turn[i] + w * way.scale) * quaternion_at(start, qi));
+          math::normalized(math::turn_by(displacement.turn[i] + w * displacement.scale) * quaternion_at(start, qi));
       q[qi] = turned.w;
       q[qi + 1] = turned.x;
       q[qi + 2] = turned.y;

@@ -1,4 +1,4 @@
-// Inertia of a body of the scene about its centre of mass, and whether it can be one.
+// Inertia of a body of the scene about its centre of mass, and its validity.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace slew::multibody {
 // printed inertias are rounded: share of the largest moment by which a rule may fail
 inline constexpr double kInertiaTolerance = 1e-6;
 
-// Whether a body can have this tensor about its centre of mass: no principal moment below zero or larger than the sum
+// True if a body can have this tensor about its centre of mass: no principal moment below zero or larger than the sum
 // of the other two.
 [[nodiscard]] inline bool is_inertia(const math::Mat3& tensor) noexcept {
   const auto [a, b, c] = math::symmetric_eigenvalues(tensor);

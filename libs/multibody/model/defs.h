@@ -1,4 +1,4 @@
-// What a scene says about mechanics: bodies, joints, forces and dummies, as plain structs.
+// Definitions of mechanics: bodies, joints, forces and dummies, as plain structs.
 //
 // Frames. Right-handed. A body's pose is given relative to another body (or Ground): position of its origin, and
 // successive Euler rotations z-x'-z'' (phi, theta, psi). A joint has a frame in each body: a point and successive
@@ -46,7 +46,7 @@ struct BodyDef {
   Triple inertia{};                    // kg m2, Ixx Iyy Izz in body axes; 0 0 0 is a point mass
   Triple products{};                   // kg m2, the tensor's elements Ixy Ixz Iyz (that is -integral x y dm, ...)
   InertiaPoint inertia_about = InertiaPoint::center_of_mass;
-  // Of a flexible or segmented body: files and what is taken of them. What they hold stands in
+  // Members of a flexible or segmented body: files and the selection from them. Their contents are in
   // MechanicsDef::flexible_bodies and segmented_bodies.
   std::string flex_model{};                  // first part of the files' names; empty: the scene's name
   std::string flex_file_prefix{};            // second part
@@ -56,7 +56,7 @@ struct BodyDef {
   std::int64_t segments = 20;                // connectors of a segmented body
 };
 
-// Those after cylindrical have no coordinates of their own (topology.h): their rows are in constraint.h.
+// Types after cylindrical have no coordinates of their own (topology.h): their rows are in constraint.h.
 enum class JointType : int {
   revolute,
   prismatic,
@@ -72,7 +72,7 @@ enum class JointType : int {
   spherical_spherical,  // massless link with a ball at either end
   revolute_spherical,   // massless link: hinge about z of frame 1, ball at point 2
   revolute_revolute,    // massless link: hinge about z of either frame
-  node,                 // not of a scene: body 2 is a node of the flexible body 1
+  node,                 // internal, not in scenes: body 2 is a node of the flexible body 1
 };
 
 // Friction and limits along one coordinate of a joint: joint_law.h.
@@ -99,10 +99,10 @@ struct JointDef {
   std::string body2{};
   Triple point2{};        // m, body 2 frame
   Triple orientation2{};  // rad
-  // Speeds at the start: those that are given are held where loops leave a choice.
+  // Speeds at the start: given ones are kept where loops leave a choice.
   double initial_velocity = kNotGiven;      // rad/s or m/s; rad/s about z of frame 1 (universal, cylindrical)
   double initial_velocity_2 = kNotGiven;    // rad/s about z of frame 2 (universal); m/s along z (cylindrical)
-  double length = 0;                        // m, of a massless link; 0: as its points stand at the start
+  double length = 0;                        // m, length of a massless link; 0: distance of its points at the start
   Triple initial_translation = kNoneGiven;  // m/s, of point 2 seen from body 1, in body 1 axes (floating)
   Triple initial_rotation = kNoneGiven;     // rad/s, of body 2 seen from body 1, in body 1 axes (spherical, floating)
   // friction and limits of the first coordinate (joint_axes.h), then of the second
@@ -180,7 +180,7 @@ struct StaticDummyDef {
 
 enum class Formulation : int { recursive, lagrange, augmented, penalty };
 
-// How a sub-step is integrated: integrators.h; index3_trapezoidal: body_penalty.h; own: own_integrator().
+// Integration rule of a sub-step: integrators.h; index3_trapezoidal: body_penalty.h; own: own_integrator().
 enum class Integrator : int {
   rk4,
   semi_implicit_euler,
@@ -195,14 +195,15 @@ enum class Integrator : int {
 struct MechanicsDef : ForceKinds::Defs {
   Triple gravity{0, -9.81, 0};  // m/s2
   Formulation formulation = Formulation::recursive;
-  double assembly_tolerance = 1e-3;  // m and rad, how far a joint may be open at the start
+  double assembly_tolerance = 1e-3;  // m and rad, largest violation of a joint at the start
   double max_substep = 1e-3;         // s, longest sub-step of the integrator
   double penalty_factor = 1e7;       // penalty mass of the joints' rows over the mechanism's mass (augmented, penalty)
   double penalty_damping = 1;        // xi, damping ratio of the rows (penalty)
   double penalty_frequency = 100;    // rad/s, omega_n of the rows (penalty)
   Integrator integrator = Integrator::own;
   double spectral_radius = 0.8;       // rho_inf of generalised_alpha, 0 .. 1: 1 damps nothing
-  double iteration_tolerance = 1e-9;  // implicit integrators: error of speeds, of the mechanism's speed or of 1 m/s
+  double iteration_tolerance = 1e-9;  // implicit integrators: error of speeds relative to the mechanism's speed or 1
+                                      // m/s
   std::string payload;                // body that the machine lifts; empty: the end of the longest chain
 
   std::vector<BodyDef> bodies;
@@ -212,7 +213,7 @@ struct MechanicsDef : ForceKinds::Defs {
   std::vector<ForceDummyDef> force_dummies;
   std::vector<StaticDummyDef> static_dummies;
 
-  double contact_substep = 1e-4;  // s, longest sub-step while something touches or is about to
+  double contact_substep = 1e-4;  // s, longest sub-step while shapes touch or are about to
   std::vector<ShapeDef> shapes;
   std::vector<ContactPairDef> contacts;
   std::vector<FrictionDef> frictions;
@@ -220,8 +221,8 @@ struct MechanicsDef : ForceKinds::Defs {
   std::vector<ConstraintDummyDef> constraint_dummies;
   std::vector<MotionDef> motions;
   std::vector<GearDef> gears;
-  std::vector<FlexibleBodyDef> flexible_bodies;    // of the bodies of that type, once their files were read
-  std::vector<SegmentedBodyDef> segmented_bodies;  // the same of segmented bodies
+  std::vector<FlexibleBodyDef> flexible_bodies;    // bodies of that type, filled when their files are read
+  std::vector<SegmentedBodyDef> segmented_bodies;  // the same for segmented bodies
 };
 
 }  // namespace slew::multibody

@@ -19,7 +19,7 @@ using enum Dimension;
 
 constexpr Range kAssemblyRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
 constexpr Range kSubstepRange{.min = 1e-6, .max = 20e-3, .min_is_open = false, .max_is_open = false};
-// below, joints are soft; above, rounding spoils what they leave free
+// below, joints are soft; above, rounding corrupts the free directions
 constexpr Range kPenaltyFactorRange{.min = 1e3, .max = 1e10, .min_is_open = false, .max_is_open = false};
 constexpr Range kPenaltyDampingRange{.min = 0.01, .max = 10, .min_is_open = false, .max_is_open = false};
 constexpr Range kPenaltyFrequencyRange{.min = 0, .max = 1e6, .max_is_open = false};
@@ -39,7 +39,7 @@ constexpr ReadBy kReadByPenalty[] = {
     read_by<&MechanicsDef::formulation, Formulation::penalty>("formulation", "formulation: penalty")};
 constexpr ReadBy kReadByAlpha[] = {
     read_by<&MechanicsDef::integrator, Integrator::generalised_alpha>("integrator", "integrator: generalised_alpha")};
-// augmented takes index3_trapezoidal as its own
+// index3_trapezoidal is the default of augmented
 constexpr ReadBy kReadByImplicit[] = {{"integrator", "an implicit integrator", [](const void* def) noexcept {
                                          const auto& mechanics = *static_cast<const MechanicsDef*>(def);
                                          const Integrator rule = mechanics.integrator == Integrator::own
@@ -52,12 +52,11 @@ constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::gravity>(
         "gravity", {.dimension = acceleration, .change = Change::live, .doc = "acceleration of gravity, global axes"}),
     field<&MechanicsDef::formulation>("formulation", {.choices = kFormulations, .doc = "equations of motion"}),
-    field<&MechanicsDef::assembly_tolerance>(
-        "assembly_tolerance",
-        {.dimension = length,
-         .range = kAssemblyRange,
-         .doc = "how far poses may miss a joint at the start (a radian counts as a metre): bodies "
-                "are then moved onto it and named"}),
+    field<&MechanicsDef::assembly_tolerance>("assembly_tolerance",
+                                             {.dimension = length,
+                                              .range = kAssemblyRange,
+                                              .doc = "largest violation of a joint by the poses at the start (a radian "
+                                                     "counts as a metre): bodies are then moved onto it and named"}),
     field<&MechanicsDef::max_substep>(
         "max_substep",
         {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step of the integrator inside a step"}),
@@ -65,41 +64,37 @@ constexpr Field kMechanicsFields[] = {
         "contact_substep",
         {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step while shapes touch or are about to"}),
     field<&MechanicsDef::penalty_factor>(
-        "penalty_factor",
-        {.range = kPenaltyFactorRange,
-         .read_by = kReadByPenaltyFactor,
-         .doc = "augmented, penalty: mass that resists a joint's opening, over the mechanism's mass"}),
+        "penalty_factor", {.range = kPenaltyFactorRange,
+                           .read_by = kReadByPenaltyFactor,
+                           .doc = "augmented, penalty: penalty mass of a joint, relative to the mechanism's mass"}),
     field<&MechanicsDef::penalty_damping>("penalty_damping", {.range = kPenaltyDampingRange,
                                                               .read_by = kReadByPenalty,
-                                                              .doc = "penalty: damping ratio of what opens a joint"}),
+                                                              .doc = "penalty: damping ratio of a joint's violation"}),
     field<&MechanicsDef::penalty_frequency>("penalty_frequency",
                                             {.dimension = angular_velocity,
                                              .range = kPenaltyFrequencyRange,
                                              .read_by = kReadByPenalty,
-                                             .doc = "penalty: angular frequency at which a joint closes again"}),
+                                             .doc = "penalty: angular frequency at which a joint closes"}),
     field<&MechanicsDef::integrator>(
         "integrator",
         {.choices = kIntegrators,
          .doc =
              "rule of a sub-step. recursive, lagrange: the first five, of which the last three are implicit (springs "
              "and dampers may be stiff); augmented: index3_trapezoidal; penalty: rk4. own: the first of these"}),
-    field<&MechanicsDef::spectral_radius>(
-        "spectral_radius",
-        {.range = kRadiusRange,
-         .read_by = kReadByAlpha,
-         .doc = "generalised_alpha: share of an oscillation far too fast for the sub-step that is left after one"}),
+    field<&MechanicsDef::spectral_radius>("spectral_radius",
+                                          {.range = kRadiusRange,
+                                           .read_by = kReadByAlpha,
+                                           .doc = "generalised_alpha: share of an oscillation far too fast for the "
+                                                  "sub-step that remains after one sub-step"}),
     field<&MechanicsDef::iteration_tolerance>(
-        "iteration_tolerance",
-        {.range = kIterationRange,
-         .read_by = kReadByImplicit,
-         .doc = "implicit integrators: error of speeds at which the iteration ends, of the mechanism's largest (at "
-                "least 1 m/s, 1 rad/s)"}),
+        "iteration_tolerance", {.range = kIterationRange,
+                                .read_by = kReadByImplicit,
+                                .doc = "implicit integrators: error of speeds at which the iteration ends, relative to "
+                                       "the mechanism's largest (at least 1 m/s, 1 rad/s)"}),
     field<&MechanicsDef::payload>(
-        "payload",
-        {.reference = "body",
-         .doc =
-             "body that the machine lifts, whose mass its load notes ask for: a rigid one that moves. Without it the "
-             "one at the end of the longest chain of joints outside of loops"}),
+        "payload", {.reference = "body",
+                    .doc = "body that the machine lifts, whose mass its load notes use: a rigid one that moves. "
+                           "Default: the one at the end of the longest chain of joints outside of loops"}),
 };
 
 constexpr Field kRelativeTo = field<&BodyDef::relative_to>(
@@ -144,10 +139,10 @@ constexpr Field kFlexibleBodyFields[] = {
         {.presence = Presence::required, .doc = "prefix in the names of the files, which lie beside the scene"}),
     field<&BodyDef::flex_modes>(
         "flex_modes",
-        {.doc = "modes that are taken, as '1;2', or none: rigid, with the files' mass; without it all of the files"}),
+        {.doc = "selected modes, as '1;2', or none: rigid, with the files' mass; default: all of the files"}),
     field<&BodyDef::flex_frequency_limit>(
         "flex_frequency_limit",
-        {.dimension = Dimension::frequency, .range = kPositive, .doc = "modes above it are left out"}),
+        {.dimension = Dimension::frequency, .range = kPositive, .doc = "modes above it are omitted"}),
     field<&BodyDef::relative_damping>(
         "relative_damping", {.doc = "damping over critical damping by mode, as '0.005;0.005', or one for all; 0"}),
 };

@@ -13,7 +13,7 @@ namespace slew::multibody {
 // A type of element that a section of the scene may hold.
 struct ElementType {
   std::string_view name;  // value of the key `type`; empty where the section has one type only
-  std::string_view kind;  // what references call it (Field::reference): "body", "joint", "force", "dummy"
+  std::string_view kind;  // kind in references (Field::reference): "body", "joint", "force", "dummy"
   std::string_view doc;   // one line
   std::span<const Field> fields;
 
@@ -41,7 +41,7 @@ struct Section {
 // Rows of the section `mechanics`; they bind to MechanicsDef itself.
 [[nodiscard]] std::span<const Field> mechanics_fields() noexcept;
 
-// What a scene calls them.
+// Names in a scene.
 [[nodiscard]] std::string_view key_of(Formulation formulation) noexcept;
 [[nodiscard]] std::string_view key_of(Integrator integrator) noexcept;
 

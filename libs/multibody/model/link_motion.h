@@ -14,7 +14,7 @@ struct LinkMotion {
   math::Vec3 w;      // rad/s
   math::Vec3 v;      // m/s, of the origin
   math::Vec3 axis;   // z of the link: of a joint with one or two coordinates
-  math::Vec3 axis1;  // of a universal joint: z of the parent's frame
+  math::Vec3 axis1;  // universal joint: z of the parent's frame
   math::Vec3 alpha;  // rad/s2
   math::Vec3 a;      // m/s2, of the origin
 };

@@ -13,8 +13,7 @@
 // After those of the joints come the modal coordinates and speeds of the flexible parts.
 // The joint's type is an enum, its kernels are picked by a switch in each pass: no virtual call per joint.
 //
-// A Model does not change while a step runs; parameters that a scene declares live change between steps through
-// parameters.h.
+// A Model does not change during a step; live parameters change between steps through parameters.h.
 #pragma once
 
 #include <array>
@@ -72,7 +71,7 @@ struct Link {
   int u = 0;              // first entry in State::u
   int first_coupled = 0;  // CoupledMass entries of this link's joint: [first_coupled, coupled_end)
   int coupled_end = 0;
-  int node = -1;       // Model::nodes, of a link with LinkJoint::node
+  int node = -1;       // Model::nodes, for a link with LinkJoint::node
   int first_part = 0;  // flexible parts whose frame this link is: [first_part, part_end) of Model::parts
   int part_end = 0;
   int first_node_dummy = 0;  // Model::node_dummies across this link's joint: [first_node_dummy, node_dummy_end)
@@ -83,12 +82,12 @@ struct Link {
   [[nodiscard]] bool has_node_dummies() const noexcept { return node_dummy_end > first_node_dummy; }
 };
 
-// Something with a mass that is fixed to a link: a body, a static dummy, a force dummy between merged bodies.
+// A mass fixed to a link: a body, a static dummy, a force dummy between merged bodies.
 struct LumpedMass {
   math::Vec3 c_L;             // m, centre of mass, link frame
   math::Mat3 I_c;             // kg m2, about it, link axes, for reference_mass
   double mass = 0;            // kg, now
-  double reference_mass = 0;  // kg, of the scene
+  double reference_mass = 0;  // kg, mass in the scene
   int link = 0;
   int owner = 0;  // body that carries it: itself, or a dummy's body; -1: two bodies, by Model::welded
 };
@@ -111,7 +110,7 @@ struct Joint {
   int body1 = 0, body2 = 0;
   math::Mat3 R_B1, R_B2;     // joint frames in their bodies
   math::Vec3 p_B1, p_B2;     // m
-  int link = 0;              // link that it moves; 0 for a fixed joint and for one that is cut
+  int link = 0;              // link that it moves; 0 for a fixed and for a cut joint
   int cut = -1;              // Model::cuts
   bool is_reversed = false;  // the tree walks it from body 2 to body 1
 };
@@ -148,7 +147,7 @@ struct AngleElement {
 };
 
 // Dummies of one force: masses without degrees of freedom, whose points lie on a link and on its parent, on one link,
-// or, with nodes of flexible bodies, as flexible/node_dummies.h says.
+// or, with nodes of flexible bodies, as in flexible/node_dummies.h.
 struct CoupledMass {
   int line = 0;   // LineElement
   int child = 0;  // link whose joint it spans; of one link: 0
@@ -158,14 +157,14 @@ struct CoupledMass {
   double transverse = 0;  // kg m2, sum of both transverse moments about their centres
 };
 
-// A joint on the way between two links; sign +1: it moves the second link outwards, -1: the first.
+// A joint on the path between two links; sign +1: it moves the second link outwards, -1: the first.
 struct PathEntry {
   int link = 0;
   double sign = 0;
-  double turn = 0;  // of a coaxial AngleElement: d(angle)/dq, +1 or -1
+  double turn = 0;  // for a coaxial AngleElement: d(angle)/dq, +1 or -1
 };
 
-// The laws that a constraint row is made of: constraint.h.
+// The laws of constraint rows: constraint.h.
 enum class RowForm : std::uint8_t {
   in_plane,
   in_plane_of_2,
@@ -194,13 +193,13 @@ struct Constraint {
   int node = -1;  // Model::nodes: frame 1 rides on the modes there
 };
 
-// A joint outside of the tree: of its rows those that are independent of the tree and of the cuts before it.
+// A joint outside of the tree: its rows that are independent of the tree and of the cuts before it.
 struct Cut : Constraint {
   int first_row = 0;      // among the rows of all cuts
   int first_support = 0;  // entries of Model::supports: all links between its bodies and Ground, outermost first
   int support_end = 0;
-  std::vector<int> kept;                 // of the joint's rows in the order of rows_of(), by entry of `rows`
-  std::vector<ConstraintRow> redundant;  // rows that the others imply wherever the mechanism goes
+  std::vector<int> kept;                 // places of the kept rows in the order of rows_of(), by entry of `rows`
+  std::vector<ConstraintRow> redundant;  // rows that the others imply in every position
   std::vector<int> left_out;             // their places in the order of rows_of()
 };
 
@@ -215,21 +214,21 @@ enum class RowKind : std::uint8_t {
 struct Row {
   RowKind kind = RowKind::joint;
   int element = 0;     // LineElement, AngleElement or Joint (joint, ball)
-  int link = 0;        // of a joint row; 0: the joint is cut
-  int number = 0;      // of a joint row: which coordinate of the joint; of a ball's: which axis
-  int place = 0;       // of a joint row: that coordinate's among the link's
+  int link = 0;        // link of a joint row; 0: the joint is cut
+  int number = 0;      // joint row: number of the joint's coordinate; ball: number of the axis
+  int place = 0;       // joint row: place of that coordinate among the link's
   int first_path = 0;  // entries of Model::paths
   int path_end = 0;
   int first_support = 0;  // entries of Model::supports: all links between its bodies and Ground, outermost first
   int support_end = 0;
-  JointLaw law{};  // of a joint row
+  JointLaw law{};  // law of a joint row
   std::string name{};
 };
 
-// A speed that the scene gives a joint which is cut.
+// A speed that the scene gives for a cut joint.
 struct GivenSpeed {
   int cut = 0;
-  int number = 0;    // of the joint's coordinate; of a spherical joint the axis of body 1
+  int number = 0;    // number of the joint's coordinate; for a spherical joint the axis of body 1
   double speed = 0;  // rad/s or m/s
 };
 
@@ -263,7 +262,7 @@ struct Model {
   std::vector<Cut> cuts;
   std::vector<Drive> drives;          // prescribed coordinates, in the order of the scene
   std::vector<Gear> gears;            // whose rows come after those of the cuts
-  std::vector<Gear> idle_gears;       // that the joints and the gears before them imply wherever the mechanism goes
+  std::vector<Gear> idle_gears;       // gears that the joints and the gears before them imply in every position
   std::vector<double> cut_reference;  // 1/kg or 1/(kg m2), by closing row: a mobility that is not near zero
   std::vector<int> body_order;        // bodies from Ground outwards, parents first; without Ground
   std::vector<double> start_q, start_u;
@@ -276,10 +275,10 @@ struct Model {
   [[nodiscard]] int cut_row_count() const noexcept {
     return cuts.empty() ? 0 : cuts.back().first_row + static_cast<int>(cuts.back().rows.size());
   }
-  // Rows that the tree's coordinates do not hold by themselves: of cuts, then one for each gear.
+  // Rows that the tree's coordinates do not satisfy by themselves: those of cuts, then one for each gear.
   [[nodiscard]] bool has_closing_rows() const noexcept { return !cuts.empty() || !gears.empty(); }
   [[nodiscard]] int closing_row_count() const noexcept { return cut_row_count() + static_cast<int>(gears.size()); }
-  // Where the mechanism is not in a singular position.
+  // Reference mobilities away from singular positions.
   [[nodiscard]] int degrees_of_freedom() const noexcept {
     int prescribed = 0;
     for (const Drive& drive : drives) prescribed += drive.link > 0 ? 1 : 0;
@@ -301,7 +300,7 @@ void for_each_mode(const Model& model, Visit visit) noexcept {
 // Labels of the joints' coordinates that need a row because they have friction or limits, in the scene's order.
 [[nodiscard]] std::vector<std::string> joint_rows(const MechanicsDef& mechanics);
 
-// Appends a problem for every name that is no force and no coordinate of a joint.
+// Appends a problem for every name that is neither a force nor a coordinate of a joint.
 void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> rows, Problems& problems);
 
 // Pre-condition: validate() and validate_rows() found nothing. rows: names of translational forces (coordinate:
@@ -315,15 +314,15 @@ void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> r
 [[nodiscard]] int find_row(const Model& model, std::string_view name) noexcept;
 [[nodiscard]] std::string_view row_name(const Model& model, int row) noexcept;
 
-// False when all constants are zero: then there is nothing to evaluate.
+// False if all constants are zero: the element then needs no evaluation.
 [[nodiscard]] bool has_effect(const ElementLaw& law) noexcept;
 
 // Whether each force element is evaluated at every stage, after a change of its law.
 void mark_used_elements(Model& model) noexcept;
 
-// Mass properties of a link from what is lumped into it. Does not allocate.
+// Mass properties of a link from its lumped masses. Does not allocate.
 void lump_link(Model& model, int link) noexcept;
-// Of all links.
+// The same for all links.
 void lump_links(Model& model) noexcept;
 
 }  // namespace slew::multibody

@@ -1,4 +1,4 @@
-// What can be read off a mechanism at an instant: energies, joint reactions, variables, a description.
+// Results of a mechanism at an instant: energies, joint reactions, variables, a description.
 #pragma once
 
 #include <span>
@@ -16,8 +16,8 @@ namespace slew::multibody {
 void observe(const Model& model, const State& state, Workspace& ws) noexcept;
 
 // Kinetic energy of all masses; potential energy of gravity (zero at Ground's origin) and of the elements' springs,
-// end dampers included, of the springs of contacts and of their bristles. Joint limits act through rows and are their
-// owner's. [J]
+// end dampers included, of the springs of contacts and of their bristles. The owner of the rows accounts for joint
+// limits. [J]
 struct Energy {
   double kinetic = 0, potential = 0;
 };
@@ -39,8 +39,8 @@ struct BodyPose {
 };
 [[nodiscard]] BodyPose body_pose(const Model& model, const Workspace& ws, int body) noexcept;
 
-// Where redundant rows leave the reactions open: those with the smallest sum of squares of all joints' forces [N] and
-// moments [N m].
+// Joint reactions. If redundant rows leave them open: those with the smallest sum of squares of all joints' forces [N]
+// and moments [N m].
 //
 // Newton and Euler over the bodies of the scene with the accelerations that the given row forces cause. reactions: one
 // per joint of the scene. Runs a forward dynamics; does not allocate.
@@ -62,9 +62,9 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
 void append_contact_variables(const Model& model, std::vector<ElementVariable>& variables);
 std::size_t read_contact_variables(const Model& model, const Workspace& ws, std::span<double> values) noexcept;
 
-// Whether a flexible part is bent by more than a tenth of its length at coordinates q: beyond small deflections.
+// True if a flexible part is bent by more than a tenth of its length at coordinates q: beyond small deflections.
 [[nodiscard]] bool is_bent_far(const Model& model, std::size_t part, std::span<const double> q) noexcept;
-// Whether two neighbours of a segmented body are turned by more than kLargestBend against each other.
+// True if two neighbours of a segmented body are turned by more than kLargestBend against each other.
 [[nodiscard]] bool is_bent_far(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept;
 
 // Largest deflection of a flexible part at coordinates q, and of a segmented body against its root after a motion in
@@ -72,18 +72,18 @@ std::size_t read_contact_variables(const Model& model, const Workspace& ws, std:
 [[nodiscard]] double deflection_share(const Model& model, std::size_t part, std::span<const double> q) noexcept;
 [[nodiscard]] double deflection_share(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept;
 
-// What every joint transmits, as "Joint.reaction_force.x" and "Joint.reaction_moment.x": six for each joint of the
-// scene, in the order and form of JointReaction; then "Gear.torque_1" and "Gear.force_2" (or "Gear.torque_2" ...), the
-// forces of a gear's row on the coordinates of its joints; then "Motion.torque" or "Motion.force", and "Motion.power",
-// for each prescribed motion. Allocates.
+// Reactions of every joint, as "Joint.reaction_force.x" and "Joint.reaction_moment.x": six for each joint of the scene,
+// in the order and form of JointReaction; then "Gear.torque_1" and "Gear.force_2" (or "Gear.torque_2" ...), the forces
+// of a gear's row on the coordinates of its joints; then "Motion.torque" or "Motion.force", and "Motion.power", for
+// each prescribed motion. Allocates.
 [[nodiscard]] std::vector<ElementVariable> reaction_variables(const Model& model);
 
 // Values in the order of reaction_variables(), after joint_reactions() with this workspace. Does not allocate.
 void read_reactions(const Model& model, const Workspace& ws, std::span<const double> row_forces,
                     std::span<const JointReaction> reactions, std::span<double> values) noexcept;
 
-// Force of a prescribed motion on its coordinate, positive when it pushes the coordinate to grow [N or N m]: what the
-// joint transmits along it, less the joint's own friction and limits. After joint_reactions() with this workspace.
+// Force of a prescribed motion on its coordinate, positive when it pushes the coordinate to grow [N or N m]: the
+// joint's reaction along it, less the joint's own friction and limits. After joint_reactions() with this workspace.
 [[nodiscard]] double drive_force(const Model& model, const Workspace& ws, std::size_t drive,
                                  std::span<const double> row_forces, std::span<const JointReaction> reactions) noexcept;
 
@@ -92,33 +92,33 @@ void read_reactions(const Model& model, const Workspace& ws, std::span<const dou
 
 // For `slewring describe`.
 struct LinkDescription {
-  std::string joint;  // that moves it
+  std::string joint;  // joint that moves it
   std::string joint_type;
   int degrees_of_freedom = 0;
-  std::vector<std::string> bodies;  // merged into it
+  std::vector<std::string> bodies;  // bodies merged into it
 };
 // A joint that closes a loop, or has no coordinates.
 struct CutDescription {
   std::string joint;
   std::string joint_type;
-  int rows = 0;                        // that it adds
-  std::vector<std::string> redundant;  // "row 3 (angle between x and z of body 2)": held by others already
+  int rows = 0;                        // number of added rows
+  std::vector<std::string> redundant;  // "row 3 (angle between x and z of body 2)": implied by others
 };
 struct Description {
-  int bodies = 0;  // of the scene, without Ground
+  int bodies = 0;  // bodies of the scene, without Ground
   int joints = 0;
   int degrees_of_freedom = 0;
   int rows = 0;
   std::vector<LinkDescription> links;
   std::vector<CutDescription> cuts;
   std::vector<std::string> gears;            // "Slew_Gear (Pinion_Axis, Slew_Joint)", those that others imply too
-  std::vector<std::string> idle_gears;       // names of these
+  std::vector<std::string> idle_gears;       // names of the implied gears
   std::vector<std::string> driven;           // "Crank_Drive (Crank_Pin, angle)": prescribed motions
   std::vector<std::string> flexible;         // "Boom: 2 modes of 51.29 to 51.29 rad/s, nodes Boom.Node20 in use"
   std::vector<std::string> fixed_to_ground;  // bodies that do not move
-  std::vector<std::string> pairs;            // of shapes, that are tested
+  std::vector<std::string> pairs;            // tested pairs of shapes
   std::vector<std::string>
-      pairs_at_rest;  // that are not: their shapes cannot move against each other, or the scene says so
+      pairs_at_rest;  // untested pairs: their shapes cannot move against each other, or the scene excludes them
 };
 [[nodiscard]] Description describe(const Model& model);
 

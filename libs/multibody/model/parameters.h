@@ -1,4 +1,4 @@
-// Parameters that may change while a mechanism runs, between two steps. Finding one and setting it do not allocate.
+// Parameters that may change between two steps. Finding and setting one does not allocate.
 //
 //   "Bag.mass"                     body: inertia scales with the mass, the centre of mass stays
 //   "ForceT_Lift.damping_constant" the live fields of force elements
@@ -31,16 +31,16 @@ enum class ParameterKind : std::uint8_t {
 struct Parameter {
   ParameterKind kind = ParameterKind::body_mass;
   int element = 0;  // body, element, row; axis of gravity
-  int member = 0;   // of a law
+  int member = 0;   // member of a law
 };
 
-// Empty when the path names nothing that can change here while running.
+// Empty if the path names no live parameter of the mechanism.
 [[nodiscard]] std::optional<Parameter> find_parameter(const Model& model, std::string_view path) noexcept;
 
-// Whether the model has it: of a number that came from outside.
+// True if the model has the parameter of an external number.
 [[nodiscard]] bool has_parameter(const Model& model, Parameter parameter) noexcept;
 
-// How many there are.
+// Number of parameters.
 [[nodiscard]] std::size_t parameter_count(const Model& model) noexcept;
 
 [[nodiscard]] double get_parameter(const Model& model, Parameter parameter) noexcept;

@@ -19,7 +19,7 @@ using math::Vec3;
 
 namespace {
 
-// Gathers, body by body, the wrench that only the joints can supply: inertia forces less known forces.
+// Sums, body by body, the wrench required from the joints: inertia forces less known forces.
 class ReactionSum {
  public:
   ReactionSum(const Model& model, Workspace& ws) : model_(model), ws_(ws) {
@@ -120,7 +120,7 @@ class ReactionSum {
     }
   }
 
-  // what the rows of cut joints do to their bodies, which is what these joints transmit
+  // forces of the rows of cut joints on their bodies, which are the reactions of these joints
   void subtract_cuts(std::span<const double> forces, std::span<JointReaction> reactions) noexcept {
     for (const Cut& cut : model_.cuts) {
       RowGradient sum;
@@ -151,7 +151,7 @@ class ReactionSum {
     sum.w2 += G.w2 * force;
   }
 
-  // from the tips towards Ground: a body's joint supplies what the body and its children need
+  // from the tips towards Ground: a body's joint supplies the wrench of the body and its children
   void pass_on(std::span<JointReaction> reactions) noexcept {
     for (std::size_t k = model_.body_order.size(); k-- > 0;) {
       const auto child = at(model_.body_order[k]);
@@ -199,7 +199,7 @@ void find_unit_reactions(const Model& model, const Cut& cut, const ConstraintRow
   sum.pass_on(reactions);
 }
 
-// Of all reactions that cause this motion those with the smallest sum of squares of forces [N] and moments [N m].
+// The reactions to this motion with the smallest sum of squares of forces [N] and moments [N m].
 void take_smallest(const Model& model, Workspace& ws, std::span<JointReaction> reactions) noexcept {
   const std::size_t joints = model.joints.size(), units = ws.unit_shares.size();
   std::copy(reactions.begin(), reactions.end(), ws.found_reactions.begin());

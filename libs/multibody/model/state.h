@@ -1,4 +1,4 @@
-// What changes while a mechanism runs: the state itself, and the workspace that a step computes in.
+// Mutable data of a mechanism: the state itself, and the workspace of a step.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@
 
 namespace slew::multibody {
 
-// Coordinates and speeds, laid out as model.h says, and what contacts remember; nothing else is integrated. The steps
-// add their length to the time, which an owner with a clock of its own may set between them.
+// Coordinates and speeds in the layout of model.h, and the memory of contacts; this is the whole integrated state. The
+// steps add their length to the time, which an owner with its own clock may set between them.
 struct State {
   std::vector<double> q;              // rad, m, quaternions
   std::vector<double> u;              // rad/s, m/s
@@ -35,7 +35,7 @@ struct ArticulatedInertia {
   math::Vec3 n, f;
 };
 
-// What the backward pass leaves behind for the solutions with this inertia. With S the joint's free directions,
+// Results of the backward pass for the solutions with this inertia. With S the joint's free directions,
 // U = (IA + coupled masses) S, D = S^T U: one coordinate uses U_ang.c[0], U_lin.c[0], d_inv; spherical all; floating
 // holds the inverse blocks (see articulated.cpp).
 struct JointFactor {
@@ -47,7 +47,7 @@ struct JointFactor {
 struct LineMotion {
   math::Vec3 P1, P2;  // m
   math::Vec3 e;       // unit(P1 - P2)
-  math::Vec3 w;       // m/s, velocity of P1 seen from P2
+  math::Vec3 w;       // m/s, velocity of P1 relative to P2
   double length = 0;  // m
   double rate = 0;    // m/s
 };
@@ -69,7 +69,7 @@ struct RowGradient {
   math::Vec3 v1, w1, v2, w2;
 };
 
-// A row between two links at one instant: what it must keep at zero, or a coordinate.
+// A row between two links at one instant: a constraint value, or a coordinate.
 struct RowValue {
   double g = 0;     // m or 1
   double rate = 0;  // g' [m/s or 1/s]
@@ -77,7 +77,7 @@ struct RowValue {
   RowGradient G;
 };
 
-// What a joint transmits to its body 1: force and moment about the joint's point of body 2, Ground axes [N, N m].
+// Reaction of a joint on its body 1: force and moment about the joint's point of body 2, Ground axes [N, N m].
 // It includes the forces of the joint's own row. Fixed joints are included.
 struct JointReaction {
   Triple force{}, moment{};
@@ -91,20 +91,21 @@ struct LoopWorkspace {
 
   ClosingPattern pattern;
   std::vector<RowValue> rows;
-  std::vector<double> residual, rate;  // rows x speeds, of solve_backward(); zero but on the speeds of the row's group
+  std::vector<double> residual, rate;  // rows x speeds, of solve_backward(); zero except on the speeds of the row's
+                                       // group
   std::vector<double> W;               // by factor.entry()
   std::vector<double> multipliers;     // by row: the force that closes it, -lambda [N or N m]
   std::vector<double> step;            // by u
-  std::vector<double> gear_tau;        // by u, zero but while a gear's row is passed back
+  std::vector<double> gear_tau;        // by u, zero except while a gear's row is passed back
   math::Semidefinite factor;
-  std::vector<double> shown_q, shown_u;  // coordinates that the motion and the rows' values were last made of,
-  bool is_shown = false;                 // if they still are: see are_shown() of loops.h
+  std::vector<double> shown_q, shown_u;  // coordinates of the present motion and rows' values,
+  bool is_shown = false;                 // true if they are valid: see are_shown() of loops.h
 };
 
 struct Workspace {
   explicit Workspace(const Model& model);
 
-  double time = 0;                  // s, of the motion
+  double time = 0;                  // s, time of the motion
   std::vector<MotionValue> drives;  // by Model::drives, at that time: set_time()
   std::vector<LinkMotion> motion;
   std::vector<ArticulatedInertia> inertia;
@@ -116,10 +117,10 @@ struct Workspace {
   std::vector<LineMotion> lines;
   std::vector<AngleMotion> angles;
   std::vector<math::Vec3> delta_alpha, delta_a;  // accelerations caused by u'
-  std::vector<math::Vec3> pass_n, pass_f;        // wrenches on their way to Ground in a back-solve, by row and link
+  std::vector<math::Vec3> pass_n, pass_f;        // wrenches passed towards Ground in a back-solve, by row and link
 
   std::vector<double> tau;       // generalised forces of joint rows, by u
-  std::vector<double> residual;  // of the backward pass, by u
+  std::vector<double> residual;  // residual of the backward pass, by u
   std::vector<double> udot;      // by u, of the last forward dynamics
 
   // rows: filled by evaluate_rows()
@@ -128,11 +129,12 @@ struct Workspace {
   std::vector<double> row_residual;          // rows x dof, r of solve_backward()
   std::vector<double> row_rate;              // rows x dof, D^-1 r
   std::vector<double> row_W;                 // rows x rows
-  std::vector<double> row_force;             // of the stage under way
+  std::vector<double> row_force;             // row forces of the current stage
   std::vector<double> row_part;              // mean over a part of a sub-step
   std::vector<unsigned char> row_is_active;  // 0 or 1
 
-  // smallest reactions: those of one unit force in each redundant row, by row and joint of the scene; scratch of them
+  // smallest reactions: reactions to a unit force in each redundant row, by row and joint of the scene; scratch for
+  // them
   std::vector<math::Vec3> unit_force, unit_moment;
   std::vector<double> unit_residual, unit_rate, unit_products, unit_shares;
   math::Semidefinite unit_factor;
@@ -140,7 +142,7 @@ struct Workspace {
 
   std::vector<double> gear_force;  // by gear, of the last joint_reactions() [N or N m]
 
-  // by body of the scene: what joint_reactions() gathers, about the origin of the body's link
+  // by body of the scene: sums of joint_reactions(), about the origin of the body's link
   std::vector<math::Vec3> body_n, body_f;
 
   LoopWorkspace loops;
@@ -159,8 +161,8 @@ void copy_state(const State& from, State& to) noexcept;
 // Raw bits of coordinates, speeds, contacts and live parameters in id order.
 void add_to_hash(const Model& model, const State& state, StateHash& hash) noexcept;
 
-// The same as bytes, time and the elastic laws of flexible parts with them. load() works out what follows from the
-// parameters; where the bytes are not sound, model and state are no longer to be used.
+// The same as bytes, with time and the elastic laws of flexible parts. load() recomputes values that depend on the
+// parameters; after invalid bytes, model and state must not be used.
 void save(const Model& model, const State& state, StateWriter& bytes);
 void load(Model& model, State& state, StateReader& bytes);
 

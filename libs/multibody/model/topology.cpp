@@ -16,11 +16,12 @@
 namespace slew::multibody {
 namespace {
 
-// From so many cuts on the tree is looked for that leads to them on short ways, and taken where those of the file's
-// order are longer by so much: every body on a way couples the cut to all others behind it (closing_pattern.h).
+// Number of cuts from which a tree with short paths to the cuts is searched, and the factor by which the paths of the
+// file's order must be longer to use it: every body on a path couples the cut to all others behind it
+// (closing_pattern.h).
 constexpr std::size_t kManyCuts = 5, kLongWays = 2;
 
-// a flexible body with modes, at a node of which the joint is
+// a flexible body with modes that has a node at the joint
 bool rides_on_modes(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
   return joint.type == JointType::node &&
          std::any_of(mechanics.flexible_bodies.begin(), mechanics.flexible_bodies.end(),
@@ -42,14 +43,14 @@ JointEnds ends_of_joints(const MechanicsDef& mechanics) {
 class Groups {
  public:
   explicit Groups(std::size_t bodies) : parent_(bodies) { std::iota(parent_.begin(), parent_.end(), 0); }
-  // False when they were connected before.
+  // False if they were connected before.
   bool connect(int a, int b) {
     a = root_of(a);
     b = root_of(b);
     parent_[at(a)] = b;
     return a != b;
   }
-  // Shortens the way for the next look.
+  // Shortens the path for the next search.
   [[nodiscard]] int root_of(int body) {
     while (parent_[at(body)] != body) body = parent_[at(body)] = parent_[at(parent_[at(body)])];
     return body;
@@ -78,7 +79,7 @@ bool may_be_in_tree(const JointDef& joint) noexcept {
   return has_coordinates(joint.type) || joint.type == JointType::node;
 }
 
-// Joints within a class by how many of them lead from Ground to them, then in the order of the file.
+// Joints within a class by their number of joints from Ground, then in the order of the file.
 std::vector<std::size_t> nearest_first(const MechanicsDef& mechanics, const JointEnds& ends) {
   std::vector<std::vector<int>> joined(mechanics.bodies.size() + 1);
   for (std::size_t j = 0; j < ends.size(); ++j) {
@@ -256,7 +257,7 @@ std::vector<TreeEdge> walk_tree(const MechanicsDef& mechanics, const JointEnds& 
   return tree;
 }
 
-// The joint by which the tree enters a flexible body at a node, whose frame it cannot find from there; kNoJoint: none.
+// The joint by which the tree enters a flexible body at a node, from which its frame cannot be found; kNoJoint: none.
 int entry_at_a_node(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree) {
   for (const TreeEdge& edge : tree) {
     const bool is_node = edge.joint != kNoJoint && rides_on_modes(mechanics, mechanics.joints[at(edge.joint)]);
@@ -332,7 +333,7 @@ std::vector<Pose> start_poses(const MechanicsDef& mechanics, Problems& problems)
   enum class Place : std::uint8_t { open, asked, known, none };
   std::vector<Place> place(count, Place::open);
   place[kGround] = Place::known;
-  // from each body along its references to one that is placed, and back; one that is asked twice is in a cycle
+  // from each body along its references to a placed one, and back; a body visited twice is in a cycle
   std::vector<std::size_t> chain;
   for (std::size_t first = 1; first < count; ++first) {
     std::size_t b = first;

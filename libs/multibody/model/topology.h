@@ -1,11 +1,11 @@
-// How the bodies hang together: a tree of joints rooted in Ground, the joints that are cut, and the poses at the start.
+// Topology of the bodies: a tree of joints rooted in Ground, the cut joints, and the start poses.
 //
-// Joints with coordinates (fixed, revolute, prismatic, spherical, universal, cylindrical, floating) span the tree. Of a
-// loop the joint that the scene lists last is cut and closed by constraints, with three exceptions: a fixed joint is
-// never cut while another one is there to cut, a joint with limits, friction, prescribed motion or an initial velocity
-// not before one without, and of five loops and more the joint farthest from Ground is, where that makes the ways from
-// Ground to the cut joints half as long. The other joints have no coordinates and are always cut. A body that only cut
-// joints connect to the rest is free in the tree.
+// Joints with coordinates (fixed, revolute, prismatic, spherical, universal, cylindrical, floating) span the tree. In a
+// loop the joint that the scene lists last is cut and closed by constraints, with three exceptions. A fixed joint is
+// cut only if the loop has no other joint. A joint with limits, friction, prescribed motion or an initial velocity is
+// cut only if there is no joint without them. With five loops or more the joint farthest from Ground is cut, if that
+// makes the paths from Ground to the cut joints half as long. The other joints have no coordinates and are always cut.
+// A body that only cut joints connect to the rest is free in the tree.
 //
 // Bodies are numbered 0 for Ground, i + 1 for MechanicsDef::bodies[i].
 #pragma once
@@ -29,7 +29,7 @@ struct Pose {
   math::Vec3 p;                           // p_WB [m]
 };
 
-// A joint as the tree walks it, from Ground outwards.
+// A joint in the direction of the tree, from Ground outwards.
 struct TreeEdge {
   int joint = 0;             // index in MechanicsDef::joints; kNoJoint: the child is free
   int parent = 0;            // body
@@ -47,25 +47,25 @@ class BodyNumbers {
   [[nodiscard]] int operator()(std::string_view name) const noexcept;
 
  private:
-  std::unordered_map<std::string_view, int> numbers_;  // looked up, never walked
+  std::unordered_map<std::string_view, int> numbers_;  // for look-up, never iterated
 };
 [[nodiscard]] std::string_view body_name(const MechanicsDef& mechanics, int body) noexcept;
 
-// Joints in an order in which every parent comes before its children. Appends a problem for every body without a way to
-// Ground and every floating joint that does not start from Ground.
+// Joints in an order in which every parent comes before its children. Appends a problem for every body without a path
+// to Ground and every floating joint that does not start from Ground.
 [[nodiscard]] std::vector<TreeEdge> find_tree(const MechanicsDef& mechanics, Problems& problems);
 
 // Joints outside of the tree, in the order of the scene: indices in MechanicsDef::joints. Floating joints of bodies
-// that others hold are not among them: they leave everything free.
+// held by others are not included: they constrain no motion.
 [[nodiscard]] std::vector<int> cut_joints(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree);
 
-// Whether a joint makes two bodies one: fixed ones, and nodes of bodies without modes.
+// True if a joint merges two bodies: fixed joints, and nodes of bodies without modes.
 [[nodiscard]] bool merges(const MechanicsDef& mechanics, const JointDef& joint) noexcept;
 
-// Whether a joint's motion can be described by coordinates of its own.
+// True if a joint's motion can be described by coordinates of its own.
 [[nodiscard]] bool has_coordinates(JointType type) noexcept;
 
-// Poses in Ground of all bodies by number. Appends a problem for a cycle of `relative_to`; names must be known.
+// Poses in Ground of all bodies by number. Appends a problem for a cycle of `relative_to`; names must exist.
 [[nodiscard]] std::vector<Pose> start_poses(const MechanicsDef& mechanics, Problems& problems);
 
 // Poses in Ground of a joint's two frames.

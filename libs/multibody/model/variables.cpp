@@ -162,7 +162,7 @@ std::vector<ElementVariable> variables(const Model& model) {
       if (!is_angle(joint.type, number)) {
         names.add(joint.name + ".force", force);
       } else {
-        // of a cylindrical joint the dimension tells
+        // for a cylindrical joint the dimension selects the coordinate
         const bool is_one_of_two = joint.type == JointType::universal;
         names.add(joint.name + ".torque" + (is_one_of_two ? std::string(suffix_of(joint.type, number)) : ""), torque);
       }
@@ -216,7 +216,7 @@ void read_reactions(const Model& model, const Workspace& ws, std::span<const dou
   for (std::size_t k = 0; k < model.gears.size(); ++k) {
     for (std::size_t end = 0; end < 2; ++end) out.put(gear_force(model, ws, k, end));
   }
-  // the others carry nothing
+  // the others carry no force
   for (std::size_t k = 0; k < 2 * model.idle_gears.size(); ++k) out.put(0);
   for (std::size_t k = 0; k < model.drives.size(); ++k) {
     const double force = drive_force(model, ws, k, row_forces, reactions);

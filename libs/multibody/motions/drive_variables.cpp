@@ -43,7 +43,7 @@ double drive_force(const Model& model, const Workspace& ws, std::size_t index, s
   const bool is_second_turn = joint.type == JointType::universal && drive.number == 1;
   const Vec3 axis =
       is_second_turn ? axis_of(model, ws, joint.body2, joint.R_B2) : axis_of(model, ws, joint.body1, joint.R_B1);
-  // the reaction is what body 1 gets, the drive pushes body 2
+  // the reaction acts on body 1, the drive on body 2
   const JointReaction& reaction = reactions[at(drive.joint)];
   double force = -dot(axis, Vec3(drive.is_angle ? reaction.moment : reaction.force));
   for (std::size_t k = 0; k < row_forces.size(); ++k) {

@@ -1,4 +1,4 @@
-// Names of what a prescribed motion shows. Internal to the library.
+// Names of the variables of a prescribed motion. Internal to the library.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace slew::multibody {
 
-// "Motion.position", "Motion.velocity", "Motion.acceleration": what the law says.
+// "Motion.position", "Motion.velocity", "Motion.acceleration": values of the law.
 void list_drives(const Model& model, std::vector<ElementVariable>& variables);
 
 // "Motion.torque" or "Motion.force", "Motion.power".

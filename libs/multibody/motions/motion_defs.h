@@ -1,4 +1,4 @@
-// What a scene says about prescribed motion: a joint's coordinate as a given function of time.
+// Definition of prescribed motion: a joint's coordinate as a given function of time.
 //
 // `rotation_*` types drive an angle (revolute, cylindrical, universal), `translation_*` types a displacement
 // (prismatic, cylindrical). Laws: motion_law.h. Card: docs/models/multibody_prescribed_motion.md.
@@ -15,11 +15,11 @@ namespace slew::multibody {
 enum class MotionKind : int { rotation, translation };
 enum class MotionShape : int { table, harmonic, ramp, speed };
 
-// What a table does outside of its times.
+// Continuation of a table outside of its times.
 enum class TableEnds : int {
-  hold,       // stands still, with slope 0 at both ends; of a speed: stays
-  continued,  // goes on with the speed (of a speed: with the acceleration) of its end, which jumps nowhere
-  refused,    // must not be reached: a step beyond is reported as not converged
+  hold,       // the value is held, with slope 0 at both ends; a speed is held
+  continued,  // continued with the speed (a speed: with the acceleration) of its end, without a jump
+  refused,    // not allowed: a step beyond is reported as not converged
 };
 
 // One struct for every type; each type's field table lists the members that it has, in its own dimensions.
@@ -28,9 +28,9 @@ struct MotionDef {
   MotionKind kind = MotionKind::rotation;
   MotionShape shape = MotionShape::table;
   std::string joint{};
-  std::int64_t axis = 1;             // of a universal joint: 1 about z of frame 1, 2 about z of frame 2
+  std::int64_t axis = 1;             // universal joint: 1 about z of frame 1, 2 about z of frame 2
   Table points{};                    // s, rad or m (table); s, rad/s or m/s (speed)
-  TableEnds ends = TableEnds::hold;  // of the table
+  TableEnds ends = TableEnds::hold;  // ends of the table
   double offset = kNotGiven;         // rad or m (harmonic); not given: such that it fits the start position
   double amplitude = 0;              // rad or m (harmonic)
   double frequency = 0;              // Hz (harmonic)
@@ -39,7 +39,7 @@ struct MotionDef {
   double to = 0;                     // rad or m (ramp)
   double start = 0;                  // s (ramp)
   double duration = 1;               // s (ramp)
-  double speed = 0;                  // rad/s or m/s (speed), on top of its table
+  double speed = 0;                  // rad/s or m/s (speed), added to its table
 };
 
 }  // namespace slew::multibody

@@ -13,7 +13,7 @@ constexpr Range kAxis{.min = 1, .max = 2, .min_is_open = false, .max_is_open = f
 constexpr Field kJoint = field<&MotionDef::joint>(
     "joint", {.presence = Presence::required, .reference = "joint", .doc = "joint whose coordinate it drives"});
 constexpr Field kUniversalAxis = field<&MotionDef::axis>(
-    "axis", {.range = kAxis, .doc = "of a universal joint: 1 about z of frame 1, 2 about z of frame 2"});
+    "axis", {.range = kAxis, .doc = "coordinate of a universal joint: 1 about z of frame 1, 2 about z of frame 2"});
 
 constexpr Field points_row(Dimension value) {
   return field<&MotionDef::points>("points", {.dimension = Dimension::time,
@@ -22,14 +22,13 @@ constexpr Field points_row(Dimension value) {
                                               .doc = "position over the session's time, a cubic spline"});
 }
 constexpr Field kPositionEnds = field<&MotionDef::ends>(
-    "ends",
-    {.choices = kEnds,
-     .doc = "outside of the times: stands still (slope 0 at the ends), goes on with the end's speed, or fails"});
+    "ends", {.choices = kEnds,
+             .doc = "outside of the times: held (slope 0 at the ends), continued with the end's speed, or refused"});
 constexpr ReadBy kReadByPoints[] = {read_by_set<&MotionDef::points>("points", "points")};
 constexpr Field kSpeedEnds = field<&MotionDef::ends>(
     "ends", {.choices = kEnds,
              .read_by = kReadByPoints,
-             .doc = "outside of the times: the speed stays, goes on with the end's acceleration, or fails"});
+             .doc = "outside of the times: the speed is held, continued with the end's acceleration, or refused"});
 constexpr Field offset_row(Dimension position) {
   return field<&MotionDef::offset>(
       "offset", {.dimension = position, .doc = "mean position; none: such that the motion fits the start position"});
@@ -41,9 +40,11 @@ constexpr Field amplitude_row(Dimension position) {
 constexpr Field kFrequency = field<&MotionDef::frequency>(
     "frequency",
     {.dimension = frequency, .range = kNotNegative, .presence = Presence::required, .doc = "periods per time"});
-constexpr Field kPhase = field<&MotionDef::phase>("phase", {.dimension = angle, .doc = "of the sine at the start"});
+constexpr Field kPhase =
+    field<&MotionDef::phase>("phase", {.dimension = angle, .doc = "phase of the sine at the start"});
 constexpr Field from_row(Dimension position) {
-  return field<&MotionDef::from>("from", {.dimension = position, .doc = "before the ramp; none: the start position"});
+  return field<&MotionDef::from>("from",
+                                 {.dimension = position, .doc = "position before the ramp; none: the start position"});
 }
 constexpr Field to_row(Dimension position) {
   return field<&MotionDef::to>("to", {.dimension = position, .presence = Presence::required, .doc = "after the ramp"});

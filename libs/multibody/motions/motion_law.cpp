@@ -11,7 +11,7 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;  // rad
 
 MotionValue harmonic_motion(const MotionLaw& law, double time) noexcept {
-  // whole turns are taken out before they cost digits
+  // whole turns are removed before they cost digits
   const double turns = law.frequency * time;
   const auto [s, c] = math::sin_cos(kTurn * (turns - std::floor(turns)) + law.phase);
   const double omega = kTurn * law.frequency;
@@ -22,10 +22,10 @@ MotionValue ramp_motion(const MotionLaw& law, double time) noexcept {
   const double tau = (time - law.start) / law.duration;
   if (tau <= 0) return {law.from, 0, 0};
   if (tau >= 1) return {law.to, 0, 0};
-  const double way = law.to - law.from, rest = 1 - tau;
-  return {law.from + way * tau * tau * tau * (10 + tau * (6 * tau - 15)),
-          way * 30 * tau * tau * rest * rest / law.duration,
-          way * 60 * tau * rest * (rest - tau) / (law.duration * law.duration)};
+  const double change = law.to - law.from, rest = 1 - tau;
+  return {law.from + change * tau * tau * tau * (10 + tau * (6 * tau - 15)),
+          change * 30 * tau * tau * rest * rest / law.duration,
+          change * 60 * tau * rest * (rest - tau) / (law.duration * law.duration)};
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct MotionLaw {
   double from = 0, to = 0, start = 0, duration = 1;  // rad or m, s
   double speed = 0;                                  // rad/s or m/s
   double first = 0;                                  // x(0) of (4), less the spline's integral there
-  bool is_refused_outside = false;                   // of the spline's times
+  bool is_refused_outside = false;                   // not defined outside of the spline's times
 };
 
 struct MotionValue {
@@ -31,10 +31,10 @@ struct MotionValue {
 
 [[nodiscard]] MotionValue evaluate(const MotionLaw& law, double time) noexcept;
 
-// Whether the law says something for this time.
+// True if the law is defined at this time.
 [[nodiscard]] bool holds_at(const MotionLaw& law, double time) noexcept;
 
-// start: the coordinate in the poses that the scene begins with, from which follows what is not given. Allocates.
+// start: the coordinate in the scene's start poses, from which omitted values follow. Allocates.
 [[nodiscard]] MotionLaw motion_law(const MotionDef& def, double start);
 
 }  // namespace slew::multibody

@@ -41,7 +41,7 @@ class MotionRules {
     }
     const int number = driven_coordinate(motion, joint->type);
     if (number < 0) {
-      complain_of_coordinate(motion, *joint);
+      report_coordinate(motion, *joint);
       return false;
     }
     for (std::size_t other = 0; other < index; ++other) {
@@ -98,7 +98,7 @@ class MotionRules {
         "a first time of at most 0, or other ends");
   }
 
-  void complain_of_coordinate(const MotionDef& motion, const JointDef& joint) {
+  void report_coordinate(const MotionDef& motion, const JointDef& joint) {
     const std::string type(sections()[1].types[static_cast<std::size_t>(joint.type)].name);
     const bool is_rotation = motion.kind == MotionKind::rotation;
     const bool has_angle = joint.type == JointType::revolute || joint.type == JointType::cylindrical;

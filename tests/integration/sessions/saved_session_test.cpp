@@ -121,7 +121,7 @@ TEST_F(SavedSession, GoesOnToTheSameBitsAndTakesChangesOfLiveParametersAlone) {
   with = from;
   with.insert(with.end(), {"--duration", duration(), "--set", "session.exchange_every=2"});
   EXPECT_EQ(slewring(with, folder_.path() / "run", &errors), 2);
-  EXPECT_NE(errors.find("takes changes of live parameters, and of the controller"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("accepts changes of live parameters, and of the controller"), std::string::npos) << errors;
   with = from;
   with.insert(with.end(), {"--duration", "0.1s"});
   EXPECT_EQ(slewring(with, folder_.path() / "run", &errors), 2);

@@ -52,7 +52,7 @@ TEST(Start, AStateThatCannotBeIsRefusedNamingWhatToChange) {
   const std::pair<std::vector<std::string>, std::string> cases[] = {
       {{"--set", "hydraulics.solver=rk4", "--set", "hydraulics.max_substep=1ms"},
        "hydraulics: hydraulics.solver: rk4 with sub-steps of 1 ms would be unstable: Cyl_Jib moves "},
-      {{"--set", "Bag.mass=100000kg"}, "hydraulics: hydraulics.start: equilibrium asks for "},
+      {{"--set", "Bag.mass=100000kg"}, "hydraulics: hydraulics.start: equilibrium requires "},
   };
   for (const auto& [more, sentence] : cases) {
     const ScratchFolder folder;

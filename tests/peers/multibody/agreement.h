@@ -1,4 +1,4 @@
-// Cases that peers are asked about, and differences between their answer and ours, each relative to a stated scale.
+// Cases for peers, and differences between their results and ours, each relative to a stated scale.
 //
 // A peer is a class with
 //   Peer(const MechanicsDef&)
@@ -40,12 +40,12 @@ struct Sample {
   Sample(const Case& chosen, ForceDummies dummies);
 
   MechanicsDef def;
-  std::vector<std::string> rows;  // of a scene: its cylinders and drives, and joints with friction or limits
+  std::vector<std::string> rows;  // rows of a scene: its cylinders and drives, and joints with friction or limits
   State state;
   std::vector<double> row_forces;  // random, of the size that accelerates a row by 10 m/s2 or rad/s2
 };
 
-// Takes the larger of the two; what is not finite counts as infinite, where std::max would pass over it.
+// Takes the larger of the two; non-finite values count as infinite, which std::max would ignore.
 void grow(double& largest, double x);
 
 [[nodiscard]] MechanicsDef truck_crane(std::vector<std::string>& rows);
@@ -55,7 +55,7 @@ void grow(double& largest, double x);
 // Without dampers, so that energy is conserved.
 [[nodiscard]] MechanicsDef undamped(MechanicsDef def);
 
-// What the row forces put on the bodies.
+// Loads of the row forces on the bodies.
 [[nodiscard]] Wrenches row_wrenches(const Sample& sample, std::span<const double> row_forces, const Motions& motions);
 
 [[nodiscard]] Motions at_rest(Motions motions);
@@ -104,7 +104,7 @@ void record(const std::string& name, double residual);
 [[nodiscard]] RowDifference compare_rows(const Sample& sample, const Mechanism& ours, const Motions& free,
                                          const std::vector<double>& mobility);
 
-// Everything a partner of the coupling is told. The peer's W: accelerations of the rows by unit forces on the bare
+// All values for a partner of the coupling. The peer's W: accelerations of the rows by unit forces on the bare
 // mechanism at rest.
 template <typename Peer>
 RowDifference rows_differ_by(const Sample& sample) {

@@ -1,5 +1,5 @@
-// Motion of a mechanism's bodies and the wrenches on them, in Ground axes: what every program can say about the same
-// mechanism, whatever its coordinates are.
+// Motion of a mechanism's bodies and the wrenches on them, in Ground axes: results that every program has for the same
+// mechanism, in any coordinates.
 #pragma once
 
 #include <vector>

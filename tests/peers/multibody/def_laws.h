@@ -1,5 +1,5 @@
-// What a MechanicsDef says about masses, force elements and rows, written from docs/models for bodies whose motion
-// another program computes. Shares no code with the library but the Def.
+// Masses, force elements and rows of a MechanicsDef, written from docs/models for bodies whose motion another program
+// computes. Shares no code with the library but the Def.
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 // Case P02: the same mechanisms in MuJoCo 2.2.2 (mujoco_peer.h), which assembles the mass matrix from composite bodies
 // and factorises it: the states of case P01 with dummies on forces taken away from both.
 //
-// Both are exact, what is left is rounding: 6e-14 at most, 1e-12 allowed.
+// Both are exact, the difference is rounding: 6e-14 at most, 1e-12 allowed.
 #include "tests/peers/multibody/agreement.h"
 #include "tests/peers/multibody/mujoco_peer.h"
 

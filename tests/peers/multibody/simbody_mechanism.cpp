@@ -13,9 +13,9 @@ using math::Vec3;
 
 constexpr double kRightAngle = M_PI / 2;
 
-// Axes of a joint's frame as Simbody's mobilizer wants them: a slider moves along x, a joint's coordinate is along z; a
-// universal joint turns about x of its inner, then about y of its outer frame, ours about z of frame 1 and of frame 2,
-// which is x of frame 1 at zero.
+// Axes of a joint's frame for Simbody's mobilizer: a slider moves along x, a joint's coordinate is along z; a universal
+// joint turns about x of its inner, then about y of its outer frame, ours about z of frame 1 and of frame 2, which is x
+// of frame 1 at zero.
 struct Axes {
   Mat3 inner = Mat3::identity(), outer = Mat3::identity();
 };

@@ -3,8 +3,8 @@
 // to 10 bodies, seeds 1 to 48 (revolute, prismatic, spherical, floating and fixed joints in both directions, springs,
 // dampers, dummies), with random forces on cylinders, drives and joints.
 //
-// An instant: accelerations of all bodies, reactions of all joints, kinetic energy, and what a partner of the coupling
-// is told (x, v, a_free, W). Both recursions are exact; what is left is rounding, which loops of light cylinders on
+// An instant: accelerations of all bodies, reactions of all joints, kinetic energy, and the values for a partner of the
+// coupling (x, v, a_free, W). Both recursions are exact; the difference is rounding, which loops of light cylinders on
 // heavy booms enlarge: 4e-14 at most, 1e-12 allowed.
 //
 // A motion: the crane falls for 2 s from the scene's start without actuators, limits and joint friction; the trees of
@@ -59,7 +59,7 @@ TEST_P(Mechanisms, ShowTheRowsThatSimbodySees) {
 
 TEST_P(Mechanisms, LoadTheirJointsAsSimbodySays) {
   MechanicsDef def = sample.def;
-  // no motion tells about which axis a rotational spring turns two bodies that are welded together
+  // no motion determines the axis of a rotational spring between two welded bodies
   for (RotationalForceDef& force : def.rotational_forces) force.spring_constant = 0;
   Mechanism ours(def);
   std::vector<JointReaction> expected(def.joints.size());
@@ -106,7 +106,7 @@ TEST(ComparisonWithSimbody, SeesAMassThatIsAMillionthOff) {
 
 struct MotionDifference {
   double pose = 0;    // rad and m
-  double energy = 0;  // of the change of either kind of energy, relative to the peak kinetic energy
+  double energy = 0;  // error of the change of either kind of energy, relative to the peak kinetic energy
 };
 
 // Ours in steps of h beside Simbody's for a time of 20 looks.

@@ -1,4 +1,4 @@
-// What a set remembers of pairs that were apart saves searches and changes nothing that is found.
+// The memory of separated pairs saves searches and does not change the contacts found.
 #include <gtest/gtest.h>
 
 #include "support/random_shapes.h"

@@ -1,5 +1,4 @@
-// Bristle friction stays in its cone, dissipates, looks the same from every frame and knows its slopes, at any
-// sub-step.
+// Bristle friction stays in its cone, dissipates, is the same in every frame and has exact slopes, at any sub-step.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -73,7 +72,7 @@ TEST_F(FrictionProperty, NeverLeavesTheConeByMoreThanTheViscousForce) {
   }
 }
 
-// power of the force is never less than what the bristles store, at one instant ...
+// power of the force is never less than the rate of the bristles' energy, at one instant ...
 TEST_F(FrictionProperty, NeverCreatesEnergyAtAnInstant) {
   for (int i = 0; i < kDraws; ++i) {
     Draw d = draw();

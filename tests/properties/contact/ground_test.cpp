@@ -19,7 +19,7 @@ using math::Vec3;
 using namespace testing;
 using enum ShapeType;
 
-// what a search finds, ground in the first frame
+// result of a search, ground in the first frame
 std::vector<ContactPoint> contacts(const ShapeDef& a, const ShapeDef& ground, const Pose& pose_a,
                                    const Pose& pose_ground = {}) {
   const ContactModel model = build(two_shapes(a, ground));
@@ -65,7 +65,7 @@ TEST_F(Ground, OfAnEvenHeightFieldActsLikeAPlane) {
   for (const double slope : {0.0, 0.3}) {
     const ShapeDef even = field(slope);
     ShapeDef plane = testing::plane();
-    plane.orientation = {M_PI / 2, -std::atan(slope), 0};  // about z, then about what was y
+    plane.orientation = {M_PI / 2, -std::atan(slope), 0};  // about z, then about the former y
     const Vec3 up = Vec3(-slope, 0, 1) * (1 / std::hypot(slope, 1.0));
     for (const ShapeType type : {sphere, capsule, box, cylinder, convex_mesh}) {
       int touching = 0;

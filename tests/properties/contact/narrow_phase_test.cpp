@@ -245,7 +245,7 @@ TEST_F(NarrowPhase, DepthAlongTheNormalIsWhatTakesTheShapesApart) {
         const auto points = contacts(def_, poses_);
         if (points.empty()) continue;
         const double depth = deepest(points);
-        // its axis is in the box: what it does then is a way out, not the shortest
+        // its axis is in the box: the result then separates the shapes, but is not the shortest displacement
         if (types[0] == capsule && types[1] == box && depth >= def_.shapes[0].radius) continue;
         std::array<Pose, 2> moved = poses_;
         moved[1].p_WF += points[0].n_W * (depth + slack);

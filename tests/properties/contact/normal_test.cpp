@@ -1,4 +1,4 @@
-// The normal law pushes, dissipates, and knows its slopes.
+// The normal law pushes, dissipates, and has exact slopes.
 #include <gtest/gtest.h>
 
 #include <algorithm>

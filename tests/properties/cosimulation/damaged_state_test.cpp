@@ -1,4 +1,4 @@
-// Bytes that are not what was saved are refused, and nothing is read that is not there.
+// Bytes that differ from the saved ones are refused, without reads beyond their end.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -13,7 +13,7 @@
 namespace slew::testing {
 namespace damaged_state_test {
 
-constexpr std::size_t kHeader = 32, kLength = 16, kCheck = 24;  // of the layout in core/state_bytes.h
+constexpr std::size_t kHeader = 32, kLength = 16, kCheck = 24;  // offsets in the layout of core/state_bytes.h
 
 class DamagedState : public ::testing::TestWithParam<const char*> {
  protected:
@@ -22,7 +22,7 @@ class DamagedState : public ::testing::TestWithParam<const char*> {
     chain.run_to(30);
     saved = chain.save();
   }
-  // a copy whose end is its own: a sanitizer sees what is read beyond
+  // a copy with its own end: a sanitizer detects reads beyond
   [[nodiscard]] Status load(Part part, std::span<const std::byte> bytes) {
     const std::vector<std::byte> copy(bytes.begin(), bytes.end());
     return chain.part(part)->load(copy, chain.sample(part));
@@ -69,7 +69,7 @@ TEST_P(DamagedState, IsRefusedWithAnyFlippedBit) {
   }
 }
 
-// with a check that fits: what is loaded may be anything, and what does not fit the model is refused
+// with a matching checksum: any values may be loaded, and values that do not fit the model are refused
 TEST_P(DamagedState, NeverLeadsOutOfTheModel) {
   std::mt19937_64 random(2);
   for (const Part part : parts()) {
@@ -90,7 +90,7 @@ TEST_P(DamagedState, NeverLeadsOutOfTheModel) {
         ASSERT_EQ(status.code, ExitCode::bad_input);
         continue;
       }
-      // what it became can be stepped and shown
+      // the loaded state can be stepped and observed
       SessionChain other(scene, drive);
       other.start();
       other.run_to(3);

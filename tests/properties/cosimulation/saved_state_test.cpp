@@ -1,5 +1,5 @@
-// A session goes on from its saved state as if nothing had happened: samples, reports, hashes and variables of every
-// later step are the same bits.
+// A session continues from its saved state without a difference: samples, reports, hashes and variables of every later
+// step are the same bits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ scene::Scene load(const std::string& file, const std::vector<std::string>& overr
   return scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + file, overrides);
 }
 
-// Saves at a step, goes on in fresh subsystems, and compares every step of both until the end.
+// Saves at a step, continues in fresh subsystems, and compares every step of both until the end.
 void expect_goes_on(const scene::Scene& scene, const Drive& drive, StepIndex at, StepIndex end) {
   SessionChain chain(scene, drive), other(scene, drive);
   chain.start();

@@ -150,7 +150,7 @@ SessionChain::Saved SessionChain::save() const {
 void SessionChain::go_on(const Saved& saved, const SessionChain& from) {
   for (std::size_t i = 0; i < kParts; ++i) {
     if (parts_[i] == nullptr) continue;
-    // nothing of what the sample held is taken for the state's
+    // old contents of the sample are not taken for the state's
     now_[i].mechanism.W_kind = coupling::MobilityKind::step;
     now_[i].actuators.flags = 77;
     const Status status = parts_[i]->load(saved[i], now_[i]);

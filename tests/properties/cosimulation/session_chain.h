@@ -22,7 +22,7 @@ struct ChainChange {
   SimDuration over;
 };
 
-// How a chain is driven; the same for one that goes on.
+// Driving of a chain; the same for a continued one.
 struct Drive {
   std::vector<ChainChange> changes{};
   // Raw value -1..1 of every channel; none: to and fro, each at its own pace.
@@ -75,7 +75,7 @@ class SessionChain {
   std::array<std::unique_ptr<coupling::Subsystem>, kParts> parts_;
   std::array<coupling::OwnSample, kParts> now_, next_;
   std::array<StepReport, kParts> reports_{};
-  std::vector<Exchanged> exchanged_;  // of the last steps, by step
+  std::vector<Exchanged> exchanged_;  // samples of the last steps, by step
   std::vector<double> controls_;
   StepIndex n_ = 0;
 };

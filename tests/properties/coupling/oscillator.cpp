@@ -60,7 +60,7 @@ struct Line {
   double Z, c_h, c_m, x = 0;
   double p = 0;
 
-  // the exchange: what the piston sent during the step that ended
+  // the exchange: waves sent by the piston during the finished step
   void take(double x_new, double H, double c_m_new) {
     c_h = c_m - 2 * Z * (x_new - x) / H;
     c_m = c_m_new;

@@ -8,7 +8,7 @@
 namespace slew::coupling::test {
 namespace oscillator_test {
 
-// from far below to far above what a machine would be run at (warned about above 1)
+// from far below to far above the values of real machines (warning above 1)
 constexpr double kOmegas[] = {0.02, 0.05, 0.2, 0.5, 1, 1.5, 2, 3, 5, 10, 20, 50};
 
 TEST(LevelTwo, NeverGrowsAtAnyStepOnALinearPort) {

@@ -178,7 +178,7 @@ TEST(Import, ExportedBeamComesBackWithItsFrequencies) {
       EXPECT_LT(norm(b.body.C[k] - a.body.C[k]), 1e-6 * std::sqrt(a.body.mass)) << k;
       expect_near(b.body.Z[k] - transpose(b.body.Z[k]), a.body.Z[k] - transpose(a.body.Z[k]), 1e-5 * 80);
     }
-    // what the mean of the diagonals leaves out of slender modes is small, and told
+    // the error of the mean of the diagonals for slender modes is small, and reported
     EXPECT_GT(b.source.deviation.block, 1e-5);
     EXPECT_LT(largest(b.body.Y[0] - a.body.Y[0]), 0.02);
     EXPECT_LT(largest(b.body.Z[0] - a.body.Z[0]), 0.02 * largest(a.body.Z[0]));
@@ -289,7 +289,7 @@ TEST(Import, SolidElementsGiveExactIntegrals) {
   one.stiffening = GeometricStiffening::straight_beam;
   EXPECT_NE(error_of([&] {
               (void)reduce(model, one);
-            }).find("geometric stiffening was asked for, but the model is of imported matrices"),
+            }).find("geometric stiffening was requested, but the model has imported matrices"),
             std::string::npos);
 }
 
@@ -298,7 +298,7 @@ TEST(Integrals, BentBeamWithGeometricStiffeningIsRefused) {
   def.nodes[2].position[2] += 0.01;
   EXPECT_NE(error_of([&] {
               (void)reduce(build_beam(def), stiffened(4));
-            }).find("Truck_JibBoom: geometric stiffening was asked for, but node 3 is 0.01 m off the line of the beam"),
+            }).find("Truck_JibBoom: geometric stiffening was requested, but node 3 is 0.01 m off the line of the beam"),
             std::string::npos);
 }
 

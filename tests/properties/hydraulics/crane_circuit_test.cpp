@@ -1,4 +1,4 @@
-// What the truck crane's circuit must do: metering, limits, balances, dissipation, and how it stands extremes.
+// Requirements of the truck crane's circuit: metering, limits, balances, dissipation, extremes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -113,7 +113,7 @@ TEST(CraneCircuit, a_released_load_sinks_by_leaks_only) {
   crane.run(2);
   const double p_1 = crane.variable("Cyl_Lift.pressure_a");
   const double speed = (crane.variable("Cyl_Lift.stroke") - x_0) / 2;
-  // leak A-T of 0.1 l/min per 100 bar, 0.01 l/min per 100 bar across the piston, and what the oil column gives back
+  // leak A-T of 0.1 l/min per 100 bar, 0.01 l/min per 100 bar across the piston, and the return of the oil column
   const double C = crane.variable("Vol_LiftCyl_A.content") / crane.variable("Vol_LiftCyl_A.effective_bulk_modulus");
   const double leaks =
       (kLeak * (p_1 - kBar) + 0.1 * kLeak * (p_1 - crane.variable("Cyl_Lift.pressure_b"))) / (100 * kBar);
@@ -187,7 +187,7 @@ TEST(CraneCircuit, work_and_impulse_of_a_step_are_the_integrals_of_the_force) {
   }
   EXPECT_NEAR(work, fine_work, 2e-4 * std::fabs(fine_work));
   EXPECT_NEAR(impulse, fine_impulse, 1e-5 * fine_impulse);
-  // the mass feels the same impulse: m v = int F dt - load - damping
+  // the mass receives the same impulse: m v = int F dt - load - damping
   const double x = fine.integrator.actuators()[0].x, v = fine.integrator.actuators()[0].v;
   EXPECT_NEAR(42e3 * v, fine_impulse - 251e3 * 1.0 - 1e4 * (x - kCraneStrokes[0]), 1.0);
 }

@@ -116,7 +116,7 @@ TEST(RandomTrees, ObeyLagrangesEquations) {
   });
 }
 
-// what the seeds with dummies at nodes are there for
+// purpose of the seeds with dummies at nodes
 TEST(NodeDummies, AreOfEveryKindInTheRandomTrees) {
   int within = 0, at_outer = 0, at_inner = 0, at_both = 0, in_pairs = 0;
   for (unsigned seed = kFirstWithNodeDummies; seed < kFirstWithNodeDummies + 60; ++seed) {

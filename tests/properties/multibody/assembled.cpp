@@ -62,7 +62,7 @@ struct Sides {
   const BodyMotion* parent;
   Matrix3 R_P, R_C;
   Vector3 p_P, p_C;
-  Real sign;  // of the coordinate: the child is body 2 (+) or body 1 (-)
+  Real sign;  // sign of the coordinate: the child is body 2 (+) or body 1 (-)
 };
 
 Matrix3 quaternion_matrix(const Vector& q, int i) {
@@ -110,7 +110,7 @@ std::vector<BodyMotion> Assembled::motion(const Vector& q) const {
       const Vector3 axis = frame.col(2);
       Vector3 point = parent.p + parent.R * p_P;
       child.Jw = parent.Jw;
-      child.Jp = point_jacobian(parent, parent.R * p_P);  // of the joint's point for now
+      child.Jp = point_jacobian(parent, parent.R * p_P);  // of the joint's point at first
       switch (joint.type) {
         case JointType::fixed:
           child.R = frame * transpose(R_C);

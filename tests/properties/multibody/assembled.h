@@ -30,7 +30,7 @@ struct BodyMotion {
 class Assembled {
  public:
   // model: only where each joint's coordinates lie in q and u is taken from it
-  // points: what the flexible bodies are made of
+  // points: mass points of the flexible bodies
   Assembled(const MechanicsDef& def, const Model& model, MassPoints points = {})
       : def_(def.flexible_bodies.empty() ? def : with_nodes(def)), model_(model), points_(std::move(points)) {}
 

@@ -1,5 +1,5 @@
 // What every element with two ends or more keeps, over random motions of its links: forces and moments balance, a
-// motion of all bodies as one does not deform it, springs give back what they took, dampers only take.
+// motion of all bodies as one does not deform it, springs return their energy, dampers only dissipate.
 #include <gtest/gtest.h>
 
 #include <cmath>

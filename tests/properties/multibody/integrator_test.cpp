@@ -259,7 +259,7 @@ MechanicsDef light_links(int links, double tip) {
 
 class LightLinks : public ::testing::TestWithParam<Choice> {
  protected:
-  // what a swing leaves of the energy, of m g l, and how it went
+  // remaining energy of a swing, in m g l, and its reports
   struct Swing {
     double energy = 0;
     int unsettled = 0;
@@ -275,7 +275,7 @@ class LightLinks : public ::testing::TestWithParam<Choice> {
       chain.dynamics.evaluate(chain.model, chain.state, chain.ws);
       const bool is_sound = chain.dynamics.advance(chain.model, chain.state, chain.ws, h, {}, {});
       result.unsettled += is_sound ? 0 : 1;
-      // whatever is not finite is told
+      // a non-finite state is reported
       const bool is_finite_now = is_finite(chain.state);
       EXPECT_TRUE(is_finite_now || !is_sound);
       result.stayed_finite = result.stayed_finite && is_finite_now;
@@ -310,7 +310,7 @@ TEST_P(LightLinks, CarryAMillionfoldInShortSteps) {
   EXPECT_LT(std::fabs(fine.energy), 1e-4);
 }
 
-// longer ones may lose the motion, but an implicit rule tells so and holds what runs away
+// longer ones may lose the motion, but an implicit rule reports it and holds a diverged state
 class ImplicitLightLinks : public LightLinks {};
 
 TEST_P(ImplicitLightLinks, TellWhenAMillionfoldIsTooMuch) {
@@ -330,7 +330,7 @@ INSTANTIATE_TEST_SUITE_P(Nightly, ImplicitLightLinks,
                          ::testing::ValuesIn(nightly_choices(kImplicitRules, {Integrator::generalised_alpha})),
                          kChoiceName);
 
-// its law says where it is: nothing for the step to follow
+// its law gives its position: the step has no motion to resolve
 TEST(PrescribedMotion, IsNotDividedByWhatItAccelerates) {
   MechanicsDef def = pendulum();
   def.integrator = Integrator::trapezoidal;

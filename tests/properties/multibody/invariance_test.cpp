@@ -31,7 +31,7 @@ std::vector<std::uint32_t> every_third(const std::vector<std::uint32_t>& seeds) 
 
 class Invariance : public EveryFormulation {
  protected:
-  // Penalties of 1e7 masses amplify the rounding of what is compared.
+  // Penalties of 1e7 masses amplify the rounding of the compared values.
   static double tolerance() { return is(Formulation::penalty) || is(Formulation::augmented) ? 1e-6 : 1e-8; }
 };
 

@@ -1,5 +1,5 @@
 // Rows along every coordinate of the joints of random trees, and about the axes of balls: with J the unit vector of the
-// coordinate's speed, or the axis in the speeds of the ball, W is what J M^-1 J^T has there, whatever the formulation.
+// coordinate's speed, or the axis in the speeds of the ball, W equals J M^-1 J^T there, in every formulation.
 #include <gtest/gtest.h>
 
 #include "multibody/formulations/formulation.h"

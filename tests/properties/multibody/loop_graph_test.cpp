@@ -1,6 +1,6 @@
-// Graphs of loops: trees of links that closing rows connect at random, beside each other, in rows, rings and nets. What
-// the sparse closing system leaves out is zero, its bits are those of the dense one, and body coordinates, which know
-// no tree, find the same motion and the same rows.
+// Graphs of loops: trees of links that closing rows connect at random, beside each other, in rows, rings and nets. The
+// entries that the sparse closing system omits are zero, its bits are those of the dense one, and body coordinates,
+// which use no tree, find the same motion and the same rows.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -115,7 +115,7 @@ double difference(std::span<const double> a, std::span<const double> b) {
   return largest / scale;
 }
 
-// what is not stored is zero, and the solution is the dense one, bit by bit
+// entries not stored are zero, and the solution is the dense one, bit by bit
 void expect_only_zeros_left_out(const Mechanism& mechanism) {
   const LoopWorkspace& loops = mechanism.ws.loops;
   const std::size_t rows = loops.rows.size(), speeds = mechanism.state.u.size();
@@ -140,7 +140,7 @@ void expect_only_zeros_left_out(const Mechanism& mechanism) {
   EXPECT_EQ(x, y);
 }
 
-// what a port's unit force makes of the closed mechanism, with all rows and speeds
+// response of the closed mechanism to a port's unit force, with all rows and speeds
 void expect_ports_reduced_by_all_rows(const Mechanism& mechanism) {
   const Model& model = mechanism.model;
   Workspace ws(mechanism.model);
@@ -292,7 +292,7 @@ TEST(LoopGraph, OfManyLoopsDoesNotLeadThroughAllOfThemWhateverTheFilesOrder) {
   }
 }
 
-// a few loops are cut where the file says
+// a few loops are cut by the order of the file
 TEST(LoopGraph, OfFewLoopsHasTheTreeOfTheFile) {
   Problems problems;
   const MechanicsDef def = listed_by_loops(4);

@@ -55,7 +55,7 @@ TEST(DegreesOfFreedom, AreSixALinkLessTheRankOfAllRows) {
     EXPECT_EQ(mechanism.model.degrees_of_freedom(), 6 * links - rank) << "seed " << seed;
     const Description text = describe(mechanism.model);
     EXPECT_EQ(text.degrees_of_freedom, 6 * links - rank) << "seed " << seed;
-    // what is reported as redundant is what the rank misses
+    // the number of redundant rows equals the rank deficiency
     Index redundant = 0;
     for (const CutDescription& cut : text.cuts) redundant += static_cast<Index>(cut.redundant.size());
     EXPECT_EQ(redundant, G.rows() - rank) << "seed " << seed;

@@ -56,7 +56,7 @@ const std::vector<std::uint32_t> kSeeds = seeds({{1, 24}});
 constexpr std::uint32_t kGateSeedsOfPorts = 3;
 constexpr double kTime = 0.7;  // s
 
-// anywhere, but where the laws say
+// random, except for prescribed coordinates
 State state_at(const Mechanism& mechanism, std::uint32_t seed) {
   State state = random_state(seed, mechanism.model);
   state.time = kTime;

@@ -40,7 +40,7 @@ inline constexpr unsigned kFirstWithModes = 101, kFirstWithShortening = 201, kFi
 struct RandomTree {
   MechanicsDef def;
   std::vector<std::string> rows;  // forces and joints with one coordinate
-  MassPoints points{};            // of the flexible bodies
+  MassPoints points{};            // mass points of the flexible bodies
 };
 
 [[nodiscard]] RandomTree random_tree(unsigned seed, const TreeOptions& options);

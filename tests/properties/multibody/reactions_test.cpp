@@ -79,7 +79,7 @@ std::vector<Vec3> momenta(const Mechanism& mechanism) {
   return result;
 }
 
-// nothing but joints and weight: what the joints do to each body is what its momenta gain, by differences in time
+// joints and weight only: the joints' load on each body equals the rate of its momenta, by differences in time
 TEST(Reactions, MoveEveryBodyAsNewtonAndEulerSay) {
   slew::testing::for_each_seed(slew::testing::seeds({{1, 360}}, kGateSeeds), [&](std::uint32_t seed) {
     MechanicsDef def = random_mechanism(seed);
@@ -145,7 +145,7 @@ Matrix transmitted(const Mechanism& mechanism, const std::vector<Constraint>& co
   return slew::testing::column_basis(B, 1e-12L);
 }
 
-// What the joints put on each body together, by the wrenches of all of them: force and moment about the origin.
+// Total load of the joints on each body, by the wrenches of all of them: force and moment about the origin.
 Matrix loads(const Mechanism& mechanism) {
   const auto bodies = static_cast<Index>(mechanism.model.bodies.size()) - 1;
   const auto joints = static_cast<Index>(mechanism.model.joints.size());

@@ -1,4 +1,4 @@
-// Chains of finite segments: what is conserved, and that the formulations agree.
+// Chains of finite segments: conservation laws, and agreement of the formulations.
 #include <cmath>
 #include <numbers>
 
@@ -192,7 +192,7 @@ TEST(SegmentsStart, LargeBendsAreWarnedOf) {
   EXPECT_TRUE(is_bent_far(bar.model, bar.model.segmented[0], bar.ws));
 }
 
-// what is just below the bound of the message stays bounded, what is above it does not
+// a motion just below the bound of the message stays bounded, one above it does not
 TEST(SegmentsStart, TooFastOnesAreRefusedByName) {
   for (const double zeta : {0.0, 0.02}) {
     MechanicsDef def = swinging(4);

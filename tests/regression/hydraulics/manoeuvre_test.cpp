@@ -1,4 +1,4 @@
-// A fixed manoeuvre of the crane's circuit with cylinder friction: what it costs and where it ends.
+// A fixed manoeuvre of the crane's circuit with cylinder friction: its cost and its end state.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Contact points of simple positions, against what a drawing says.
+// Contact points of simple positions, against a drawing.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The laws' definitions and what a contact remembers.
+// The laws' definitions and the memory of a contact.
 #include <gtest/gtest.h>
 
 #include <cmath>

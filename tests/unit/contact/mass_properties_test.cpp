@@ -205,7 +205,7 @@ TEST(SolidCheck, TakesTrianglesWithoutArea) {
   box.triangles.push_back({a, b, middle});
   box.triangles.push_back({a, a, b});
   ASSERT_FALSE(find_solid_fault(box).has_value());
-  ASSERT_TRUE(find_closed_fault(box).has_value()) << "contact asks for more";
+  ASSERT_TRUE(find_closed_fault(box).has_value()) << "contact has stronger conditions";
   const MassProperties p = mass_properties(box, kDensity);
   EXPECT_NEAR(p.volume, 6, 1e-13);
   expect_inertia(p.inertia, box_inertia(6 * kDensity, 1, 2, 3), 1e-13);

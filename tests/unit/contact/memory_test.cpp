@@ -20,7 +20,7 @@ class Remembered : public ::testing::Test {
   void look(Vec3 p, const math::Mat3& R = math::Mat3::identity()) {
     const std::array<Pose, 2> poses = {Pose{}, Pose{p, R}};
     find_contacts(model, poses, set);
-    memory.follow(model, poses, set);
+    memory.advance(model, poses, set);
   }
   // marks each contact by the quadrant of the box's corner
   static double mark(const ContactPoint& point, Vec3 middle) {

@@ -1,4 +1,4 @@
-// One block in four file formats becomes the same solid; what is no mesh is refused with the reason.
+// One block in four file formats becomes the same solid; other files are refused with the reason.
 #include "contact/mesh_file/mesh_file.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A JSON value: what is built is what is written, and what is read is what stands there.
+// A JSON value: it is written as built, and read as written.
 #include "core/json.h"
 
 #include <gtest/gtest.h>

@@ -35,7 +35,8 @@ long page_faults() {
   return usage.ru_minflt + usage.ru_majflt;
 }
 
-// In a process of its own, whose scheduling and memory nobody else needs; allowed or refused, memory is touched.
+// In a process of its own, whose scheduling and memory no other test uses; memory is touched with and without
+// permission.
 TEST(RealTimeThread, HasItsStackAndHeapInMemoryBeforeItUsesThem) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "a sanitizer is in front of malloc";
   const pid_t child = fork();

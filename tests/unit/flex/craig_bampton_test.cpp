@@ -1,4 +1,4 @@
-// The steps of the reduction, choices of modes and signs, and what is refused.
+// The steps of the reduction, choices of modes and signs, and refused input.
 #include "flex/craig_bampton.h"
 
 #include <gtest/gtest.h>

@@ -92,7 +92,7 @@ class FaultyFiles : public ::testing::Test {
  protected:
   FaultyFiles() { write_flexible_files(set_, small_reduction()); }
 
-  // what is said when the first `from` in the file is `to`
+  // error after replacing the first `from` in the file by `to`
   std::string changed(const std::string& matrix, const std::string& from, const std::string& to) {
     write_flexible_files(set_, small_reduction());
     const std::string name = "M_F_" + matrix + ".dat";
@@ -137,9 +137,9 @@ TEST_F(FaultyFiles, HeadersAreChecked) {
             std::string::npos);
   EXPECT_NE(changed("Nodes", " Nodes ", " Modes ").find("M_F_Nodes.dat:1: the file holds Modes; expected Nodes"),
             std::string::npos);
-  EXPECT_NE(changed("Nodes", "rows=4", "rows=5").find("M_F_Nodes.dat:1: the header says 5 rows; expected 4"),
+  EXPECT_NE(changed("Nodes", "rows=4", "rows=5").find("M_F_Nodes.dat:1: the header states 5 rows; expected 4"),
             std::string::npos);
-  EXPECT_NE(changed("Modes", "columns=8", "columns=9").find("M_F_Modes.dat:1: the header says 9 columns; expected 8"),
+  EXPECT_NE(changed("Modes", "columns=8", "columns=9").find("M_F_Modes.dat:1: the header states 9 columns; expected 8"),
             std::string::npos);
   EXPECT_NE(changed("Modes", "set=", "sat=").find("the header has no set="), std::string::npos);
   EXPECT_NE(changed("Modes", "rows=32", "rows=x").find("'x' is no whole number"), std::string::npos);
@@ -149,7 +149,7 @@ TEST_F(FaultyFiles, RowsAreChecked) {
   EXPECT_NE(changed("Elements", "\n2 2 3", "\n2 2 33").find("node 33; expected one of this body"), std::string::npos);
   EXPECT_NE(changed("Elements", "\n2 2 3", "\n2 2 2").find("an element without length"), std::string::npos);
   EXPECT_NE(changed("Elements", "\n2 2 3 ", "\n2 2 3 -").find("in column 4; expected a number > 0"), std::string::npos);
-  EXPECT_NE(changed("Elements", "rows=3", "rows=2").find("expected 3, as Source says"), std::string::npos);
+  EXPECT_NE(changed("Elements", "rows=3", "rows=2").find("expected 3, as in Source"), std::string::npos);
   EXPECT_NE(changed("Frequencies", "\n2 ", "\n2 nan\n#")
                 .find("M_F_Frequencies.dat:4: nan is not finite; expected a finite number"),
             std::string::npos);
@@ -205,7 +205,7 @@ TEST_F(FaultyFiles, ModelsThatShareTheirFilesNamesAreToldApart) {
 
 TEST_F(FaultyFiles, ASetIsFoundByTheBeginningOfItsFiles) {
   EXPECT_EQ(find_flexible_files(folder_.path() / "M_F").model, "M");
-  // a set that does not say whose it is, and one whose files were renamed
+  // a set without owner in Source, and one with renamed files
   EXPECT_EQ(changed("Source", "\nfiles M F\n", "\nremark M F\n"), "");
   EXPECT_EQ(find_flexible_files(folder_.path() / "M_F").prefix, "F");
   for (const std::string& matrix : flexible_matrices())

@@ -1,4 +1,4 @@
-// Matrices from files: what is read, and what is refused with which words.
+// Matrices from files: accepted files, and refused ones with their messages.
 #include "flex/imported_model.h"
 
 #include <gtest/gtest.h>
@@ -206,7 +206,8 @@ TEST_F(Import, TwoLoosePiecesAreRefused) {
 
 // ---- units ----------------------------------------------------------------------------------------------------------
 
-// what a code without units makes of a cantilever of 3 m, 100 x 100 mm, when lengths, masses and times have these units
+// matrices of a cantilever of 3 m, 100 x 100 mm, from a code without units, with lengths, masses and times in these
+// units
 struct Exported {
   SparseMatrix M, K;
   std::vector<FeNode> nodes;
@@ -271,7 +272,7 @@ TEST_F(Units, ThatAreStatedWronglyAreRefused) {
   const std::string error =
       error_of([&] { (void)model_of_matrices("Boom", line_.nodes, line_.M, line_.K, ModelUnits::mm_t_s); });
   EXPECT_NE(error.find("in mm_t_s this is no solid"), std::string::npos) << error;
-  EXPECT_NE(error.find("say units: m_kg_s (235.5 kg, 3 m long"), std::string::npos) << error;
+  EXPECT_NE(error.find("set units: m_kg_s (235.5 kg, 3 m long"), std::string::npos) << error;
 }
 
 // a mass in grams or milligrams leaves the wave speed of its own stiffness unit

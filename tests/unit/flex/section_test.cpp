@@ -141,13 +141,12 @@ std::string problems_of(const SectionDef& def) {
 TEST(Section, WrongDimensionsAreNamed) {
   EXPECT_EQ(problems_of(box(0.1, 0.2, 0.01)), "");
   EXPECT_EQ(problems_of(box(-0.1, 0.2, 0.01)), "Beam.section.width: -0.1 m is out of range; expected a number > 0 m\n");
-  EXPECT_EQ(
-      problems_of(box(0.1, 0.2, 0.06)),
-      "Beam.section.wall: 0.06 m leaves nothing inside; expected less than 0.05 m, what the width has room for\n");
+  EXPECT_EQ(problems_of(box(0.1, 0.2, 0.06)),
+            "Beam.section.wall: 0.06 m fills the inside; expected less than 0.05 m, the free width\n");
   EXPECT_EQ(problems_of(box(0.1, 0.2, 0.01, 0.1)),
-            "Beam.section.flange: 0.1 m leaves nothing inside; expected less than 0.1 m, half of the height\n");
+            "Beam.section.flange: 0.1 m fills the inside; expected less than 0.1 m, half of the height\n");
   EXPECT_EQ(problems_of({.shape = SectionShape::tube, .wall = 0.06, .diameter = 0.1}),
-            "Beam.section.wall: 0.06 m leaves nothing inside; expected less than 0.05 m, half of the diameter\n");
+            "Beam.section.wall: 0.06 m fills the inside; expected less than 0.05 m, half of the diameter\n");
   EXPECT_NE(problems_of(i_beam(0.1, 0.2, 0.01, 0)).find("flange"), std::string::npos);
   EXPECT_NE(problems_of({.area = 1, .second_moment_y = 0}).find("second_moment_y: 0 m4"), std::string::npos);
   // the fourth powers of these are no numbers, or none above 0

@@ -484,7 +484,7 @@ TEST(CircuitIntegrator, hash_changes_when_any_state_changes_by_one_ulp) {
   EXPECT_NE(digest(), before);
 }
 
-// Found by a fuzzer: a state that says that volumes without compressibility are inconsistent, where there are none.
+// Found by a fuzzer: a state with the flag of inconsistent volumes without compressibility, where there are none.
 TEST(CircuitIntegrator, a_saved_state_whose_flags_cannot_be_is_refused) {
   const HydraulicsDef def = crane_circuit();
   Circuit circuit(def);
@@ -495,7 +495,7 @@ TEST(CircuitIntegrator, a_saved_state_whose_flags_cannot_be_is_refused) {
   StateWriter writer(saved, {});
   integrator.save(writer);
   writer.finish();
-  constexpr std::size_t kHeader = 32, kCheck = 24;  // of the layout in core/state_bytes.h
+  constexpr std::size_t kHeader = 32, kCheck = 24;  // offsets in the layout of core/state_bytes.h
   int refused = 0;
   for (std::size_t i = kHeader; i < saved.size(); ++i) {
     if (saved[i] != std::byte{1}) continue;
@@ -633,7 +633,7 @@ TEST(Circuit, equilibrium_beyond_its_shock_valves_names_volume_and_valve) {
   ASSERT_NE(valve, nullptr);
   const double limit = 1e5 + valve->shock_pressure_a + valve->shock_pressure_rise;
   const Actuator& lift = circuit.actuators()[0];
-  // F of the lift cylinder that asks for just this much, and for a little more
+  // F of the lift cylinder that requires exactly this pressure, and a little more
   const double holds = limit * lift.area_a - def.start_return_pressure * lift.area_b;
   double F[] = {0.999 * holds, kCraneForces[1], kCraneForces[2]};
   EXPECT_FALSE(circuit.demand_beyond_limits(F));

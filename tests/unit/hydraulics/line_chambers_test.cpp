@@ -1,4 +1,4 @@
-// Chambers as transmission lines: the oil stays, whatever the line does and whenever it is made or lumped.
+// Chambers as transmission lines: the oil stays constant in any state of the line and at every conversion.
 #include "hydraulics/line_chambers.h"
 
 #include <gtest/gtest.h>

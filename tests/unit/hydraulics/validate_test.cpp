@@ -271,7 +271,7 @@ TEST(HydraulicsValidation, hose_walls_without_effect_and_valves_that_never_open_
   EXPECT_NE(what_at(findings(def).errors, "Hose_Lift_A.minimum_bulk_modulus"), "");
 }
 
-// a pump on a block, and what a test connects to it
+// a pump on a block, and the connections of a test
 HydraulicsDef pump_on_a_block() {
   HydraulicsDef def;
   add_volume(def, "Vol_P").rigid_volume = 1e-3;

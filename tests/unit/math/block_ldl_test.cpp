@@ -234,7 +234,7 @@ TEST(BlockLdl, LosesTheRatioOfStiffAndSoftInADefiniteMatrixNotItsSquare) {
   expect_solved(system, 1e-4);
 }
 
-// of two: what is eliminated first as it is, the other less what the first carries
+// determinants of two nodes: the first unchanged, the second less the contribution of the first
 TEST(BlockLdl, HasTheDeterminantsOfADefiniteMatrix) {
   System system(BlockPattern{{{1, BlockKind::definite}, {2, BlockKind::definite}}, {{1, 0}}});
   Matrix first(1, 1), other(2, 2), between(2, 1);

@@ -77,7 +77,7 @@ TEST(Semidefinite, RowThatIsSmallAgainstItsReferenceIsRedundant) {
   EXPECT_EQ(factor.smallest_pivot(), 1e-9);
 }
 
-// The bits must not depend on what was factorized before.
+// The bits must not depend on earlier factorisations.
 TEST(Semidefinite, RedundancyOfOneMatrixIsForgottenWithTheNext) {
   Semidefinite factor(2);
   factor.factorize(std::vector<double>{1, 1, 1, 1}, {}, 1e-12);

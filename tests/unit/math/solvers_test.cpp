@@ -55,7 +55,7 @@ TEST(RungeKutta4, says_when_a_state_moves_by_more_than_a_step_follows) {
     double y[] = {1000, 0};
     RungeKutta4 solver(2, options(1, step));
     const StiffReport report = solver.advance(system, y, step);
-    EXPECT_LT(report.largest_error, 1) << step;  // of the limit
+    EXPECT_LT(report.largest_error, 1) << step;  // in units of the limit
     EXPECT_EQ(report.is_unstable, step > 0.1);
   }
 }
@@ -75,7 +75,7 @@ TEST(ImplicitEuler, is_of_first_order_and_damps) {
   ImplicitEuler coarse(full(2), 2, options(1e-9, 1e-4)), fine(full(2), 2, options(1e-9, 5e-5));
   const double error = error_after_one_second(coarse);
   EXPECT_NEAR(error / error_after_one_second(fine), 2, 0.02);
-  EXPECT_NEAR(error, 0.5 * 100 * 1e-4, 1e-3);  // exp(-w^2 h t / 2) is what is left of the swing
+  EXPECT_NEAR(error, 0.5 * 100 * 1e-4, 1e-3);  // exp(-w^2 h t / 2) of the oscillation remains
 }
 
 TEST(Cvode, is_within_its_tolerance_over_many_intervals) {

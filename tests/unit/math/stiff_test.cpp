@@ -194,7 +194,7 @@ TEST(Rodas3, shrinks_by_the_order_that_two_rejections_show) {
   double y[] = {2e-5};
   const StiffReport report = solver.advance(system, y, 1e-3);
   EXPECT_NEAR(y[0], ComesToRest::kEdge - 2 / ComesToRest::kSlope, 1e-6);
-  // not one by one by what h^3 would ask for
+  // not one by one as h^3 would require
   EXPECT_GE(report.rejected, 1u);
   EXPECT_LE(report.rejected, 5u);
 }

@@ -108,7 +108,7 @@ class Joints : public ::testing::TestWithParam<Kind> {
     }
   }
 
-  // both links somewhere, the joint's frames somewhere in them, standing to each other as R_12, p_12 say
+  // both links at random poses, the joint's frames at random poses in them, with the relative pose R_12, p_12
   void place_links() {
     for (LinkMotion* link : {&link1, &link2}) {
       link->w = vector(2);

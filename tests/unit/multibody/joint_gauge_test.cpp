@@ -1,4 +1,4 @@
-// The gauge of open joints: what it shows of motions that are put there by hand.
+// The gauge of open joints: its values for prepared motions.
 #include "multibody/joints/joint_gauge.h"
 
 #include <gtest/gtest.h>

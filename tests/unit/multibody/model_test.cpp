@@ -81,7 +81,7 @@ TEST(StateHash, ChangesWithEveryLiveParameter) {
 
 TEST(Parameters, OfWhichThereIsNoneAreNotFound) {
   const Model model = build_model(crane_def(), crane_rows());
-  for (const char* path : {"Bag", "Bag.inertia", "Nobody.mass", "ForceT_Lift.min_length", "Hook_Bag.coulomb_friction",
+  for (const char* path : {"Bag", "Bag.inertia", "Absent.mass", "ForceT_Lift.min_length", "Hook_Bag.coulomb_friction",
                            "mechanics.formulation", "Ground.mass", ""}) {
     EXPECT_FALSE(find_parameter(model, path).has_value()) << path;
   }

@@ -72,8 +72,7 @@ TEST(Validate, NamesTheLongestStepThatAPenaltyAllows) {
   const Problems problems =
       problems_of([](auto& d) { d.formulation = Formulation::penalty, d.penalty_frequency = 3000; });
   EXPECT_EQ(problems[0].expected, "at most 2780 rad/s, or max_substep of at most 0.000928 s");
-  // the recursion has no such limit, and the longest step of a scene is stable at the frequency that goes without
-  // saying
+  // the recursion has no such limit, and the longest step of a scene is stable at the default frequency
   EXPECT_EQ(testing::text_of(problems_of([](auto& d) { d.penalty_frequency = 3000; })), "");
   EXPECT_EQ(testing::text_of(problems_of([](auto& d) { d.formulation = Formulation::penalty, d.max_substep = 20e-3; })),
             "");

@@ -1,4 +1,4 @@
-// What a command line takes, and what it says of words that it does not take.
+// Accepted command lines, and the errors for others.
 #include "options/options.h"
 
 #include <gtest/gtest.h>

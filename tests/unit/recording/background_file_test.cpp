@@ -11,7 +11,7 @@
 namespace slew::recording {
 namespace background_file_test {
 
-// A disk that waits to be told how many writes it may do, and fails one of them.
+// A disk that waits for a permitted number of writes, and fails one of them.
 class SteppedDisk final : public FileCalls {
  public:
   std::int64_t write(int descriptor, ByteSpan bytes, std::uint64_t offset) override {
@@ -82,7 +82,7 @@ TEST(BackgroundFile, AFailureIsToldOnceAndWhatWaitedIsNotWritten) {
   EXPECT_EQ(file_content(scratch / "a"), block(0) + block(1) + "end");
 }
 
-// The writer counts what had waited as lost, and its index holds what is in the file.
+// The writer counts the waiting messages as lost, and its index holds those in the file.
 TEST(BackgroundFile, AWriterWhoseChunksWaitedTellsTheTruthAfterAFailure) {
   const ScratchDirectory scratch;
   for (int fails_at = 5; fails_at < 12; ++fails_at) {

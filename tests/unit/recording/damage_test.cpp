@@ -57,7 +57,7 @@ TEST(DamagedRecording, CutAtAnyByteGivesEveryWholeChunkInFrontOfTheCut) {
   }
 }
 
-// What a file with one changed bit gives: the messages in front of the damaged chunk, which is named.
+// Result of a file with one changed bit: the messages in front of the damaged chunk, which is named.
 void expect_longest_prefix(const std::filesystem::path& path, std::size_t at, std::size_t size,
                            const std::vector<KnownMessage>& messages, const std::vector<ChunkPlace>& chunks) {
   // the full check stops at or in front of the place
@@ -91,7 +91,7 @@ void expect_longest_prefix(const std::filesystem::path& path, std::size_t at, st
     const std::string named = fmt::format("at byte {} of {} ", hit->begin, size);
     ASSERT_NE(status.text.find(named), std::string::npos) << status.text;
   }
-  // what says which session it is is as it was, or the damage is named
+  // the identity of the session is unchanged, or the damage is reported
   const SessionIdentity& identity = reader->identity();
   const bool is_as_it_was = identity.scene == sample_identity().scene &&
                             identity.session_id == sample_identity().session_id &&
@@ -184,7 +184,8 @@ TEST(DamagedRecording, NoMutationCrashesTheReader) {
   }
 }
 
-// In a child that may take 96 MiB more: what a file of 3 GiB with a wrong length says. 0: it was opened and named.
+// In a child with 96 MiB more memory: result of opening a file of 3 GiB with a wrong length. 0: opened, with the damage
+// reported.
 int open_with_little_memory(const std::filesystem::path& path) {
   std::ifstream statistics("/proc/self/statm");
   std::uint64_t pages = 0;
@@ -218,7 +219,7 @@ TEST(DamagedRecording, ADamagedLengthTakesNoMemory) {
   const std::vector<ChunkPlace> chunks = chunks_of(scratch / "whole.mcap");
   std::unique_ptr<Reader> reader;
   ASSERT_EQ(Reader::open(scratch / "whole.mcap", reader).text, "");
-  // bytes of lengths in the file, and what they claim
+  // bytes of lengths in the file, and their false values
   struct Claim {
     const char* what;
     std::size_t length_at;
@@ -274,13 +275,13 @@ TEST(DamagedRecording, WhatIsNoRecordingIsRefused) {
   EXPECT_NE(refusal(scratch / "empty.mcap").find("at byte 0 the file ends before the first record"), std::string::npos);
   write_file(scratch / "text.mcap", "scene: {name: not a recording}\n");
   EXPECT_NE(refusal(scratch / "text.mcap").find("this is not an MCAP file"), std::string::npos);
-  // a well formed MCAP file of somebody else
+  // a well-formed MCAP file of another program
   Bytes other;
   put_magic(other);
   encode_header(other, {"ros2", "other"});
   encode_end(other, 0, crc32_of(other), {});
   write_file(scratch / "other.mcap", as_text(other));
-  EXPECT_NE(refusal(scratch / "other.mcap").find("it does not say which session it holds"), std::string::npos);
+  EXPECT_NE(refusal(scratch / "other.mcap").find("the identity of its session is missing"), std::string::npos);
 }
 
 }  // namespace damage_test

@@ -84,7 +84,7 @@ void write_newer(const std::filesystem::path& path, const std::string& version, 
   index.metadata.push_back({at, bytes.size() - at, kIdentityName});
   encode_mark(bytes, crc32_of(bytes));
   const std::size_t record = begin_record(bytes, Opcode{0x91});
-  put_string(bytes, "what this program does not know");
+  put_string(bytes, "unknown to this program");
   end_record(bytes, record);
   encode_mark(bytes, crc32_of(bytes));
   complete_statistics(index);

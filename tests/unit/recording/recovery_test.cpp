@@ -36,7 +36,7 @@ class RecoveredRecording : public ::testing::Test {
 
   [[nodiscard]] std::filesystem::path recovered() const { return scratch_ / "recovered.mcap"; }
 
-  // The new file is whole and holds these messages, whatever their topics are called now.
+  // The new file is whole and holds these messages, under any topics.
   void expect_messages(const std::vector<KnownMessage>& expected, bool are_topics_kept = true) {
     std::unique_ptr<Reader> reader;
     ASSERT_EQ(Reader::open(recovered(), reader).text, "");
@@ -52,7 +52,7 @@ class RecoveredRecording : public ::testing::Test {
     ASSERT_EQ(reader->identity().session_id, sample_identity().session_id);
     ASSERT_EQ(reader->find_metadata(kSummaryName), nullptr) << "how it ended is not copied";
     ASSERT_NE(reader->find_metadata(kRecoveryName), nullptr);
-    // the index finds what the chunks hold
+    // the index finds the contents of the chunks
     std::vector<KnownMessage> by_topic = read_all(*reader, nullptr, {{kTickTopic}, 3'000'000, 5'000'000});
     for (const KnownMessage& message : by_topic) ASSERT_EQ(message.topic, kTickTopic);
   }
@@ -135,7 +135,7 @@ TEST_F(RecoveredRecording, LosesNoMoreThanTheChunkInWhichABitChanged) {
   }
 }
 
-// The next place to go on at is behind hundreds of kilobytes of bytes that say nothing.
+// The next place to continue is behind hundreds of kilobytes of meaningless bytes.
 TEST_F(RecoveredRecording, GoesOnBehindALargeChunk) {
   std::unique_ptr<Writer> writer;
   ASSERT_EQ(Writer::create(scratch_ / "large.mcap", sample_identity(), WriterLimits{}, writer).text, "");

@@ -253,7 +253,7 @@ TEST(Recording, WritingAMessageDoesNotAllocate) {
   const AllocationGuard guard;
   ASSERT_TRUE(write_steps(2'000, 4'000));
   const std::uint64_t allocations = guard.allocations();
-  // what is left are the few entries of each chunk in the index
+  // the remainder are the few entries of each chunk in the index
   EXPECT_LE(allocations, 12 * (writer->counts().chunks - chunks)) << "for 10000 messages";
 }
 

@@ -1,4 +1,4 @@
-// A small recording with known content, and its reading back: what the tests of the format compare.
+// A small recording with known content and its read-back, for comparison in the tests of the format.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ inline constexpr const char* kAttachmentText = "scene: {name: sample}\nbodies: {
 // Payload whose bytes depend on the arguments and hardly compress.
 [[nodiscard]] std::string sample_payload(std::uint64_t seed, std::size_t size);
 
-// Writes attachment, two channels and the given number of steps, and closes unless told otherwise.
+// Writes attachment, two channels and the given number of steps, and closes by default.
 enum class Ending { closed, open };
 [[nodiscard]] std::unique_ptr<Writer> write_sample(const std::filesystem::path& path, StepIndex steps, Ending ending,
                                                    const WriterLimits& limits = small_limits());

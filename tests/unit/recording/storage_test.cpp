@@ -191,7 +191,7 @@ TEST(RecordingStorage, AKilledWriterLosesNothingThatWasFlushed) {
   EXPECT_EQ(read_all(*reader), sample_messages(25));
 }
 
-// What a writing process has said of itself before it was killed.
+// Progress that a writing process reported before it was killed.
 struct Progress {
   std::atomic<std::uint64_t> in_file;  // messages of chunks that were written
   std::atomic<std::uint64_t> chunks;

@@ -1,4 +1,4 @@
-// Shapes, meshes, pairs and frictions of a scene: what the reader makes of them, and what a session publishes.
+// Shapes, meshes, pairs and frictions of a scene: reading them, and the published text of a session.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// CSV files of scripts and tables: how the world writes them, and what is refused.
+// CSV files of scripts and tables: common notations, and refused files.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -96,7 +96,7 @@ TEST_F(Csv, ASecondRowAtOneTimeIsAJump) {
 TEST_F(Csv, RecordedValuesOneStepApartAreHeldAsTicksHeldThem) {
   EXPECT_EQ(stick("time,Stick.raw\n0,0\n0.001,0.5\n0.002,0.5\n0.003,1\n0.5,-1\n"),
             (Table{{0, 0}, {0.001, 0}, {0.001, 0.5}, {0.002, 0.5}, {0.003, 0.5}, {0.003, 1}, {0.5, -1}}));
-  // not what somebody wrote, and no jump that is there already
+  // neither for a written point, nor for an existing jump
   EXPECT_EQ(stick("time,Stick\n0,0\n0.001,0.5\n"), (Table{{0, 0}, {0.001, 0.5}}));
   EXPECT_EQ(stick("time,Stick.raw\n0,0\n0.001,0.5\n0.001,1\n"), (Table{{0, 0}, {0.001, 0.5}, {0.001, 1}}));
 }

@@ -1,5 +1,5 @@
-// Every field of every table refuses a value outside what it takes, with its path and the range in the message. The
-// cases are made from the field tables, so that a new field is tested as soon as it is there.
+// Every field of every table refuses a value outside its range, with its path and the range in the message. The cases
+// are made from the field tables, so that a new field is tested as soon as it is there.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ namespace field_ranges_test {
 
 // A table, and how a scene begins that holds one field of it.
 struct Case {
-  std::string label;  // of the table
+  std::string label;  // label of the table
   std::string owner;  // what stands before the key in messages
   std::string before;
   std::span<const Field> fields;

@@ -1,4 +1,4 @@
-// Flexible bodies of a scene: their files, what is taken of them, and every way in which they do not fit.
+// Flexible bodies of a scene: their files, the selection from them, and all mismatches.
 #include "scene/flexible_bodies.h"
 
 #include <gtest/gtest.h>
@@ -137,8 +137,8 @@ TEST_F(FlexibleScene, RigidKeysMayStayAndAreComparedWithTheFiles) {
           .empty());
   const auto other = warnings("    mass: 500 kg\n    center_of_mass: [0, 0, 0]\n");
   ASSERT_EQ(other.size(), 2U);
-  expect_part(other[0], "Boom.mass: 500 kg has no effect: the flexible files say 127.55");
-  expect_part(other[1], "Boom.center_of_mass: it has no effect: the flexible files say [-3.25");
+  expect_part(other[0], "Boom.mass: 500 kg has no effect: the flexible files give 127.55");
+  expect_part(other[1], "Boom.center_of_mass: it has no effect: the flexible files give [-3.25");
 }
 
 TEST_F(FlexibleScene, RigidIsTheTypeThatNeedNotBeSaid) {

@@ -1,4 +1,4 @@
-// Descriptions of flexible bodies: every key reaches its place, and every fault is told with line and column.
+// Descriptions of flexible bodies: every key reaches its place, and every fault is reported with line and column.
 #include "scene/flexible_model.h"
 
 #include <gtest/gtest.h>
@@ -183,7 +183,7 @@ TEST(FlexibleModel, MatricesAreImportedFromTheFolderOfTheDescription) {
   expect_same(read.model.M, model.M);
   EXPECT_EQ(read.model.name, "crane");
   EXPECT_FALSE(read.model.is_beam());
-  // faults of the files are told at the key, those of the nodes at theirs
+  // faults of the files are reported at the key, those of the nodes at their own
   (void)folder.write("M.mtx", "nothing\n");
   try {
     (void)load_flexible_file(path);
@@ -235,7 +235,7 @@ TEST(FlexibleModel, FaultsAreToldWithPlaceExpectationAndSuggestion) {
        "or "
        "shear_factor_z"},
       {kNames + kSteel + "sections: {Box: {shape: tube, diameter: 1, wall: 0.6}}\n" + kLine,
-       "f:4:50: sections.Box.wall: 0.6 m leaves nothing inside; expected less than 0.5 m, half of the diameter"},
+       "f:4:50: sections.Box.wall: 0.6 m fills the inside; expected less than 0.5 m, half of the diameter"},
       {kNames + kSteel +
            "sections: {Box: {shape: solid_circle, diameter: 1, shear_factor: 0.9, shear_factor_z: 0.8}}\n" + kLine,
        "f:4:66: sections.Box.shear_factor: it is given beside one of y or z; expected shear_factor, or shear_factor_y "
@@ -249,7 +249,7 @@ TEST(FlexibleModel, FaultsAreToldWithPlaceExpectationAndSuggestion) {
        "f:5:49: line.nodes: '1' is out of range; expected 2 to 10000"},
       {root + "line: {start: [0, 0, 0], end: [1, 0, 0]}\n",
        "f:5:1: line: the key 'nodes' is missing; expected an integer"},
-      {root, "f:1:1: nothing says where the body is; expected one of line, nodes and matrices"},
+      {root, "f:1:1: the geometry of the body is missing; expected one of line, nodes and matrices"},
       {kBeam + "nodes: {1: [0, 0, 0], 2: [1, 0, 0]}\n",
        "f:1:1: the body is described more than once; expected one of line, nodes and matrices"},
       {root + "nodes: {1: [0, 0, 0]}\n", "f:5:8: nodes: 1 nodes are too few; expected two or more"},
@@ -274,7 +274,7 @@ TEST(FlexibleModel, FaultsAreToldWithPlaceExpectationAndSuggestion) {
       {kBeam + "y_axis: [0, 0, 0]\n", "f:6:9: y_axis: it has no direction; expected a vector"},
       {kBeam + "material: Stel\n", "f:6:11: material: no material 'Stel'; did you mean 'Steel'?"},
       {kNames + kBox + kLine + "materials: {A: {youngs_modulus: 1, density: 1}, B: {youngs_modulus: 1, density: 1}}\n",
-       "f:1:1: material: there are 2 materials, and elements without a word on theirs; expected the name of one here, "
+       "f:1:1: material: there are 2 materials, and elements that name none; expected the name of one here, "
        "or "
        "one for every element"},
       {kNames + kBox + kLine, "f:1:1: materials: there is none; expected one or more"},
@@ -293,7 +293,8 @@ TEST(FlexibleModel, FaultsAreToldWithPlaceExpectationAndSuggestion) {
       {kBeam + "reduction: {fixed_interface_modes: 31}\n",
        "f:6:36: reduction.fixed_interface_modes: 31 is out of range; expected 0 to 30, the freedoms inside"},
       {kBeam + "reduction: {clamped_nodes: [1, 2], fixed_interface_modes: 1, stiffening: straight_beam}\n",
-       "f:6:74: reduction.stiffening: it is clamped at several nodes, which keep their distance and pull instead of "
+       "f:6:74: reduction.stiffening: it is clamped at several nodes, which keep their distance and cause tension "
+       "instead of "
        "shortening; expected one straight chain of beam elements, or none"},
       {kBeam + "reduction: {modes: 3}\n",
        "f:6:13: reduction.modes: unknown key; expected attachment, clamped_nodes, interface_nodes, "
@@ -327,7 +328,7 @@ TEST(FlexibleModel, ABeamBesideMatricesIsRefused) {
     ADD_FAILURE();
   } catch (const LoadError& error) {
     const std::string text = error.what();
-    for (const char* part : {":3:1: materials: says nothing beside matrices", ":4:1: sections: ", ":5:1: line: "})
+    for (const char* part : {":3:1: materials: has no effect beside matrices", ":4:1: sections: ", ":5:1: line: "})
       EXPECT_NE(text.find(part), std::string::npos) << text;
   }
 }

@@ -27,14 +27,14 @@ TEST(Load, TheCanonicalTextOfASceneReadsBackToTheSameText) {
 }
 
 TEST(Load, TextsSurviveTheRoundTrip) {
-  const std::string title = "say \"hi\" \\ to\tit: # [x] \xC3\xA4, and 'so'";
+  const std::string title = "the \"hi\" \\ to\tit: # [x] \xC3\xA4, and 'so'";
   std::string scene = kPendulum + "plots:\n  Swing: {title: " + yaml_text(title) + ", variables: [Rod.position.x]}\n";
   const Scene once = load_text(scene, "test");
   EXPECT_EQ(once.plots.at(0).title, title);
   EXPECT_EQ(load_text(once.expanded_text, "test").plots.at(0).title, title);
 }
 
-// what an escape stands for is judged as if it stood in the file
+// a resolved escape is checked like a character of the file
 TEST(Load, AnEscapeThatStandsForAControlCharacterOrNoTextIsRefusedAtItsPlace) {
   const auto with_title = [](const std::string& title) {
     return kPendulum + "plots:\n  Swing: {title: \"a" + title + "b\", variables: [Rod.position.x]}\n";
@@ -55,7 +55,7 @@ TEST(Load, AnEscapeThatStandsForAControlCharacterOrNoTextIsRefusedAtItsPlace) {
   }
 }
 
-// expand(load(expand(x))) = expand(x): load_file() compares for every scene, and refuses what is not the same
+// expand(load(expand(x))) = expand(x): load_file() compares for every scene, and refuses differences
 TEST(Load, EveryAcceptedSceneReadsBackFromItsExpansion) {
   int accepted = 0;
   for (const auto& entry : std::filesystem::directory_iterator(SLEWRING_SOURCE_DIR "/scenes")) {
@@ -358,7 +358,7 @@ TEST(Assets, AreMeasuredAndComparedByContents) {
             std::string::npos);
 }
 
-// what a session publishes must hold every joint
+// the published text of a session must hold every joint
 TEST(Scene, EveryJointTypeIsWrittenAndReadBack) {
   for (const ElementTable& table : element_tables()) {
     if (table.section != "joints") continue;

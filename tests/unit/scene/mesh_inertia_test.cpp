@@ -24,7 +24,7 @@ using contact::testing::prism;
 using math::Mat3;
 using math::Vec3;
 
-// positions pass single precision inside assimp, so that no more than this can be asked of a size
+// positions pass single precision inside assimp, which limits the accuracy of a size
 constexpr double kSingle = 1e-6;
 
 std::string stl_text(const MeshDef& mesh) {

@@ -13,7 +13,7 @@ namespace number_test {
 
 double value_of(std::string_view text) {
   const NumberText number = split_number(text);
-  EXPECT_TRUE(number.is_number) << text << ": " << number.complaint.what;
+  EXPECT_TRUE(number.is_number) << text << ": " << number.problem.what;
   return static_cast<double>(number.value);
 }
 
@@ -85,8 +85,8 @@ TEST(Number, IsRefusedWithAReasonAndAWayOut) {
   for (const Refused& refused : kRefused) {
     const NumberText number = split_number(refused.text);
     EXPECT_FALSE(number.is_number) << refused.text;
-    EXPECT_EQ(number.complaint.what, refused.what);
-    EXPECT_EQ(number.complaint.expected, refused.expected) << refused.text;
+    EXPECT_EQ(number.problem.what, refused.what);
+    EXPECT_EQ(number.problem.expected, refused.expected) << refused.text;
   }
 }
 

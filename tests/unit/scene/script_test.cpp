@@ -63,7 +63,7 @@ TEST(Script, AnInputWithoutTrackIsNeutral) {
 }
 
 SignalCourse course(const ScriptPlayer& script, SimTime from, SimTime to) {
-  SignalCourse pieces{{1, 7, 7}};  // what it held before is gone
+  SignalCourse pieces{{1, 7, 7}};  // the old content is dropped
   script.read_course(0, from, to, pieces);
   return pieces;
 }

@@ -1,5 +1,5 @@
-// Tables that are too long for a scene's text stay in their files, which nodes, recordings and saved sessions know by
-// their content.
+// Tables that are too long for a scene's text stay in their files, which nodes, recordings and saved sessions identify
+// by their content.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>

@@ -72,7 +72,7 @@ const Exact kExact[] = {Exact{"500 kg", Dimension::mass, 500},
 TEST(Units, AQuantityIsTheNearestDoubleToWhatItsTextMeans) {
   for (const Exact& exact : kExact) {
     const QuantityResult result = read_quantity(exact.text, Writing::plain, exact.dimension, units());
-    ASSERT_TRUE(result.value) << exact.text << ": " << result.complaint.what;
+    ASSERT_TRUE(result.value) << exact.text << ": " << result.problem.what;
     EXPECT_EQ(*result.value, exact.value) << exact.text;
   }
 }
@@ -80,7 +80,7 @@ TEST(Units, AQuantityIsTheNearestDoubleToWhatItsTextMeans) {
 TEST(Units, CubicCentimetresPerRevolutionAreADisplacement) {
   for (const char* text : {"140 cc/rev", "140 cm3/rev"}) {
     const QuantityResult result = read_quantity(text, Writing::plain, Dimension::displacement_volume, units());
-    ASSERT_TRUE(result.value) << result.complaint.what;
+    ASSERT_TRUE(result.value) << result.problem.what;
     EXPECT_NEAR(*result.value, 140e-6 / (2 * kPi), 1e-16 * *result.value * 4);
   }
 }
@@ -95,7 +95,7 @@ TEST(Units, TheExampleOfEveryDimensionReadsInThatDimension) {
   for (int i = 0; i < static_cast<int>(Dimension::number_of_dimensions); ++i) {
     const auto dimension = static_cast<Dimension>(i);
     const QuantityResult result = read_quantity(info(dimension).example, Writing::plain, dimension, units());
-    EXPECT_TRUE(result.value) << info(dimension).name << ": " << result.complaint.what;
+    EXPECT_TRUE(result.value) << info(dimension).name << ": " << result.problem.what;
   }
 }
 
@@ -142,9 +142,9 @@ TEST(Units, AQuantityIsRefusedNamingWhatItIsInstead) {
   for (const auto& [text, writing, dimension, what, suggestion] : kRefused) {
     const QuantityResult result = read_quantity(text, writing, dimension, units());
     EXPECT_FALSE(result.value) << text;
-    EXPECT_EQ(result.complaint.what, what);
-    EXPECT_EQ(result.complaint.suggestion, suggestion) << text;
-    EXPECT_FALSE(result.complaint.expected.empty());
+    EXPECT_EQ(result.problem.what, what);
+    EXPECT_EQ(result.problem.suggestion, suggestion) << text;
+    EXPECT_FALSE(result.problem.expected.empty());
   }
 }
 

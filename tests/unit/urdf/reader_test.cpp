@@ -1,4 +1,4 @@
-// What a URDF file cannot be is refused with its line; what is left out is noted with its line.
+// Invalid contents of a URDF file are refused with their line; omitted contents are noted with their line.
 #include "urdf/reader.h"
 
 #include <gtest/gtest.h>
@@ -124,7 +124,7 @@ TEST(UrdfReader, RefusesWhatIsNoTree) {
             "r.urdf:5: link 'a' is the child of joint 'j' already; expected a tree: loops are closed in the scene "
             "afterwards");
   EXPECT_EQ(problems_of(robot(fixed("j", "base", "a") + fixed("k", "a", "base"))),
-            "r.urdf:2: every link has a parent; expected one link that is nobody's child");
+            "r.urdf:2: every link has a parent; expected one link without a parent");
   const std::string doubled = problems_of(robot(fixed("j", "base", "a") + fixed("j", "a", "base")));
   EXPECT_TRUE(doubled.starts_with("r.urdf:5: joint 'j': is there twice (first in line 4)")) << doubled;
   const std::string circle = "<link name=\"c\"/>\n<link name=\"d\"/>\n" + fixed("j", "base", "a") +
@@ -212,12 +212,12 @@ TEST(UrdfImport, TellsProblemsOfTheSceneAtTheLineOfTheUrdf) {
     (void)import_file(path);
     ADD_FAILURE() << "accepted";
   } catch (const scene::LoadError& error) {
-    EXPECT_NE(std::string(error.what()).find(":5: j: what hangs on this joint has no inertia"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find(":5: j: the load of this joint has no inertia"), std::string::npos)
         << error.what();
   }
 }
 
-// whatever is cut out of a file or put into it: a scene that is read again, or problems with their places
+// after any deletion from a file or insertion into it: a readable scene, or problems with their places
 TEST(UrdfImport, EndsWellWithDamagedFiles) {
   std::ifstream in(SLEWRING_SOURCE_DIR "/examples/urdf/two_link_arm.urdf");
   const std::string sound(std::istreambuf_iterator<char>(in), {});

@@ -66,7 +66,7 @@ TEST(Rebound, OfTheCommonLawsIsWhatTheCaseLists) {
   struct Listed {
     const char* name;
     double (*a)(double e);
-    double rebound[3];  // of e = 0.1, 0.5, 0.9
+    double rebound[3];  // for e = 0.1, 0.5, 0.9
   };
   const Listed laws[] = {
       {"Hunt-Crossley", [](double e) { return 3 * (1 - e) / 2; }, {0.515833, 0.662962, 0.909016}},

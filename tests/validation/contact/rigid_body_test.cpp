@@ -36,7 +36,7 @@ class Body {
     const Mat3 R = math::rotation_of(q);
     const std::array<Pose, 2> poses = {Pose{}, Pose{p, R}};
     find_contacts(model_, poses, set_);
-    memory_.follow(model_, poses, set_);
+    memory_.advance(model_, poses, set_);
     Vec3 force = Vec3(0, 0, -kGravity), torque;
     normal_force = 0;
     for (std::size_t i = 0; i < set_.points().size(); ++i) {
@@ -143,7 +143,7 @@ TEST(RigidBox, ThrownOntoTheFlatStopsWhereFrictionSays) {
   Body body = box_on_incline(0);
   body.v = Vec3(2, 0, 0);
   body.run(1.5);
-  // the same whatever the distribution of the load, as long as it does not tip
+  // the same for any distribution of the load, as long as it does not tip
   EXPECT_NEAR(body.p.x(), 0.6795786612, 1e-3 * 0.68);
   EXPECT_LT(norm(body.v) + norm(body.w), 1e-6);
 }
@@ -175,7 +175,7 @@ TEST(RigidBox, FallingFlatReboundsWithTheRestitution) {
   }
 }
 
-// a sliding sphere ends up rolling with 5/7 of its speed, whatever the friction
+// a sliding sphere ends up rolling with 5/7 of its speed, at any friction
 TEST(RigidSphere, SlidesUntilItRolls) {
   Body body(sphere(0.1), Vec3(1, 1, 1) * (0.4 * 0.01), plane(), 0.1, 0.3);
   body.p = Vec3(0, 0, 0.1 - kGravity / 1e6);

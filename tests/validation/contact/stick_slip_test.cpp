@@ -115,7 +115,7 @@ TEST(StickSlip, FollowsTheTableWithTheContinuousEquations) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(onsets[i], kOnsets[i], 0.02);
 }
 
-// sub-steps of 0.1 ms, five times what an explicit method stands while it slips
+// sub-steps of 0.1 ms, five times the limit of an explicit method while slipping
 TEST(StickSlip, FollowsTheTableInImplicitSubSteps) {
   const auto table = read_table("lugre_stick_slip.csv");
   const double h = 1e-4;

@@ -19,10 +19,10 @@ using Map = Eigen::Matrix4d;
 
 inline const State kStart(0, 100, 0, -100);
 
-// What is held over a step. force_displacement: the half of m1 has the coupling and holds (x2, v2), that of m2 holds
-// its force; displacement_displacement: both have it, and hold the other's place and speed.
+// Values held over a step. force_displacement: the half of m1 has the coupling and holds (x2, v2), that of m2 holds its
+// force; displacement_displacement: both have it, and hold the other's place and speed.
 enum class Coupling { force_displacement, displacement_displacement };
-// Who steps first, with what is known at the start of the step; the other one then has the end of it.
+// Order of the two sides: the first steps with the values at the start of the step, the second with those at its end.
 enum class Order { jacobi, first_2_then_1, first_1_then_2 };
 
 [[nodiscard]] Map exact_map(const TwoMasses& of, double H);

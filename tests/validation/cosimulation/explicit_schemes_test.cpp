@@ -65,7 +65,7 @@ TEST(ExplicitSchemes, HoldingAForceCreatesTheEnergyOfTheTable) {
   EXPECT_LT((end - State(-4.23826652, 87.88614335, -1.10363885, -137.56219425)).cwiseAbs().maxCoeff(), 1e-7);
 }
 
-// whatever the step, what is not damped grows as its radius says
+// at any step, an undamped system grows by its spectral radius
 TEST(ExplicitSchemes, GrowthFollowsTheRadius) {
   for (const double H : {1e-3, 5e-3, 2e-2}) {
     const Map map = step_map({}, force_displacement, jacobi, H);

@@ -28,7 +28,7 @@ TEST(LevelsOnTheOscillator, TheSplitSystemIsThatOfE01) {
   EXPECT_LT((end - exact_map({}, kTime) * kStart).norm(), 1e-8 * kStart.norm());
 }
 
-// a spring without leak is known exactly by its stiffness and its reference point: what is left is the sub-steps'
+// a spring without leak is exact by its stiffness and its reference point: the remaining error is the sub-steps'
 TEST(LevelsOnTheOscillator, AnOilSpringWithoutLeakIsExactAtAnyStep) {
   for (const Scheme scheme : {kLinear, kTwo, kTwoOverStep}) {
     for (const double H : {1e-3, 1e-2, 0.1}) EXPECT_LT(error(scheme, 0, H), 1e-6 * kStart.norm()) << H;

@@ -12,7 +12,7 @@
 
 namespace slew::cosimulation {
 
-// What the oil knows of the masses within a step.
+// The model of the masses in the oil's step.
 enum class Known { speed_held, mobility_of_the_instant, mobility_of_the_step };
 enum class Force { held, linear };
 

@@ -64,7 +64,7 @@ class CoupledRun {
   session::DirectSession session_;
   SimDuration H_;
   Ages ages_;
-  std::vector<wire::Command> changes_;  // of the next step
+  std::vector<wire::Command> changes_;  // changes of the next step
   StepIndex n_ = 0;
   StepIndex used_ = -1;  // step of the sample that the last step had
   bool had_news_ = false;
@@ -86,12 +86,12 @@ inline constexpr SimDuration kTraceGrid = milliseconds(1);
 [[nodiscard]] Traces reference_traces(const scene::Scene& scene, double duration,
                                       monolith::MonolithOptions options = {});
 
-// What a coupled run did, compared with a reference on the trace grid or on its own, coarser steps.
+// Results of a coupled run, compared with a reference on the trace grid or on its own, coarser steps.
 struct PortError {
   double x = 0;          // largest |x - x_ref| [m]
   double F = 0;          // largest |F - F_ref| [N]
-  double F_range = 0;    // of the reference [N]
-  double F_largest = 0;  // of the reference [N]
+  double F_range = 0;    // force range of the reference [N]
+  double F_largest = 0;  // largest force of the reference [N]
   double work = 0;       // sum |W_mech| [J]
   double residual = 0;   // sum |dE*| [J]
   double net = 0;        // sum dE* [J]

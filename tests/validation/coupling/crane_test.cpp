@@ -132,7 +132,7 @@ TEST(Crane, settles_near_13_degrees_with_1500_kg_and_cannot_lift_them) {
   const double settled = crane.run.variable("Pillar_LiftBoom.position");
   EXPECT_GT(raising_angle_deg(settled), 12);
   EXPECT_LT(raising_angle_deg(settled), 13.2);
-  // full command: the valve's load-sensing limit of 180 bar is below what the load asks for
+  // full command: the valve's load-sensing limit of 180 bar is below the pressure that the load requires
   crane.advance(8, 500);
   const double commanded = crane.run.variable("Pillar_LiftBoom.position");
   EXPECT_NEAR(raising_angle_deg(commanded), raising_angle_deg(settled), 0.3);

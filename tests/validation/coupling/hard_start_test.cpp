@@ -1,8 +1,8 @@
 // The truck crane from 1 bar in every volume (thesis table 13) against a planar crane computed without the libraries:
 // the booms fall onto oil and air, are caught, bounce against rod sides that were filled on the way, and come to rest.
 //
-// Tolerance: 3 mm of falls of 0.54 m and 0.83 m, 1 % of the highest pressure. What the two do not share: the pillar,
-// which rests on a slew cylinder at 1 bar, 45 mm from the jib to the booms' plane, the smooth foot of the
+// Tolerance: 3 mm of falls of 0.54 m and 0.83 m, 1 % of the highest pressure. Parts that the two do not share: the
+// pillar, which rests on a slew cylinder at 1 bar, 45 mm from the jib to the booms' plane, the smooth foot of the
 // anti-cavitation valves, the tabulated oil.
 #include <gtest/gtest.h>
 

@@ -32,7 +32,7 @@ constexpr Body kBodies[] = {{400, 230, 1, {{{-1.30, 0}}}},
 constexpr double kBagDamping = 5000;  // N m s/rad, hook to bag
 
 struct Cylinder {
-  double bore, rod, free_way, closed_length;  // m; free way: chamber less piston; closed: attachment and rod
+  double bore, rod, piston_travel, closed_length;  // m; piston_travel: chamber less piston; closed: attachment and rod
   [[nodiscard]] double area_a() const { return std::numbers::pi / 4 * bore * bore; }
   [[nodiscard]] double area_b() const { return std::numbers::pi / 4 * (bore * bore - rod * rod); }
 };
@@ -173,8 +173,8 @@ PlanarCrane::State PlanarCrane::rates(const State& y) const {
     };
     const double leak = kPistonLeak * (p_a - p_b);
     f[6 + 2 * k] = (valve_flow(p_a) - leak - v * cylinder.area_a()) / capacity(p_a, cylinder.area_a() * s);
-    f[7 + 2 * k] =
-        (valve_flow(p_b) + leak + v * cylinder.area_b()) / capacity(p_b, cylinder.area_b() * (cylinder.free_way - s));
+    f[7 + 2 * k] = (valve_flow(p_b) + leak + v * cylinder.area_b()) /
+                   capacity(p_b, cylinder.area_b() * (cylinder.piston_travel - s));
   }
   const std::array<double, 3> acceleration = accelerations(y, torque);
   for (std::size_t i = 0; i < 3; ++i) {

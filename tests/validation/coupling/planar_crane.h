@@ -1,5 +1,5 @@
 // The truck crane in the plane of its booms, written from the machine's published numbers alone: no code, no table and
-// no integrator of the libraries, so that agreement says something about both.
+// no integrator of the libraries, so that agreement supports both.
 //
 //   mechanics   lift boom, jib boom with attachment and hook, bag as a pendulum; absolute angles theta_k about +z.
 //               A body's centre is H + sum_k R(theta_k) r_k;  M theta'' = sum J^T m (g - J' theta') + torques + F

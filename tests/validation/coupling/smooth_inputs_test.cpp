@@ -22,7 +22,7 @@ namespace smooth_inputs_test {
 
 constexpr SimDuration kDuration = milliseconds(992);
 constexpr SimDuration kGrid = milliseconds(16);
-constexpr std::int64_t kPieceNs = 250'000;  // of the signal that moves
+constexpr std::int64_t kPieceNs = 250'000;  // length of a piece of the moving signal
 constexpr double kOpening = 0.2;            // s, from neutral: no jump at the start
 
 void require_ok(const Status& status) {
@@ -31,7 +31,7 @@ void require_ok(const Status& status) {
 
 struct Machine {
   scene::Scene scene;
-  double mean, swing;  // of the raw value
+  double mean, swing;  // mean and amplitude of the raw value
 
   [[nodiscard]] double raw(double frequency, double t) const {
     const double opened = t < kOpening ? 0.5 - 0.5 * std::cos(std::numbers::pi * t / kOpening) : 1.0;
@@ -57,7 +57,7 @@ Machine crane() {
   return {load("two_dof_crane.yaml", {}), 0.0, 0.2};
 }
 
-// What is compared on the grid.
+// Values compared on the grid.
 enum class Compared { F, x };  // N, m
 
 // On the grid, of a signal that is straight over each piece or held from its beginning

@@ -201,7 +201,7 @@ struct SplitError {
   double s = 0;                 // m, largest
   double F = 0;                 // N, ForceError
   double excess = 0;            // J, largest sum of the interface's energy errors, in size
-  bool creates_energy = false;  // as the indicator says, more than 1.5 s after the last command
+  bool creates_energy = false;  // by the indicator, more than 1.5 s after the last command
 };
 
 // The benchmark's coupling: mechanics holds F, hydraulics holds s and s', both in micro steps of 0.2 ms with RK4;
@@ -317,7 +317,7 @@ SplitError level_error(Level level, double H) {
   scene::Scene scene = load({"hydraulics.relative_tolerance=1e-6"});
   scene.session.step = H;
   scene.session.coupling = level;
-  scene.session.coupling_alarm = scene::CouplingAlarm::warn;  // less than two exchanges to a swing at 20 ms
+  scene.session.coupling_alarm = scene::CouplingAlarm::warn;  // above the Nyquist limit of the exchange at 20 ms
   CoupledRun run(scene);
   EXPECT_TRUE(run.start().is_ok());
   SplitError error;
@@ -340,8 +340,8 @@ SplitError level_error(Level level, double H) {
   return error;
 }
 
-// The spool jumps and the mechanics hears of it one step later: errors of the stroke are those of that step, whatever
-// the level. Between the commands the levels differ.
+// The spool jumps and the mechanics receives it one step later: errors of the stroke are those of that step, at any
+// level. Between the commands the levels differ.
 TEST(TwoDofCrane, levels_are_at_least_as_good_as_the_published_coupling) {
   for (const Level level : {Level::hold, Level::two}) {
     for (const Published& published : {Published{1e-3, 2.68e-5, 0.346}, Published{1e-2, 2.96e-4, 2.19}}) {

@@ -122,7 +122,7 @@ TEST(BentFar, TenTimesTheAllowableIsFlagged) {
   }
 }
 
-// modes of one plane know nothing of a load in the other: rigid there, and finite
+// modes of one plane do not respond to a load in the other: rigid there, and finite
 TEST(BentFar, OneModeIsRigidInTheOtherPlane) {
   MechanicsDef def = clamped_strip(strip_modes(1));
   def.point_forces = {{.name = "Load",

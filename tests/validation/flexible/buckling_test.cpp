@@ -1,5 +1,5 @@
 // Compression of a cantilever close to Euler's load: geometric stiffening of the floating frame, segments, and the
-// linear body that knows nothing of it. Reference: slender_beam.h. Figures: docs/extremes.md.
+// linear body without stiffening. Reference: slender_beam.h. Figures: docs/extremes.md.
 #include "multibody/model/observe.h"
 #include "tests/validation/flexible/strip.h"
 

@@ -55,7 +55,7 @@ TEST(CantileverOfModes, DeflectsAsTheClosedFormSays) {
   for (const int elements : {5, 19}) {
     EXPECT_NEAR(by_load(elements, 4, {}) / kTip, 1, 1e-8) << elements << " elements, all modes";
   }
-  // one bending mode a plane, two, three: what is missing falls
+  // one bending mode a plane, two, three: the error falls
   double before = 1;
   for (const std::vector<int>& kept : {std::vector<int>{1, 2}, {1, 2, 3, 4}, {1, 2, 3, 4, 5, 6}}) {
     const double missing = 1 - by_load(19, 8, kept) / kTip;

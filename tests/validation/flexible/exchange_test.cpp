@@ -1,5 +1,5 @@
 // Elastic forces that a flex node states (coupling study, section 5, scheme A1), in one process: the same motion as
-// without it, at every communication step; what a partner may state, and what is refused.
+// without it, at every communication step; accepted and refused samples of a partner.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +51,8 @@ scene::Scene load(const scene::Overrides& overrides) {
   return scene::load_text(kSlewAndStop, "slew_and_stop", overrides, SLEWRING_SOURCE_DIR "/scenes");
 }
 
-// Mechanics and flex node stepped by hand as their nodes would be; what the flex node states may be changed on the way.
+// Mechanics and flex node stepped by hand as their nodes would be; what the flex node publishes may be changed on the
+// way.
 class Exchange {
  public:
   explicit Exchange(const scene::Scene& scene) : exchange_(scene.session.flexible), mechanics(scene), flex_(scene) {
@@ -309,7 +310,7 @@ TEST_F(Stated, WhatCannotBeAnElasticLawIsRefused) {
       {[](ElasticSample& s) { s.D[0] = -1; }, "elastic forces of 'Boom': the damping of mode 1 is negative"},
       {[](ElasticSample& s) { s.K[0] = -s.K[0]; }, "elastic forces of 'Boom': the stiffness is not positive definite"},
       {[](ElasticSample& s) { s.Q[0] = std::nan(""); }, "elastic forces of 'Boom': a number is not finite"},
-      {[](ElasticSample& s) { s.Q.resize(3); }, "the flex node states 3 modes, mechanics has 4"},
+      {[](ElasticSample& s) { s.Q.resize(3); }, "the flex node publishes 3 modes, mechanics has 4"},
       {[](ElasticSample& s) { s.K[0] *= 1e6; }, "its fastest mode turns with"},
   };
   for (const Case& one : cases) {

@@ -155,7 +155,7 @@ struct Pose {
 };
 
 constexpr int kRigid = 5;
-constexpr double kStep = 1e-4;  // of differences: m, rad
+constexpr double kStep = 1e-4;  // step of differences: m, rad
 
 class Crane {
  public:

@@ -27,7 +27,7 @@ class Linearised {
     rest_.assign(row_positions(m_.ws).begin(), row_positions(m_.ws).end());
   }
 
-  // what is left of the equilibrium [m/s2, rad/s2, 1/s2 of modes]
+  // residual of the equilibrium [m/s2, rad/s2, 1/s2 of modes]
   [[nodiscard]] double unrest() {
     double worst = 0;
     for (const double a : accelerations_at(m_.state)) worst = std::max(worst, std::fabs(a));

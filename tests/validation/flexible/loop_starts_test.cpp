@@ -17,7 +17,7 @@ using math::Vec3;
 
 enum class Bends { by_modes, by_segments };
 
-constexpr double kTight = 1e-9;  // of the largest speed
+constexpr double kTight = 1e-9;  // relative to the largest speed
 
 // A beam of square section along x as the body of that name: with two modes a plane, or in segments.
 void bend(MechanicsDef& def, Bends how, const std::string& body, double length, double side = 0.02) {

@@ -125,7 +125,7 @@ TEST(PrincetonBeam, ErrorsFallWithTheSquareOfTheSegments) {
   EXPECT_NEAR(coarse.twist / fine.twist, 4, 0.4);
 }
 
-// modes: what linear theory says, and no twist
+// modes: linear theory, and no twist
 TEST(PrincetonBeam, ModesGiveTheLinearAnswer) {
   for (const auto& [load, flap] : {std::pair(4.448, 8.0026e-2), {8.896, 1.60052e-1}, {13.345, 2.4010e-1}}) {
     const Tip edge = tip_of(Mechanism(in_modes(load, 0)));

@@ -1,4 +1,4 @@
-// Cantilever of Euler's theory under what a limit adds to it, by shooting: the reference of the extremes. Knows nothing
+// Cantilever of Euler's theory with the loads of a limit case, by shooting: the reference of the extremes. Independent
 // of the libraries.
 //
 //   (E I w'')'' - (T w')' - rho A omega^2 w = f,   T = -P + rho A Omega^2 (L^2 - x^2)/2 + m Omega^2 L        (1)

@@ -50,7 +50,7 @@ MechanicsDef spinning(double speed, const BeamChoice& choice) {
   def.motions = {{.name = "SpinUp", .joint = "Hub", .points = hub_angle(speed)}};
   flex::ReductionDef reduction = flex::testing::with_modes(12);
   reduction.stiffening = choice.stiffening;
-  // of the lowest modes those that bend in the plane
+  // the lowest modes that bend in the plane
   const auto all = slew::testing::modes_of(beam(choice.nodes), reduction, {});
   std::vector<int> kept;
   std::size_t bending = 0, stretching = choice.is_stretching ? 0 : 1;
@@ -134,7 +134,7 @@ TEST(SpinUp, WithoutStiffeningIsWrongAsLinearTheoryIs) {
   print_row("1 rad/s", linear, slow);
 }
 
-// 6 rad/s is above the first frequency, 3.80 rad/s: what is missing is more than the beam's own stiffness
+// 6 rad/s is above the first frequency, 3.80 rad/s: the missing stiffness exceeds the beam's own
 TEST(SpinUp, WithoutStiffeningRunsAwayAboveTheFirstFrequency) {
   const BeamChoice linear{.stiffening = flex::GeometricStiffening::none};
   const SpinUpRun fast = run(kFast, linear, 10);
@@ -152,7 +152,7 @@ TEST(SpinUp, StretchesAsFarAsCentrifugalForceDrawsIt) {
   print_row("6 rad/s, stretching", {.is_stretching = true}, fast);
 }
 
-// More modes come closer until what is left is the beam's theory: the tables of the card.
+// More modes come closer until the difference is that of the beam's theory: the tables of the card.
 TEST(SpinUp, ConvergesWithModesAndNodes) {
   const double bounds[] = {7e-3, 5e-3, 1e-3, 1e-3, 1e-3, 1e-3};
   slew::plotting::MarkGroup by_modes{"modes, 21 nodes"}, by_nodes{"nodes, 3 modes"};

@@ -4,7 +4,7 @@
 //
 // Coordinates z = (theta, q1, q2): M z'' + D z' + K z = 0 with the load m_L at the tip,
 //   M = M_beam + m_L t t^T,   t = (L, phi_1(L), phi_2(L)).
-// Naive splits hold what the other side sent over an exchange; between exchanges every side is exact (matrix
+// Naive splits hold the other side's values over an exchange; between exchanges every side is exact (matrix
 // exponential):
 //   N1  the flexible side is given the hinge's acceleration and the load's reaction, the mechanics the tip's
 //   acceleration
@@ -129,7 +129,7 @@ double naive(double load, double H, bool flex_knows_load) {
   map.put(0, 8, R.block(0, 2, 2, 2));
   map.put(2, 2, F.block(0, 0, 4, 4));
   map.put(2, 6, F.block(0, 4, 4, 2));
-  // what is sent at the end: accelerations with the inputs as they were held
+  // values sent at the end: accelerations with the held inputs
   Matrix of_hinge(1, 10), of_flex(2, 10);
   of_hinge.put(0, 8, B_r.row(1));
   of_hinge += A_r.row(1) * map.block(0, 0, 2, 10);
@@ -160,8 +160,8 @@ TEST(SplitFlexibleBody, HasTheModesOfTheStudy) {
   EXPECT_NEAR(1500 * (j.t[1] * j.t[1] + j.t[2] * j.t[2]), 94, 0.1);
 }
 
-// Nobody should come back to it: smaller steps do not help, the loop gain is a ratio of masses. N2 is the study's to
-// its digits; its N1 grows by 1.3 an exchange at 1500 kg, this one by the loop gain itself.
+// A scheme to avoid: smaller steps do not help, the loop gain is a ratio of masses. N2 equals the study's to its
+// digits; its N1 grows by 1.3 an exchange at 1500 kg, this one by the loop gain itself.
 TEST(SplitFlexibleBody, HeldAccelerationsAreUnstableAtEveryStep) {
   for (const double load : kLoads) {
     show("N1", load, [](double m, double H) { return naive(m, H, false); });

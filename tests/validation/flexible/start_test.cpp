@@ -142,7 +142,7 @@ TEST(FlexibleStart, TooFastModesAreRefusedByName) {
   EXPECT_TRUE(problems.empty()) << text_of(problems);
 }
 
-// what is just below the bound stays bounded, what is just above it does not
+// a motion just below the bound stays bounded, one just above it does not
 TEST(FlexibleStart, TheBoundOfTheSubstepIsWhereRungeKuttaEnds) {
   MechanicsDef def = level_boom(0.1, 2e11, lowest(2));
   def.flexible_bodies[0].start = {1e-3, 1e-3, 1e-3, 1e-3};

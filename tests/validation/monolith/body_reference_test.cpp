@@ -59,7 +59,7 @@ TEST(References, AgreeOnTheSpatialSliderCrank) {
   EXPECT_LT(difference(multibody::testing::slider_crank(), {0, 0.1, 0.3, 0.5, 1}, 1e-12), 1e-9);
 }
 
-// and end where the IVP test set of Bari says
+// and end at the values of the IVP test set of Bari
 TEST(References, AgreeOnAndrewsSqueezer) {
   MechanicsDef def = multibody::testing::squeezer();
   def.point_torques.push_back({.name = "Drive", .body = "K1", .direction = {0, 0, 1}, .torque = 0.033});

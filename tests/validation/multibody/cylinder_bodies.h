@@ -10,7 +10,7 @@
 
 namespace slew::multibody::testing {
 
-// What the dummies of a force carry at one end, as a body on the line with x along it.
+// Masses of a force's dummies at one end, as a body on the line with x along it.
 struct LineMass {
   double mass = 0, center = 0, transverse = 0;  // kg, m, kg m2
 };

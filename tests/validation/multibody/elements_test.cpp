@@ -42,7 +42,7 @@ BeamDef cantilever(double shear_factor) {
           .shear_factor_z = shear_factor};
 }
 
-// Wrench that holds the load's body where `displaced` puts it: minus what the beam does.
+// Wrench that holds the load's body where `displaced` puts it: minus that of the beam.
 struct Holding {
   Vec3 force, moment;
 };

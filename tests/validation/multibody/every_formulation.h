@@ -1,4 +1,4 @@
-// A case of the validation in every formulation, and what it reached beside the tolerance that the case states.
+// A case of the validation in every formulation, and its result beside the stated tolerance.
 //
 // With SLEWRING_FIGURES set every figure is printed as a row of the tables in docs/validation.
 #pragma once
@@ -14,7 +14,7 @@
 
 namespace slew::multibody::testing {
 
-// `stated`: tolerance of the case; `bound`: what is asserted, looser only where the card says why.
+// `stated`: tolerance of the case; `bound`: asserted bound, looser only with a reason in the card.
 struct Figure {
   std::string what;  // with its unit
   double reached = 0, stated = 0;

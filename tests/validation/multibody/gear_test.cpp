@@ -3,7 +3,7 @@
 // Geared pendulums, q_2 = r q_1: (J_1 + r^2 J_2) q_1'' = -G_1 sin q_1 - r G_2 sin q_2, J about the pivot, G = m g l;
 // their speed from the energy. Rack that falls and turns its pinion: x'' = g / (1 + J/(m R^2)). Telescope whose second
 // stage goes out with the first, up against gravity: (m_1 + 4 m_2) q'' = F - (m_1 + 2 m_2) g.
-// Tolerances: what the gear holds 1e-9 (penalty: F/(alpha omega^2)), motion by the order of the rule.
+// Tolerances: the gear's ratio 1e-9 (penalty: F/(alpha omega^2)), motion by the order of the rule.
 #include <cmath>
 #include <tuple>
 
@@ -78,7 +78,7 @@ class Geared : public ::testing::TestWithParam<Choice> {
     def.integrator = rule();
     return Formulated(def);
   }
-  // of coordinates that a gear holds
+  // tolerance of coordinates held by a gear
   [[nodiscard]] static double held() { return formulation() == Formulation::penalty ? 1e-6 : 1e-9; }
   // of motion at 1 ms: of fourth, second and first order
   [[nodiscard]] static double followed() {
@@ -182,7 +182,7 @@ TEST_P(GearedForces, OfATelescopeCarryWhatGoesOutWithIt) {
   constexpr double F = 900, m1 = 30, m2 = 20;
   const double a = (F - (m1 + 2 * m2) * kGravity) / (m1 + 4 * m2);
   stages.dynamics.evaluate(stages.model, stages.state, stages.ws);
-  // what the port sees
+  // values at the port
   EXPECT_NEAR(row_mobility(stages.ws)[0], 1 / (m1 + 4 * m2), tolerance() / (m1 + 4 * m2));
   EXPECT_NEAR(row_free_accelerations(stages.ws)[0], -(m1 + 2 * m2) * kGravity / (m1 + 4 * m2), tolerance());
   stages.run(0.3, 1e-3, {F});

@@ -101,7 +101,7 @@ TEST(PenaltyFourBars, NeverGetWorseWithALargerFactor) {
       expect_figure("A02", "penalty, 1 ms",
                     {"N=" + std::to_string(n) + ": pins to 4 s, f " + std::to_string(factor), error,
                      std::max(1e-6, 50 / factor)});
-      // what the step leaves does not fall any more
+      // the residual of the step does not decrease any more
       EXPECT_LT(error, before + 1e-6) << n << ", " << factor;
       before = error;
     }

@@ -54,7 +54,7 @@ TEST_P(SimplePendulum, FollowsTheEllipticFunctions) {
   }
 }
 
-// against the exact end; what a penalty leaves beside its step's error is taken out by steps of its own
+// against the exact end; steps of its own remove the error of a penalty beside that of its step
 TEST_P(SimplePendulum, ConvergesWithTheOrderOfItsRule) {
   const auto end_after = [](double h) {
     Formulated pendulum = start(simple_pendulum());

@@ -104,7 +104,7 @@ TEST_P(StiffElement, BushingsHoldTheirBodiesAsTheirStatics) {
 }
 
 // a force that grows by 1 kN in 0.1 s along a spring that follows it at 30,000 rad/s: F(t)/k, behind it by the damper's
-// time and by what the trapezoid keeps of the start
+// time and by the start transient that the trapezoid keeps
 TEST_P(StiffElement, BushingFollowsASlowForceQuasiStatically) {
   MechanicsDef def = on_bushings(1, 1e-4);
   def.gravity = {};

@@ -5,7 +5,7 @@
 //   M11 = I1 + m1 c1^2 + I2 + m2 (L1^2 + c2^2 + 2 L1 c2 cos q2),  M12 = I2 + m2 (c2^2 + L1 c2 cos q2),  M22 = I2 + m2
 //   c2^2 k1 = -h (2 q1' q2' + q2'^2),  k2 = h q1'^2,   h = m2 L1 c2 sin q2 g1 = -g ((m1 c1 + m2 L1) sin q1 + m2 c2
 //   sin(q1 + q2)),  g2 = -g m2 c2 sin(q1 + q2) M q'' = tau - k - g
-// Both are exact, what is left is rounding.
+// Both are exact, the difference is rounding.
 #include <fstream>
 #include <sstream>
 

@@ -86,7 +86,7 @@ TEST(TurnedInertia, OfMassesOnAFrameIsTheirSumInTheLinksAxes) {
   const std::vector<PointMass> masses = {
       {1, {0.3, 0.1, -0.2}}, {2, {-0.4, 0.5, 0.1}}, {0.5, {0.2, -0.6, 0.7}}, {1.5, {0, 0.2, 0.4}}};
   constexpr double kRoll = 0.4, kPitch = -0.9, kYaw = 2.1;
-  const Triple offset{0.2, -0.3, 0.5};  // of the inertial frame's origin, which is the centre of mass
+  const Triple offset{0.2, -0.3, 0.5};  // offset of the inertial frame's origin, which is the centre of mass
   double mass = 0;
   Triple centre, moments, products;
   sum(masses, mass, centre, moments, products);

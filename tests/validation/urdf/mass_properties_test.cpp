@@ -112,7 +112,7 @@ TEST(MassProperties, ThatNoBodyHasAreRefusedWithTheirLineAndRepairedOnRequest) {
 }
 
 TEST(MassProperties, AreRepairedInTheirOwnAxes) {
-  // the same tensor turned by 0.5 about x: what is repaired keeps the largest moment and its axis
+  // the same tensor turned by 0.5 about x: the repaired tensor keeps the largest moment and its axis
   const double s = std::sin(0.5), c = std::cos(0.5), low = 0.01, high = 0.5;
   const Outcome repaired = outcome(
       robot(bare("base") +

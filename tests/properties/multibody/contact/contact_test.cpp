@@ -1,5 +1,5 @@
-// Contact of bodies that move freely: momentum stays, energy does not grow, both formulations say the same, whatever
-// falls how.
+// Contact of bodies that move freely: momentum stays, energy does not grow, both formulations agree, for all shapes and
+// motions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -84,7 +84,7 @@ TEST_F(FreeContact, TakesEnergyAway) {
       rise = std::max(rise, now - least);
       least = std::min(least, now);
     }
-    // shares of points of unequal depth are no potential: a rocking box gets back a little of what it gave
+    // shares of points of unequal depth are no potential: a rocking box regains a little energy
     EXPECT_LT(rise, 1e-2 * start);
     EXPECT_LT(least, 0.6 * start);
     EXPECT_GT(motion.pose("Box").position[1], 0.1 - 1e-3);

@@ -183,7 +183,7 @@ TEST_P(Block, TouchingIsPartOfTheStateHash) {
   EXPECT_NE(hash_of(motion), before);
 }
 
-// a rolled back state goes on with the same bits
+// a restored state continues with the same bits
 TEST(Blocks, GoOnWithTheSameBitsFromACopy) {
   // in joint coordinates: those of bodies are kept inside Dynamics
   Motion motion(block(30 * kDegree, 0.3));

@@ -36,8 +36,8 @@ std::vector<Way> formulations() {
 class Stack : public EveryWay {};
 INSTANTIATE_TEST_SUITE_P(All, Stack, ::testing::ValuesIn(formulations()), name_of_way);
 
-// nothing said about sub-steps: damping at rest a N / v_min / m = 3.1 x 10 g / 0.1 = 3e3 1/s, more between two boxes
-// that swing, which parts of 0.1 ms do not resolve
+// default sub-steps: damping at rest a N / v_min / m = 3.1 x 10 g / 0.1 = 3e3 1/s, more between two boxes that swing,
+// too fast for parts of 0.1 ms
 TEST_P(Stack, OfTenBoxesStandsAtTheDepthOfItsWeight) {
   const MechanicsDef def =
       stack(std::vector<double>(10, 1.0), {.stiffness = 1e6, .restitution = 0.3, .smallest_impact_speed = 0.1});
@@ -158,7 +158,7 @@ TEST_P(Bullet, OfAKilometreASecondBouncesOffAThinWall) {
   EXPECT_LT(motion.pose("Ball").position[0], 0);
 }
 
-// so thin that the parts of a sub-step do not resolve it: it goes through, and the step says so
+// so thin that the parts of a sub-step do not resolve it: the bullet passes through, and the step reports it
 TEST_P(Bullet, ThatPassesUnseenIsFlagged) {
   MechanicsDef def = bullet(1e3, 1e-5);
   def.shapes[0].radius = 1e-4;

@@ -214,7 +214,7 @@ TEST_P(Parts, OfTheImplicitRuleDoNotAllocate) {
   EXPECT_GT(settling, 100);
 }
 
-// what is carried from part to part is the state alone
+// only the state is carried from part to part
 TEST_P(Parts, OfTheImplicitRuleGoOnFromASavedStateWithTheSameBits) {
   const MechanicsDef def = body_between_pads("capsule", 0.1);
   Motion whole(def, GetParam()), resumed(def, GetParam());

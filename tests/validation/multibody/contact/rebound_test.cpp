@@ -90,7 +90,7 @@ TEST_P(Bounces, ReachTheApexesOfTheIdealBall) {
   EXPECT_TRUE(motion.is_sound);
 }
 
-// e = 1: the springs give back what they take; deepest point of the drop from 1 m
+// e = 1: the springs return their energy; deepest point of the drop from 1 m
 TEST(ElasticBall, KeepsItsEnergy) {
   MechanicsDef def = ball(1, 1e5, 1, 0, 9.81);
   def.contact_substep = 2e-5;

@@ -130,7 +130,7 @@ TEST_P(LongChain, OfTenAHundredAndThreeHundredLinksFallsRight) {
   }
 }
 
-// the other rules, at the step of 1 ms: what an iteration cannot settle is flagged
+// the other rules, at the step of 1 ms: an iteration without convergence is flagged
 class MassRatioUnder : public ::testing::TestWithParam<Choice> {};
 
 TEST_P(MassRatioUnder, OfAMillionIsRightOrFlagged) {

@@ -83,7 +83,7 @@ struct OneAngle {
 
 class Toggle : public EveryFormulation {};
 
-// an unstable balance: what is wrong at the start has grown a millionfold at the end
+// an unstable balance: an error at the start has grown a millionfold at the end
 TEST_P(Toggle, PressIsLeftAsItsEquationSays) {
   for (const double angle : {1e-6, -1e-6}) {
     OneAngle reference{angle, 0};
