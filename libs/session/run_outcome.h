@@ -47,10 +47,10 @@ struct RunOptions {
   bool is_monolithic = false;
   std::string rtol;  // relative tolerance of a monolithic run; empty: the scene's
   bool is_real_time = false;
-  bool is_refusal_reported = false;   // that it was refused: not once more
-  std::string cpus;               // "mechanics=1, hydraulics=0"; empty: as the scene says
-  double added_work_us = 0;       // CPU time that every step of a physics node burns beside its own
-  std::vector<std::string> kept;  // patterns of variables whose curves the outcome's view keeps
+  bool is_refusal_reported = false;  // that it was refused: not once more
+  std::string cpus;                  // "mechanics=1, hydraulics=0"; empty: as the scene says
+  double added_work_us = 0;          // CPU time that every step of a physics node burns beside its own
+  std::vector<std::string> kept;     // patterns of variables whose curves the outcome's view keeps
   std::shared_ptr<RunWatcher> watcher = std::make_shared<RunWatcher>();  // never null
   bool is_json = false;
   bool is_quiet = false;
