@@ -126,8 +126,8 @@ std::vector<int> kept_modes(const ReportOptions& options, const flex::ReducedBod
       scene::read_quantity(options.highest, scene::Writing::plain, Dimension::frequency, units);
   if (!highest.value)
     throw Failure(ExitCode::bad_input,
-                  fmt::format("--frequency-up-to: {}{}", highest.complaint.what,
-                              highest.complaint.expected.empty() ? "" : "; expected " + highest.complaint.expected));
+                  fmt::format("--frequency-up-to: {}{}", highest.problem.what,
+                              highest.problem.expected.empty() ? "" : "; expected " + highest.problem.expected));
   const std::vector<int> ordinals = flex::modes_up_to(body, 2 * M_PI * *highest.value);
   if (ordinals.empty())
     throw Failure(ExitCode::bad_input,

@@ -160,7 +160,7 @@ std::vector<std::string> stall_variables(const scene::Scene& scene) {
   std::vector<std::string> names;
   for (const Drive& drive : drives_of(scene)) {
     for (std::string& name : variables_of(drive)) names.push_back(std::move(name));
-    names.push_back(drive.cylinder->name + ".static_force_per_kg");
+    names.push_back(drive.name + ".static_force_per_kg");
   }
   for (const multibody::BodyDef& body : scene.mechanics.bodies) {
     if (!names.empty()) names.push_back(body.name + ".mass");

@@ -363,7 +363,7 @@ class Supervisor {
 
   void report_kill(const Node& node, const std::string& what_follows) {
     is_node_killed_ = true;
-    say_kill(node, what_follows);
+    report_process_end(node, what_follows);
     if (deadline_ns_ == 0) deadline_ns_ = end_deadline_ns();
   }
 

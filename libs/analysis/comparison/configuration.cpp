@@ -77,7 +77,7 @@ double read_step(const char* option, const std::string& text) {
   scene::UnitSystem units;
   const scene::QuantityResult read = scene::read_quantity(text, scene::Writing::plain, Dimension::time, units);
   if (!read.value)
-    refuse(fmt::format("{}: '{}' {}; expected a time such as '0.5 ms'", option, text, read.complaint.what));
+    refuse(fmt::format("{}: '{}' {}; expected a time such as '0.5 ms'", option, text, read.problem.what));
   const Range range = find_field(kSubstep)->range;
   if (!range.contains(*read.value)) {
     refuse(fmt::format("{}: {} is out of range; expected {} to {}", option, step_text(*read.value),

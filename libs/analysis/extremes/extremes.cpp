@@ -62,13 +62,14 @@ class Examiner {
     const scene::Scene scene = scene::load_scene(scene_options);
     const std::string text = scene_text(scene);
     for (const ExtremeCase& one : extreme_cases(scene)) {
-      result_.rows.push_back({.scene = scene.name,
-                              .name = one.name,
-                              .what = one.what,
-                              .group = one.group,
-                              .obstacle = one.obstacle.empty() ? lack_of_effect(one, options, scene) : one.obstacle,
-                              .failure = {},
-                              .result = {}});
+      result_.rows.push_back(
+          {.scene = scene.name,
+           .name = one.name,
+           .what = one.what,
+           .group = one.group,
+           .obstacle = one.obstacle.empty() ? lack_of_effect(one, scene_options, scene) : one.obstacle,
+           .failure = {},
+           .result = {}});
       files_.push_back(file);
       texts_.push_back(text);
     }

@@ -115,7 +115,7 @@ ErrorBound parse_error(const std::string& text, const Tradeoff& tradeoff) {
     scene::UnitSystem units;
     const Dimension dimension = tradeoff.variables[bound.variables.front()].dimension;
     const scene::QuantityResult read = scene::read_quantity(quantity, scene::Writing::plain, dimension, units);
-    if (!read.value) throw refuse("'" + quantity + "' " + read.complaint.what);
+    if (!read.value) throw refuse("'" + quantity + "' " + read.problem.what);
     bound.bound = *read.value;
   }
   if (!(bound.bound > 0)) throw refuse("the bound is not positive");

@@ -109,10 +109,10 @@ TEST_F(Extent, EndsInFrontOfTheFirstGapHoweverLongItIs) {
 }
 
 TEST_F(Extent, BeginsNotWithTheStatesThatFollowAGap) {
-  say(Topic::mechanism, kJoinStep, Phase::init);
+  write_message(Topic::mechanism, kJoinStep, Phase::init);
   run(0, 300);
   run(320, 400);
-  say(Topic::state, 410);
+  write_message(Topic::state, 410);
   run(401, 500);
   const RecordedExtent torn = extent();
   EXPECT_EQ(torn.first_step, 0);
