@@ -85,11 +85,8 @@ std::string text_of(const AttachmentComparison& comparison) {
   if (!comparison.obstacle.empty())
     return fmt::format("\n  clamped beside free: not available, {}\n", comparison.obstacle);
   std::string text = fmt::format(
-      "
-      share of the compliance of node {} with node {} held,
-      by modes of a clamped and of a free body frame
-          "
-          "  modes           clamped x, y, z [%]     free x, y, z [%]\n",
+      "\n  share of the compliance of node {} with node {} held, by modes of a clamped and of a free body frame\n"
+      "  modes           clamped x, y, z [%]     free x, y, z [%]\n",
       comparison.tip, fmt::join(comparison.reference_nodes, ", "));
   for (const AttachmentShares& row : comparison.rows)
     fmt::format_to(std::back_inserter(text), "  {:<16}{:<24}{}\n", row.modes, text_of(row.clamped), text_of(row.free));

@@ -320,7 +320,7 @@ TEST(Load, ATextThatIsTooLongForTheWireIsRefused) {
     (void)load_text(std::move(text), "long");
     FAIL();
   } catch (const LoadError& error) {
-    EXPECT_NE(std::string(error.what()).find("when it is sent to the nodes; expected at most 8388608"),
+    EXPECT_NE(std::string(error.what()).find("when published to the nodes; expected at most 8388608"),
               std::string::npos)
         << error.what();
   }
