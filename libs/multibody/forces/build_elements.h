@@ -9,7 +9,7 @@
 
 namespace slew::multibody {
 
-// What a row's build() knows of the model whose bodies are placed.
+// The model whose bodies are placed, as a row's build() reads and extends it.
 class ElementBuilder {
  public:
   // poses: of all bodies at the start.

@@ -1,8 +1,8 @@
 // What a force kind adds its stiffness and damping to: an implicit step's matrix over the speeds of all links.
 //
 // What an element's force loses by a change u of the speeds, A u = (position K + rate D) u, is added between points and
-// frames of links. Parts that would make the sum indefinite (pushes, falling tables) are left out by who adds them: the
-// sum stays symmetric and positive semi-definite. Equations: formulations/link_stiffness.h, which has its functions.
+// frames of links. A kind leaves out the parts that would make the sum indefinite (pushes, falling tables): the sum
+// stays symmetric and positive semi-definite. Equations: formulations/link_stiffness.h, whose source has the functions.
 #pragma once
 
 #include <span>

@@ -15,7 +15,7 @@ namespace slew::multibody {
 enum class TableUse : std::uint8_t { any, spring, damper, rope_spring };
 void check_table(const std::string& path, const Table& table, TableUse use, Problems& problems);
 
-// What a row's check() reports to.
+// The problems that a row's check() finds.
 class ElementRules {
  public:
   ElementRules(const MechanicsDef& mechanics, Problems& problems) : number_of_(mechanics), problems_(problems) {}
@@ -44,7 +44,7 @@ class ElementRules {
   bool names_hold_ = true;
 };
 
-// What a row's check_start() knows of the poses that a scene starts from, and reports to.
+// The poses that a scene starts from, and the problems that a row's check_start() finds.
 class ElementStartRules {
  public:
   // poses: of all bodies; all names are known.

@@ -149,7 +149,7 @@ TEST(DoubleRodCylinder, starts_around_the_mean_pressure_and_holds_its_load) {
 }
 
 // areas, lengths and ratios by hand
-TEST(ActuatorFacts, say_what_a_cylinder_of_any_type_is_to_the_mechanics) {
+TEST(ActuatorFacts, of_every_type_of_cylinder_are_its_geometry_by_hand) {
   const auto with_common = [](auto def) {
     def.common.force = "Force", def.common.port_a = "Vol_A", def.common.port_b = "Vol_B";
     def.common.piston_diameter = 0.1, def.common.minimum_stroke = 0.02, def.common.maximum_stroke = 0.7;
