@@ -147,17 +147,17 @@ TEST_P(HungNode, ThatComesBackWithinGiveUpAfterGoesOnWithTheSameBits) {
   patient.insert(patient.end(), {"--set", "session.give_up_after=20"});
   Session session(patient, scene_with(GetParam()));
   start_with(GetParam(), session);
-  ASSERT_TRUE(session.observer().wait_for_step(100)) << session.said();
+  ASSERT_TRUE(session.observer().wait_for_step(100)) << session.errors();
   session.node(GetParam()).send(SIGSTOP);
   const std::int64_t stopped_ns = monotonic_ns();
-  EXPECT_TRUE(is_waited_for(session, GetParam(), session.node(GetParam()))) << session.said();
+  EXPECT_TRUE(is_waited_for(session, GetParam(), session.node(GetParam()))) << session.errors();
   sleep_until_monotonic(stopped_ns + 3'000'000'000);
   session.node(GetParam()).send(SIGCONT);
   const std::map<Role, int> codes = session.wait_all();
   const RecordedSession recorded = session.recorded();
   const std::string lost = recorded.summary.at("variables.lost");
   for (const auto& [role, code] : codes) {
-    EXPECT_EQ(code, role == Role::recorder && lost != "0" ? 3 : 0) << node::to_text(role) << session.said();
+    EXPECT_EQ(code, role == Role::recorder && lost != "0" ? 3 : 0) << node::to_text(role) << session.errors();
   }
   EXPECT_EQ(recorded.problem, "");
   EXPECT_EQ(recorded.losses(), std::stoll(lost)) << "no tick and no sample";
