@@ -46,9 +46,9 @@ void CouplingAlarm::write_text(std::size_t port, coupling::Level level) noexcept
                                                            : "a shorter session.step";
   const auto written = fmt::format_to_n(
       text_.data(), text_.size(),
-      "{}: the coupling diverges: over the last second the works of both sides have differed by {:.2g} % of the work "
-      "done, not by one jump alone, and the machine swings on its oil by {:.2g} from one exchange to the next; use {}, "
-      "or session.coupling_alarm: warn to go on with red lamps",
+      "{}: the coupling diverges: over the last second the works of both sides differed by {:.2g} % of the work "
+      "done, in several exchanges, at omega_H = {:.2g} of the oil-spring oscillation; use {}, or "
+      "session.coupling_alarm: warn to continue with red lamps",
       scene_.ports[port].name, 1e2 * indicator_.own_residual(port), indicator_.omega_H(), remedy);
   text_length_ = std::min(written.size, text_.size());
 }

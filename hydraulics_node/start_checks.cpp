@@ -20,12 +20,12 @@ Status check_pressures(const scene::Scene& scene, const hydraulics::Circuit& cir
   if (demand->pressure >= 0) {
     limit = demand->valve.empty()
                 ? fmt::format("a chamber without a relief valve is taken to hold {:.0f} bar", demand->limit / kBar)
-                : fmt::format("{} lets its oil out from {:.4g} bar on", demand->valve, demand->limit / kBar);
+                : fmt::format("{} opens fully at {:.4g} bar", demand->valve, demand->limit / kBar);
   }
   const std::string contacts = scene::deep_starts(scene);
   return Status::error(
       ExitCode::failed,
-      fmt::format("hydraulics.start: equilibrium asks for {:.4g} bar in {} to hold {:.4g} kN on {}, but {}. {}",
+      fmt::format("hydraulics.start: equilibrium requires {:.4g} bar in {} to hold {:.4g} kN on {}, but {}. {}",
                   demand->pressure / kBar, circuit.volume_name(demand->volume), F[actuator] / kKilo,
                   scene.ports[actuator].name, limit,
                   contacts.empty() ? "Lighten the load or begin in another pose, or set hydraulics.start: table13"
@@ -54,15 +54,15 @@ Status check_coupling(const scene::Scene& scene, const coupling::PortMatrix& W, 
   const double omega_H = coupling::coupling_frequency(W, stiffness, H);
   const double limit = is_free_running ? coupling::kMostLate : coupling::kMostSampled;
   if (!(omega_H > limit)) return Status::ok();
-  const char* const why = is_free_running ? "which samples that are a step late, as those of free_running, do not bear"
-                                          : "so that there are less than two exchanges to a swing";
+  const char* const bound = is_free_running
+                                ? "above the limit for samples that are a step late (session.mode: free_running)"
+                                : "above the Nyquist limit of the exchange";
   return Status::error(
       ExitCode::failed,
       fmt::format(
-          "session.coupling: the machine swings on its oil by omega_H = {:.2g} from one exchange to the next in "
-          "{:.3g} ms, {}: at most {:.2g}. Nothing was run. Set {} below {:.2g} ms{}, or session.coupling_alarm: "
-          "warn to run it all the same",
-          omega_H, 1e3 * H, why, limit, exchange_every > 1 ? "the time between two exchanges" : "session.step",
+          "session.coupling: the oil-spring oscillation has omega_H = {:.2g} at one exchange in {:.3g} ms, {}: at most "
+          "{:.2g}. Nothing was run. Set {} below {:.2g} ms{}, or session.coupling_alarm: warn to run it nevertheless",
+          omega_H, 1e3 * H, bound, limit, exchange_every > 1 ? "the time between two exchanges" : "session.step",
           1e3 * H * limit / omega_H, is_free_running ? ", or session.mode: lockstep" : ""));
 }
 

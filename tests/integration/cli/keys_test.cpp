@@ -369,7 +369,7 @@ TEST_F(Keys, HoldersCannotGrantThemselvesMore) {
   EXPECT_NE(problems()["guest"].find("is not signed by"), std::string::npos);
   const CommandResult forged = start();
   EXPECT_EQ(forged.code, 2) << forged.err;
-  EXPECT_NE(forged.err.find("the keys of this process are not good"), std::string::npos) << forged.err;
+  EXPECT_NE(forged.err.find("the keys of this process are not valid"), std::string::npos) << forged.err;
 }
 
 TEST_F(Keys, AProcessWithWrongOnesOrNoneIsIgnoredAndReported) {

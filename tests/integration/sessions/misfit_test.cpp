@@ -74,7 +74,7 @@ TEST(Misfits, AreNamedByIoAtItsSecondLookAtTheLatest) {
   Endpoint other_layout(What::writer, other_fields, input,
                         "type slewring::ControllerInput of another layout (built from another idl/slewring.idl)");
   Endpoint durable_reader(What::reader, slewring_Tick_desc, "slewring/tick",
-                          "a durability above the one the writer offers (volatile)");
+                          "a durability above the one that the writer offers (volatile)");
   dds_qset_durability(durable_reader.qos(), DDS_DURABILITY_TRANSIENT_LOCAL);
 
   Session session({"--pace", "real", "--duration", "0", "--no-record"});

@@ -240,13 +240,13 @@ TEST(CycloneInterop, AnEndpointWithTheWrongTypeOrQosIsNamed) {
       misfits,
       (std::vector<std::string>{
           program_name +
-              "reads topic 'slewring/control_request' with a durability above the one the writer offers (volatile); "
+              "reads topic 'slewring/control_request' with a durability above the one that the writer offers (volatile); "
               "it receives nothing; see idl/README.md",
           program_name +
               "writes topic 'slewring/mechanism' with reliability best effort, and the reader requests reliable; it is "
               "ignored; see idl/README.md",
           program_name +
-              "writes topic 'slewring/session' with a durability below the one the reader requests (transient "
+              "writes topic 'slewring/session' with a durability below the one that the reader requests (transient "
               "local); it is ignored; see idl/README.md",
           program_name +
               "writes topic 'slewring/tick' with type slewring::NodeStatus, which is slewring::Tick here; it is "
@@ -306,15 +306,15 @@ INSTANTIATE_TEST_SUITE_P(
     Of, ForeignQos,
     ::testing::Values(
         QosMisfit{"Deadline", false, [](dds_qos_t* qos) { dds_qset_deadline(qos, DDS_MSECS(100)); },
-                  "a deadline shorter than the one the writer offers (none is expected)"},
+                  "a deadline shorter than the one that the writer offers (none is expected)"},
         QosMisfit{"LatencyBudget", true, [](dds_qos_t* qos) { dds_qset_latency_budget(qos, DDS_MSECS(1)); },
-                  "a latency budget above the one the reader requests (0 is expected)"},
+                  "a latency budget above the one that the reader requests (0 is expected)"},
         QosMisfit{"LivelinessKind", false,
                   [](dds_qos_t* qos) { dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_INFINITY); },
                   "another kind of liveliness (automatic is expected)"},
         QosMisfit{"LivelinessLease", false,
                   [](dds_qos_t* qos) { dds_qset_liveliness(qos, DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(500)); },
-                  "a lease of its liveliness shorter than the one the writer offers (none is expected)"},
+                  "a lease of its liveliness shorter than the one that the writer offers (none is expected)"},
         QosMisfit{"DestinationOrder", false,
                   [](dds_qos_t* qos) { dds_qset_destination_order(qos, DDS_DESTINATIONORDER_BY_SOURCE_TIMESTAMP); },
                   "another destination order (by reception timestamp is expected)"},

@@ -203,7 +203,7 @@ TEST(Validate, WarnsOfTheInertiaPrintedForTheJibBoom) {
 }
 
 TEST(Validate, NamesPartsThatNothingKeepsFromSpinning) {
-  expect_problem([](auto& d) { d.bodies[1].inertia = {}; }, "Ball", "has no inertia about a direction");
+  expect_problem([](auto& d) { d.bodies[1].inertia = {}; }, "Ball", "has no inertia about one of its free directions");
   expect_problem(
       [](auto& d) {
         d.bodies[0].inertia = d.bodies[0].center_of_mass = {};
@@ -213,7 +213,7 @@ TEST(Validate, NamesPartsThatNothingKeepsFromSpinning) {
         d.static_dummies.clear();
         d.force_dummies.clear();
       },
-      "Hinge", "has no inertia about a direction");
+      "Hinge", "has no inertia about one of its free directions");
 }
 
 TEST(Validate, WantsJointFramesToAgreeAtTheStart) {

@@ -92,7 +92,7 @@ TEST_F(RecoveredRecording, HoldsEveryWholeChunkAfterACutAtAnyByte) {
     const Status status = recover_content(std::string_view(whole_).substr(0, cut));
     if (cut < attachment_at_) {
       ASSERT_EQ(status.code, ExitCode::bad_input);
-      ASSERT_NE(status.text.find("nothing can be recovered"), std::string::npos) << status.text;
+      ASSERT_NE(status.text.find("recovery is not possible"), std::string::npos) << status.text;
       ASSERT_FALSE(std::filesystem::exists(recovered()));
       continue;
     }
@@ -117,7 +117,7 @@ TEST_F(RecoveredRecording, LosesNoMoreThanTheChunkInWhichABitChanged) {
     if (!status.is_ok()) {
       // the identity, or a Mark beside it
       ASSERT_LT(at, attachment_at_ + 100) << status.text;
-      ASSERT_NE(status.text.find("nothing can be recovered: from byte "), std::string::npos) << status.text;
+      ASSERT_NE(status.text.find("recovery is not possible: from byte "), std::string::npos) << status.text;
       ASSERT_FALSE(std::filesystem::exists(recovered()));
       continue;
     }
