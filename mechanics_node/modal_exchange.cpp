@@ -62,10 +62,11 @@ multibody::ElasticLaw ModalExchange::law_of(const ElasticSample& sample, const B
 
 Status ModalExchange::begin(const multibody::MechanicsDef& mechanics, const ElasticSample& sample, Model& model) {
   if (!has_sizes(sample)) {
-    return Status::error(ExitCode::failed,
-                         fmt::format("the flex node publishes {} modes, mechanics has {}: the nodes run different scenes; "
-                                     "start them with the same one",
-                                     sample.Q.size(), modes_));
+    return Status::error(
+        ExitCode::failed,
+        fmt::format("the flex node publishes {} modes, mechanics has {}: the nodes run different scenes; "
+                    "start them with the same one",
+                    sample.Q.size(), modes_));
   }
   Model with = model;
   bool is_own = true;

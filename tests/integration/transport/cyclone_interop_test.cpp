@@ -239,9 +239,9 @@ TEST(CycloneInterop, AnEndpointWithTheWrongTypeOrQosIsNamed) {
   EXPECT_EQ(
       misfits,
       (std::vector<std::string>{
-          program_name +
-              "reads topic 'slewring/control_request' with a durability above the one that the writer offers (volatile); "
-              "it receives nothing; see idl/README.md",
+          program_name + "reads topic 'slewring/control_request' with a durability above the one that the writer "
+                         "offers (volatile); "
+                         "it receives nothing; see idl/README.md",
           program_name +
               "writes topic 'slewring/mechanism' with reliability best effort, and the reader requests reliable; it is "
               "ignored; see idl/README.md",

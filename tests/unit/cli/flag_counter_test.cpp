@@ -28,11 +28,10 @@ TEST(FlagCounter, ARepeatedSampleIsCountedOnce) {
   FlagCounter flags;
   for (const StepIndex step : {0, 1, 2, 2, 1, 3}) take(flags, step, StepFlag::beyond_oil_law);
   EXPECT_EQ(flags.missed(0), 0u);
-  EXPECT_EQ(
-      flag_sentences(flags, milliseconds(1), {"Tank", "Line"}),
-      std::vector<std::string>{
-          "hydraulics: Line: a pressure was beyond what the oil's law is good for (1000 bar) in 4 steps, first at "
-          "0; limit it: a relief valve on the line, a lower load or setting"});
+  EXPECT_EQ(flag_sentences(flags, milliseconds(1), {"Tank", "Line"}),
+            std::vector<std::string>{
+                "hydraulics: Line: a pressure was beyond the range of the oil's law (1000 bar) in 4 steps, first at "
+                "0; limit it: a relief valve on the line, a lower load or setting"});
 }
 
 TEST(FlagCounter, SamplesThatDidNotArriveAreCountedAndANewEpochIsNoGap) {
