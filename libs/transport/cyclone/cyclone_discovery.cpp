@@ -161,7 +161,7 @@ std::string timing_problem(const dds_qos_t* offered, const dds_qos_t* requested)
   dds_duration_t takes = 0, bears = 0;
   dds_qget_latency_budget(offered, &takes);
   dds_qget_latency_budget(requested, &bears);
-  if (takes > bears) return "a latency budget above the one the reader requests (0 is expected)";
+  if (takes > bears) return "a latency budget above the one that the reader requests (0 is expected)";
   dds_liveliness_kind_t shows{}, wants{};
   dds_duration_t lease = DDS_INFINITY, wanted_lease = DDS_INFINITY;
   dds_qget_liveliness(offered, &shows, &lease);
