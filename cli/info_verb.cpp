@@ -93,7 +93,7 @@ Json events_json(const recording::Reader& reader) {
   return events;
 }
 
-// The first ones, unless all are asked for.
+// The first ones, unless all are requested.
 void add_events(const recording::Reader& reader, bool has_all, ReportTable& rows) {
   constexpr std::size_t kShown = 10;
   const std::vector<session::RecordedEvent> events = session::recorded_events(reader);

@@ -28,7 +28,7 @@ namespace {
 
 using wire::Role;
 
-constexpr double kShortestPause = 0.01;  // s, below it nobody has paused
+constexpr double kShortestPause = 0.01;  // s; a shorter one is no pause
 
 void report_nodes(const session::SessionView& view, RunReport& report) {
   for (const Role role : wire::kNodeRoles) {
@@ -185,7 +185,7 @@ Json session_json(const RunReport& report) {
   return json;
 }
 
-// What is told beside numbers, and the scene's plots and files beside the recording.
+// Sentences beside the numbers, and the scene's plots and files beside the recording.
 void explain(const recording::Reader& reader, const session::SessionView& view,
              const std::optional<session::ClosingCounts>& closing, const scene::Scene& scene, const std::string& assets,
              const session::RunOutcome& outcome, RunReport& report) {
@@ -246,7 +246,7 @@ void report_recorded(const scene::Scene& scene, const std::string& assets, const
   report_ranges(view, scene, report);
   report.lost = losses(*reader);
   const session::TickSpan span = closing ? closing->ticks : session::tick_span(*reader);
-  // a recording that could not go on knows less than what was seen of the session
+  // a recording that ended early holds less than the observer received
   const bool is_short = report.code == ExitCode::storage && span.steps < report.steps;
   if (!is_short) {
     report.steps = span.steps;
@@ -259,7 +259,7 @@ void report_recorded(const scene::Scene& scene, const std::string& assets, const
   if (span.steps == 0) return;
   if (is_short) {
     report.notes.push_back(
-        fmt::format("the recording ends after {}, and what is said of variables and losses is of it alone",
+        fmt::format("the recording ends after {}, and the variables and losses above are those of the recording alone",
                     duration_text(static_cast<double>(span.steps) * report.step)));
   }
   explain(*reader, view, closing, scene, assets, outcome, report);
@@ -332,7 +332,7 @@ void print(const RunReport& report) {
       text = fmt::format("step {} mean, {} max; ", duration_text(node.times.mean()), duration_text(node.times.max));
       text += timing_text(node.health);
     }
-    text += fmt::format("resends {} asked, {} answered", node.resends_asked, node.resends_answered);
+    text += fmt::format("resends {} requested, {} answered", node.resends_asked, node.resends_answered);
     if (node.refused_messages > 0) text += "; " + counted(node.refused_messages, "message", "messages") + " refused";
     rows.add({node.role, text});
   }

@@ -122,7 +122,7 @@ void MechanicsSubsystem::apply_signals(std::span<const double> controls) noexcep
   port_problem_.forget_trends();
 }
 
-// Elastic forces that the flex node states anew at every step. A sample of other sizes leaves those of the step before.
+// Elastic forces that the flex node publishes at every step. A sample of other sizes leaves those of the step before.
 void MechanicsSubsystem::take_elastic_forces(const coupling::ElasticSample* sample, StepReport& report) noexcept {
   if (sample == nullptr || modal_.is_empty()) return;
   if (modal_.apply(*sample, mechanism_.change_model()) && modal_.apply(*sample, payload_.model())) {

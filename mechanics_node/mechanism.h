@@ -2,7 +2,7 @@
 // evaluation of the rows.
 //
 // evaluate() computes only after a change. Every function that changes the model, the state or the set of active rows
-// marks the evaluation as out of date, except those that say otherwise.
+// marks the evaluation as out of date, except where stated.
 #pragma once
 
 #include <cstddef>

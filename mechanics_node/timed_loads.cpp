@@ -5,7 +5,7 @@
 namespace slew::mechanics {
 namespace {
 
-// Drives change coordinates by time alone as well: then the motion of the start says nothing about later.
+// Drives change coordinates by time alone as well: then the motion at the start does not hold later.
 bool has_timed_loads(const multibody::Model& model) noexcept {
   const auto& loads = model.elements.loads;
   const bool has_tables =

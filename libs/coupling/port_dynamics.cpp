@@ -259,7 +259,7 @@ void PortDynamics::move(PortStep& report) noexcept {
   report.meets_stop = report.meets_stop || is_at_stop_;
 }
 
-// Two stages; false, and nothing has moved, where a stop asks for a shorter step.
+// Two stages; false, with the state unchanged, if a stop requires a shorter step.
 bool PortDynamics::try_stages(const Span& span, RowLaws& laws, PortStep& report) noexcept {
   const double weight = kGamma * span.length, rate = 1 / weight;
   PortStep tried;

@@ -21,8 +21,8 @@ struct LineForceParameters {
   double maximum_stroke = 0;        // m
 };
 
-// How closely the actuator's power port couples its circuit to the mechanism: a level of its own or the session's. The
-// coupling knows what they mean (coupling/level.h).
+// Coupling level of the actuator's power port: a level of its own or the session's. coupling/level.h defines the
+// levels.
 enum class PortCoupling : int { session, hold, linear, two, tlm };
 
 // x = offset + ratio * (coordinate of the force element): distance of its points [m] or angle [rad].

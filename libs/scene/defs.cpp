@@ -130,8 +130,9 @@ constexpr Field kSessionFields[] = {
         "stall_timeout",
         {.dimension = Dimension::time,
          .range = kStallRange,
-         .doc = "how long a step waits for one message of a node that is heard otherwise; then the session ends with "
-                "exit code 4, or with session.rejoin the node's place is given away"}),
+         .doc =
+             "longest wait of a step for one message of a node whose other messages arrive; then the session ends with "
+             "exit code 4, or with session.rejoin the node's place is given away"}),
     field<&SessionDef::give_up_after>(
         "give_up_after",
         {.dimension = Dimension::time,

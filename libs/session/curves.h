@@ -1,4 +1,4 @@
-// Variables of a session as curves: those that somebody wants, taken block by block from a recording or while the
+// Selected variables of a session as curves, taken block by block from a recording or while the
 // session runs.
 #pragma once
 

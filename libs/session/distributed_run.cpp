@@ -393,7 +393,7 @@ class Supervisor {
 
   // ---- ending -------------------------------------------------------------------------------------------------
 
-  // From now on; a node that has not ended by then is asked to.
+  // Deadline from now on; a node that has not ended by then receives SIGTERM.
   [[nodiscard]] std::int64_t end_deadline_ns() const {
     return monotonic_ns() + std::max(node::kLinger.ns, give_up_after_.ns) + kGraceNs;
   }

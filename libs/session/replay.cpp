@@ -148,7 +148,7 @@ class Replay {
       return has_tick ? Visit::stop : Visit::go_on;
     });
     if (!status.is_ok()) throw Failure(status.code, status.text);
-    // an INIT tick is said at the begin of its epoch, not of the first one
+    // an INIT tick is published at the begin of its epoch, except the first
     return has_tick && header.phase == Phase::init && epoch > 0 ? epoch - 1 : epoch;
   }
 
@@ -181,7 +181,7 @@ class Replay {
     if (!is_at_end() || next_ > end_->step) {
       throw Failure(ExitCode::bad_input,
                     fmt::format("the recording ends before step {} (t = {:.6g} s) of its last epoch, or that begins "
-                                "later; nothing was saved; say an earlier time with --until",
+                                "later; nothing was saved; set --until to an earlier time",
                                 end_->step, static_cast<double>(end_->step) * H));
     }
     if (const Status can = session_.can_save(); !can.is_ok()) throw Failure(can.code, can.text);
@@ -268,7 +268,7 @@ class Replay {
     return true;
   }
 
-  // A reset overtakes the last ticks: what nobody computed any more is not missing.
+  // A reset overtakes the last ticks: steps that were never computed are not missing.
   enum class EpochEnd : std::uint8_t { recording, reset };
 
   void finish_epoch(EpochEnd end) {

@@ -48,7 +48,7 @@ struct RunOptions {
   std::string rtol;  // relative tolerance of a monolithic run; empty: the scene's
   bool is_real_time = false;
   bool is_refusal_reported = false;  // that it was refused: not once more
-  std::string cpus;                  // "mechanics=1, hydraulics=0"; empty: as the scene says
+  std::string cpus;                  // "mechanics=1, hydraulics=0"; empty: as in the scene
   double added_work_us = 0;          // CPU time that every step of a physics node burns beside its own
   std::vector<std::string> kept;     // patterns of variables whose curves the outcome's view keeps
   std::shared_ptr<RunWatcher> watcher = std::make_shared<RunWatcher>();  // never null

@@ -33,7 +33,7 @@ void SessionView::take_sample(std::span<const std::byte> bytes, Sample& sample) 
 }
 
 void SessionView::take(Topic topic, std::span<const std::byte> bytes, std::optional<double> time) {
-  // topics arrive in any order; those that are said only once must wait for the session they belong to
+  // topics arrive in any order; messages that are published once must wait for the session they belong to
   const bool is_published_once =
       topic == Topic::node_status || topic == Topic::variable_directory || topic == Topic::controller_lease;
   if (!session_ && is_published_once && pending_.size() < kMostPending) {

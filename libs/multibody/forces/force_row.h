@@ -106,7 +106,7 @@ struct ForceRow {
   template <typename Couple>
   static void for_each_coupling(const T& /*element*/, Couple&& /*couple*/) {}
 
-  // Which part of a one-sided law acts: a change of it within an implicit step begins that step anew.
+  // Which part of a one-sided law acts: a change of it within an implicit step restarts that step.
   static constexpr bool kHasStops = false;
   static int side_of(const T& /*element*/, std::span<const LinkMotion> /*motion*/) noexcept { return 0; }
 

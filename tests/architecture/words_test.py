@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Finds words of people's talk where programs are meant: in comments and texts of C++ and in documents.
+
+words_test.py ROOT [PATH ...]: files or folders below ROOT; all tracked kinds of file without paths. Prints file:line: word.
+The glossary in docs/notation.md has the words to use: publish, report, receive, request, resend, acknowledge, reject.
+"""
+import os
+import re
+import sys
+
+WORDS = re.compile(
+    r"(?<!-)\b(say|says|said|saying|tell|tells|told|telling|hear|hears|heard|hearing|nobody|somebody|anybody|everybody"
+    r"|knows|know|knew|knowing|asks|ask|asked|asking|anew|wish|wishes|wished)\b|(?<!\w)who\b",
+    re.IGNORECASE,
+)
+# people may do it, programs may not
+PEOPLE = re.compile(
+    r"\b(users?|engineers?|designers?|trainers?|drivers?|operators?|readers?|people|person|those|anyone|everyone|you)"
+    r"(,? and \w+)? who\b",
+    re.IGNORECASE,
+)
+SKIPPED = ("tests/scenes_negative", "tests/fuzz/corpus", "build", ".git", "docs/references.bib")
+
+
+def texts_of_cpp(source):
+    """Comments and string literals, with their lines."""
+    pattern = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\])+\'|#include[^\n]*', re.S)
+    source = re.sub(r"(?<=[0-9a-fA-F])'(?=[0-9a-fA-F])", "_", source)  # digit separators are no character literals
+    for match in pattern.finditer(source):
+        if not match[0].startswith(("#include", "'")):
+            yield source.count("\n", 0, match.start()) + 1, match[0]
+
+
+def texts_of_markdown(source):
+    is_code = False
+    for number, line in enumerate(source.split("\n"), 1):
+        if line.lstrip().startswith("```"):
+            is_code = not is_code
+        elif not is_code and not line.startswith("    "):
+            yield number, re.sub(r"`[^`]*`|\]\([^)]*\)", "", line)
+
+
+def findings(path):
+    with open(path, encoding="utf-8") as file:
+        source = file.read()
+    texts = texts_of_markdown(source) if path.endswith(".md") else texts_of_cpp(source)
+    for number, text in texts:
+        for match in WORDS.finditer(PEOPLE.sub("", text)):
+            yield number + text.count("\n", 0, match.start()), match[0]
+
+
+def files_below(root, path):
+    full = os.path.join(root, path)
+    if os.path.isfile(full):
+        yield full
+    for folder, folders, names in os.walk(full):
+        folders[:] = [f for f in folders if not os.path.relpath(os.path.join(folder, f), root).startswith(SKIPPED)]
+        for name in names:
+            if name.endswith((".h", ".cpp", ".md")):
+                yield os.path.join(folder, name)
+
+
+def main():
+    root = sys.argv[1]
+    count = 0
+    for path in sys.argv[2:] or ["."]:
+        for file in sorted(files_below(root, path)):
+            for number, word in findings(file):
+                print(f"{os.path.relpath(file, root)}:{number}: {word}")
+                count += 1
+    sys.exit(1 if count else 0)
+
+
+if __name__ == "__main__":
+    main()
