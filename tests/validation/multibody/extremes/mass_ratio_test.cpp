@@ -78,7 +78,9 @@ const Weights kAlternating = {"1e6, 1, 1e6, 1, .. kg", {1e6, 1, 1e6, 1, 1e6, 1, 
 // more than half a radian a step or the state is not finite; augmented is implicit, penalty goes in parts.
 TEST_P(MassRatio, OfAMillionOnAChainsTipIsRightWhereItsStringsAreResolved) {
   expect_outcome(kHeavyTip.name, setting(1e-4), fall(kHeavyTip, 0.5, 1e-4, 10000), 1e-3, Ending::right);
-  expect_outcome(kHeavyTip.name, setting(1e-3), fall(kHeavyTip, 0.5, 1e-3, 10000), 1e-3,
+  // the parts of penalty take 20 s for half a second
+  const double seconds = is(Formulation::penalty) && !slew::testing::is_nightly() ? 0.1 : 0.5;
+  expect_outcome(kHeavyTip.name, setting(1e-3), fall(kHeavyTip, seconds, 1e-3, 10000), 1e-3,
                  is(Formulation::augmented) || is(Formulation::penalty) ? Ending::right : Ending::flagged);
 }
 
