@@ -45,7 +45,7 @@ Json to_json(const session::FoundSession& session) {
     if ((session.description.required_roles & (1u << role)) == 0) continue;
     const wire::NodeStatus& status = session.nodes[role];
     nodes.push_back({{"role", node::to_text(static_cast<Role>(role))},
-                     {"state", session.has_status[role] ? node::to_text(status.state) : "no status"},
+                     {"state", session.has_status[role] ? node::to_text(status.state) : "not heard"},
                      {"host", host_of(status.host)},
                      {"pid", status.pid}});
   }

@@ -12,11 +12,12 @@
 //     static Drag build(const DragDef& def, ElementBuilder& builder);       // build_elements.h; all names are known
 //     static void check(const DragDef& def, ElementRules& rules);           // validate_elements.h; rules without poses
 //     static void visit_points(DragDef& def, const VisitPoint& visit);      // bodies that it names, with its points
-//     template <typename Add>                                               // add(link, body, wrench) for every link
-//     static void for_each_wrench(const Drag& drag, std::span<const LinkMotion> motion, double time, Add&& add)
-//     noexcept; static void list_variables(const Drag& drag, VariableNames& names);   // names and values in the same
-//     order static void read_variables(const Drag& drag, std::span<const LinkMotion> motion, double time,
-//                                VariableSink& sink) noexcept;
+//     // add(link, body, wrench) for every link
+//     template <typename Add>
+//     static void for_each_wrench(const Drag&, std::span<const LinkMotion>, double time, Add&&) noexcept;
+//     // names and values in the same order
+//     static void list_variables(const Drag&, VariableNames& names);
+//     static void read_variables(const Drag&, std::span<const LinkMotion>, double time, VariableSink&) noexcept;
 //   };
 //
 // ForceRow holds what a row may leave out: an element without energy, slopes, stops, live values and rules of the
