@@ -6,6 +6,7 @@
 
 #include "analysis/comparison/comparison_report.h"
 #include "cli/progress_line.h"
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"

@@ -9,6 +9,7 @@
 #include "analysis/description/eigenvalues.h"
 #include "analysis/description/instant.h"
 #include "analysis/description/liftable_load.h"
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/json.h"

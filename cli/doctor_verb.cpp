@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/arithmetic_self_test.h"
 #include "core/child_process.h"

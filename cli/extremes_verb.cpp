@@ -8,6 +8,7 @@
 #include "analysis/extremes/extremes.h"
 #include "analysis/sweep/sweep.h"
 #include "cli/progress_line.h"
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "cli/flag_report.h"
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"

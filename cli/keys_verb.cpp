@@ -2,6 +2,7 @@
 // machine.
 #include <fmt/format.h>
 
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/report_table.h"

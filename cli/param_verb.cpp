@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"

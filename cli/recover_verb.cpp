@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"

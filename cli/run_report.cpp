@@ -10,6 +10,7 @@
 #include "analysis/scene_plots.h"
 #include "analysis/stall_report.h"
 #include "cli/flag_report.h"
+#include "cli/terminal.h"
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"

@@ -2,21 +2,53 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "analysis/coupling_check.h"
+#include "cli/keyboard.h"
 #include "cli/run_report.h"
 #include "cli/run_session.h"
-#include "cli/terminal_watcher.h"
+#include "cli/status_line.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/printable.h"
 #include "session/distributed_run.h"
 #include "session/in_process_run.h"
+#include "session/observer.h"
 #include "session/unrecorded.h"
 
 namespace slew::cli {
 
 namespace {
+
+// Shows a run on the terminal: a status line, and levers on the keyboard where the scene's input is `keyboard`.
+class TerminalWatcher final : public session::RunWatcher {
+ public:
+  // Throws Failure (bad_input) when the input is the keyboard and standard input is no terminal.
+  TerminalWatcher(const session::RunOptions& options, const scene::Scene& scene)
+      : mode_(status_mode(options.is_quiet || options.is_json)), status_(mode_), text_(scene) {
+    if (options.scene.input == "keyboard") keyboard_.emplace(scene);
+  }
+
+  [[nodiscard]] bool reads_values() const override { return mode_ != StatusLine::Mode::off || keyboard_; }
+  void begin() override {
+    if (keyboard_) status_.print_line(keyboard_->levers().help());
+  }
+  void report(const std::string& message) override { status_.print_line(message); }
+  bool update(session::Observer& observer, std::int64_t now_ns, bool is_ending) override {
+    if (keyboard_) keyboard_->poll(observer, now_ns);
+    text_.measure(observer.view(), now_ns);
+    if (status_.is_due(now_ns) && !is_ending) status_.show(text_.text(observer.view()), now_ns);
+    return true;
+  }
+  void end() override { status_.clear(); }
+
+ private:
+  StatusLine::Mode mode_;
+  StatusLine status_;
+  StatusText text_;
+  std::optional<Keyboard> keyboard_;
+};
 
 // All physics as one system: one process, without deadlines.
 void check_monolithic(const options::Command& verb) {

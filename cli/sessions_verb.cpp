@@ -1,6 +1,7 @@
 // `slewring sessions`: lists the sessions on this domain.
 #include <fmt/format.h>
 
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/json.h"

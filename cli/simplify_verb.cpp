@@ -7,6 +7,7 @@
 #include "analysis/simplify/simplify.h"
 #include "analysis/tradeoff/overlay.h"
 #include "cli/progress_line.h"
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"

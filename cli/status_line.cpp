@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "analysis/coupling_lamp.h"
+#include "cli/terminal.h"
 #include "core/display.h"
 #include "core/printable.h"
 #include "node/identity.h"

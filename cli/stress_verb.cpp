@@ -8,6 +8,7 @@
 
 #include "analysis/stress/stress_report.h"
 #include "cli/progress_line.h"
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"

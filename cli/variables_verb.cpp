@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <tuple>
 
-#include "node/message_digest.h"
+#include "core/state_hash.h"
 #include "recorder_node/idl_text.h"
 #include "recorder_node/recorder_node.h"
 #include "recording/run_directory.h"
@@ -139,7 +139,7 @@ void RecorderNode::count(const transport::Received& message) {
       if (transport::decode(message.bytes, actuators_)) flags_.take(actuators_.header, actuators_.state);
       return;
     case Topic::variables:
-      variables_digest_ += node::digest_of(message.bytes);
+      variables_digest_ += digest_of(message.bytes);
       return;
     default:
       return;

@@ -1,15 +1,11 @@
 #include "core/display.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
 #include <utility>
-
-#include "core/report_table.h"
 
 namespace slew {
 namespace {
@@ -97,16 +93,6 @@ std::string duration_text(double seconds) {
 std::string duration_below(double seconds) {
   const double digit = std::pow(10, std::floor(std::log10(seconds)) - 1);
   return duration_text(std::floor(seconds / digit * (1 + 1e-12)) * digit);
-}
-
-std::size_t output_width() {
-  winsize size{};
-  const bool is_terminal = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
-  return is_terminal ? size.ws_col : 0;
-}
-
-void print_table(const ReportTable& table) {
-  fmt::print("{}", table.text("", output_width()));
 }
 
 }  // namespace slew

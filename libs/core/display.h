@@ -1,7 +1,6 @@
 // Display of quantities and tables to users: workshop units, readable digits, lines that fit the terminal.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -35,11 +34,5 @@ struct DisplayUnit {
 [[nodiscard]] std::string duration_text(double seconds);
 // Rounded down to two digits.
 [[nodiscard]] std::string duration_below(double seconds);
-
-// Line length in characters if standard output is a terminal; otherwise 0: no limit.
-[[nodiscard]] std::size_t output_width();
-
-// To standard output, in lines that fit the terminal.
-void print_table(const ReportTable& table);
 
 }  // namespace slew

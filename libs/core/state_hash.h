@@ -24,4 +24,11 @@ class StateHash {
   std::uint64_t digest_ = 0;
 };
 
+// Digest of a message: the sum over messages compares two sets of them, independent of their order.
+[[nodiscard]] inline std::uint64_t digest_of(std::span<const std::byte> bytes) noexcept {
+  StateHash hash;
+  hash.add_bytes(bytes.data(), bytes.size());
+  return hash.digest();
+}
+
 }  // namespace slew

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "node/message_digest.h"
+#include "core/state_hash.h"
 #include "node/tick_counter.h"
 #include "transport/cdr/codec.h"
 #include "transport/given_up.h"
@@ -158,7 +158,7 @@ void SessionView::take_directory(std::span<const std::byte> bytes) {
 void SessionView::take_block(std::span<const std::byte> bytes, std::optional<double> time) {
   if (!transport::decode(bytes, block_) || node_of(block_.header) == nullptr) return;
   if (block_.header.phase != wire::Phase::running) return;
-  variables_digest_ += node::digest_of(bytes);
+  variables_digest_ += digest_of(bytes);
   if (curves_)
     curves_->take(block_,
                   time.value_or(static_cast<double>(start_of(block_.header.step, {session_->step_ns}).ns) / 1e9));

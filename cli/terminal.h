@@ -1,0 +1,16 @@
+// Standard output as a terminal shows it.
+#pragma once
+
+#include <cstddef>
+
+#include "core/report_table.h"
+
+namespace slew::cli {
+
+// Line length in characters if standard output is a terminal; otherwise 0: no limit.
+[[nodiscard]] std::size_t output_width();
+
+// Prints to standard output, in lines that fit the terminal.
+void print_table(const ReportTable& table);
+
+}  // namespace slew::cli
