@@ -116,9 +116,9 @@ ExitCode run_session(session::RunOptions options, const io::SessionScene& sessio
                   "started; leave one out");
   }
   options.kept = report_variables(scene);
-  options.watcher = std::make_shared<TerminalWatcher>(options, scene);
-  const session::RunOutcome outcome =
-      options.is_in_process ? session::run_in_process(options, session) : session::run_distributed(options, session);
+  TerminalWatcher watcher(options, scene);
+  const session::RunOutcome outcome = options.is_in_process ? session::run_in_process(options, session, watcher)
+                                                            : session::run_distributed(options, session, watcher);
   if (!outcome.has_begun) {
     for (const std::string& message : session::without_echoes(outcome.messages))
       std::fprintf(stderr, "%s\n", printable_lines(message).c_str());

@@ -1,5 +1,5 @@
 // Which samples a physics role uses, and how old they are: at the start of a session and in each step. Pure functions,
-// on which the nodes, the session in one process and io stand alike.
+// on which the nodes, the session in one process and the replay stand alike.
 //
 //   start   mechanics and flex publish INIT; hydraulics starts from the INIT of mechanics and publishes sample 0;
 //           mechanics starts from that and from the INIT of flex, flex from the sample 0 of mechanics
@@ -46,19 +46,16 @@ inline constexpr wire::Role kStartOrder[] = {wire::Role::hydraulics, wire::Role:
 // How often, of a session's settings.
 struct ExchangeRules {
   StepIndex port_every = 1;      // steps between two exchanges of mechanics and hydraulics
-  StepIndex flexible_every = 1;  // steps between two samples for and of flexible bodies
+  StepIndex flexible_every = 1;  // steps between two samples for and of flexible bodies, Scene::flexible_every()
   coupling::ElasticExchange elastic = coupling::ElasticExchange::once;
 
   // Steps from one sample of the topic to the next one that its reader uses.
   [[nodiscard]] constexpr StepIndex every(wire::Topic sample) const noexcept {
-    const bool is_of_ports = sample == wire::Topic::mechanism || sample == wire::Topic::actuators;
-    if (is_of_ports) return port_every;
-    return elastic == coupling::ElasticExchange::once ? std::max<StepIndex>(1, flexible_every) : 1;
+    return is_of_ports(sample) ? port_every : flexible_every;
   }
   // A role publishes the samples of its ports at every step, although they are not used at each.
   [[nodiscard]] constexpr bool is_published_at(wire::Topic sample, StepIndex step) const noexcept {
-    const bool is_of_ports = sample == wire::Topic::mechanism || sample == wire::Topic::actuators;
-    return is_of_ports || step % every(sample) == 0;
+    return is_of_ports(sample) || step % every(sample) == 0;
   }
   // Elastic forces that are stated once are used at the start alone.
   [[nodiscard]] constexpr bool is_used_in_steps(wire::Topic sample) const noexcept {
@@ -66,10 +63,15 @@ struct ExchangeRules {
   }
   // Age, in step n, of the sample that its reader uses [steps].
   [[nodiscard]] constexpr StepIndex age(wire::Topic sample, StepIndex n) const noexcept { return n % every(sample); }
+
+ private:
+  [[nodiscard]] static constexpr bool is_of_ports(wire::Topic sample) noexcept {
+    return sample == wire::Topic::mechanism || sample == wire::Topic::actuators;
+  }
 };
 
 [[nodiscard]] inline ExchangeRules exchange_rules(const scene::Scene& scene) noexcept {
-  return {scene.session.exchange_every, scene.recording.every, scene.session.flexible};
+  return {scene.session.exchange_every, scene.flexible_every(), scene.session.flexible};
 }
 
 }  // namespace slew::node

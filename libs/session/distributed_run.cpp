@@ -42,13 +42,13 @@ constexpr std::int64_t kStartAgainNs = 500'000'000;
 
 class Supervisor {
  public:
-  Supervisor(const RunOptions& options, const io::SessionScene& session)
-      : Supervisor(options, session.scene, session.beginning ? session.beginning->step : 0) {}
+  Supervisor(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher)
+      : Supervisor(options, watcher, session.scene, session.beginning ? session.beginning->step : 0) {}
 
-  Supervisor(const RunOptions& options, const scene::Scene& scene, StepIndex begin)
+  Supervisor(const RunOptions& options, RunWatcher& watcher, const scene::Scene& scene, StepIndex begin)
       : options_(options),
         begin_(begin),
-        watcher_(*options.watcher),
+        watcher_(watcher),
         step_(scene.session.step_duration()),
         roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
         name_(scene.name),
@@ -565,8 +565,8 @@ class Supervisor {
 
 }  // namespace
 
-RunOutcome run_distributed(const RunOptions& options, const io::SessionScene& session) {
-  return Supervisor(options, session).run();
+RunOutcome run_distributed(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher) {
+  return Supervisor(options, session, watcher).run();
 }
 
 }  // namespace slew::session

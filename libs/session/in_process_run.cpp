@@ -22,8 +22,8 @@ using wire::Role;
 
 class InProcessRun {
  public:
-  InProcessRun(const RunOptions& options, const io::SessionScene& session)
-      : options_(options), begin_(session.beginning ? session.beginning->step : 0) {
+  InProcessRun(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher)
+      : options_(options), watcher_(watcher), begin_(session.beginning ? session.beginning->step : 0) {
     io::SessionWish wish;
     wish.session_name = options.session.session;
     wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
@@ -43,13 +43,13 @@ class InProcessRun {
   RunOutcome run() {
     if (options_.is_real_time) {
       const Status status = make_real_time(transport::kPhysicsPriority);
-      if (!status.is_ok()) options_.watcher->report("slewring: warning: " + status.text);
+      if (!status.is_ok()) watcher_.report("slewring: warning: " + status.text);
     }
     count_interrupts();
-    options_.watcher->begin();
+    watcher_.begin();
     RunOutcome outcome;
     outcome.code = node::run_together(nodes_, [this] { each_round(); });
-    options_.watcher->end();
+    watcher_.end();
     observer_->drain();
     finish(outcome);
     return outcome;
@@ -88,7 +88,7 @@ class InProcessRun {
     if (has_stepped_ && io_->member().state() < wire::NodeState::ended) {
       clock_.measure(now_ns, io_->next_step(), io_->is_paused());
     }
-    if (!options_.watcher->update(*observer_, now_ns, false)) {
+    if (!watcher_.update(*observer_, now_ns, false)) {
       node::stop_requested.store(static_cast<int>(ExitCode::terminated));
     }
   }
@@ -125,6 +125,7 @@ class InProcessRun {
   }
 
   const RunOptions& options_;
+  RunWatcher& watcher_;
   StepIndex begin_;  // step that the session goes on from
   transport::InProcessBus bus_;
   std::vector<std::unique_ptr<transport::Transport>> endpoints_;
@@ -141,8 +142,8 @@ class InProcessRun {
 
 }  // namespace
 
-RunOutcome run_in_process(const RunOptions& options, const io::SessionScene& session) {
-  return InProcessRun(options, session).run();
+RunOutcome run_in_process(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher) {
+  return InProcessRun(options, session, watcher).run();
 }
 
 }  // namespace slew::session

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,7 +50,6 @@ struct RunOptions {
   std::string cpus;                  // "mechanics=1, hydraulics=0"; empty: as in the scene
   double added_work_us = 0;          // CPU time that every step of a physics node burns beside its own
   std::vector<std::string> kept;     // patterns of variables whose curves the outcome's view keeps
-  std::shared_ptr<RunWatcher> watcher = std::make_shared<RunWatcher>();  // never null
   bool is_json = false;
   bool is_quiet = false;
 

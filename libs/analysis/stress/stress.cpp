@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <thread>
 
@@ -152,7 +151,7 @@ void run_cell(const StressOptions& options, const io::SessionScene& session, con
   CellWatch watch(rules, scene.session.steps(), duration_of_seconds(scene.session.start_grace), cell);
   Status of_load;
   std::optional<LoadProcesses> load;
-  run.watcher = std::make_shared<CellWatcher>([&](session::Observer& observer, std::int64_t now_ns) {
+  CellWatcher watcher([&](session::Observer& observer, std::int64_t now_ns) {
     watch.look(observer, now_ns);
     if (of_load.is_ok()) of_load = load->check();
     if (!of_load.is_ok()) return false;
@@ -160,7 +159,7 @@ void run_cell(const StressOptions& options, const io::SessionScene& session, con
     return progress(step / static_cast<double>(scene.session.steps()));
   });
   load.emplace(cell.load, folder);
-  const session::RunOutcome outcome = session::run_distributed(run, session);
+  const session::RunOutcome outcome = session::run_distributed(run, session, watcher);
   if (of_load.is_ok()) of_load = load->check();
   load.reset();
   is_refusal_reported = outcome.is_refusal_reported;

@@ -25,7 +25,8 @@ class WithFlexibleBodies : public ::testing::Test {
       built.subsystem = std::make_unique<testing::ObservedSubsystem>();
       built.published_variables = {0};
       built.variables_every = kEvery;
-      built.exchange = {.port_every = 1, .flexible_every = kEvery, .elastic = exchange};
+      built.exchange = {
+          .port_every = 1, .flexible_every = exchange == ElasticExchange::once ? kEvery : 1, .elastic = exchange};
       return Status::ok();
     };
   }
