@@ -15,8 +15,6 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
