@@ -100,7 +100,7 @@ class Search {
     constexpr std::string_view kSpeed = "friction_speed", kFriction = "coulomb_friction";
     const auto number = [&](const Field& field) { return *static_cast<double*>(field.member(element.def)); };
     for (const Field& speed : element.fields) {
-      if (!speed.key.starts_with(kSpeed) || number(speed) == multibody::JointDef{}.friction_speed) continue;
+      if (!speed.key.starts_with(kSpeed) || number(speed) == multibody::JointAxisDef{}.friction_speed) continue;
       const std::string key = std::string(kFriction) + std::string(speed.key.substr(kSpeed.size()));
       const auto friction = std::find_if(element.fields.begin(), element.fields.end(),
                                          [&](const Field& field) { return field.key == key; });

@@ -294,14 +294,14 @@ class Converter {
 
   void put_laws(const Joint& joint, double resistance, JointDef& def) {
     if (joint.kind == JointKind::fixed || joint.kind == JointKind::planar) return;
-    def.viscous_friction = joint.damping;
-    def.coulomb_friction = joint.friction;
+    def.first.viscous_friction = joint.damping;
+    def.first.coulomb_friction = joint.friction;
     if (joint.is_limited) {
-      def.limit_min = joint.lower;
-      def.limit_max = joint.upper;
+      def.first.limit_min = joint.lower;
+      def.first.limit_max = joint.upper;
       // (2)
-      def.limit_stiffness = kStopFrequency * kStopFrequency * resistance;
-      def.limit_damping = 2 * kStopFrequency * resistance;
+      def.first.limit_stiffness = kStopFrequency * kStopFrequency * resistance;
+      def.first.limit_damping = 2 * kStopFrequency * resistance;
     }
     if (joint.start == 0) return;
     const char* unit = joint.kind == JointKind::prismatic ? "m" : "rad";

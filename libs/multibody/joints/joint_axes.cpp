@@ -37,18 +37,8 @@ bool is_angle(JointType type, int number) noexcept {
   return type != JointType::prismatic && !(type == JointType::cylindrical && number == 1);
 }
 
-JointAxisDef axis_of(const JointDef& joint, int number) noexcept {
-  if (number == 1) return joint.second;
-  return {.limit_min = joint.limit_min,
-          .limit_max = joint.limit_max,
-          .limit_stiffness = joint.limit_stiffness,
-          .limit_damping = joint.limit_damping,
-          .coulomb_friction = joint.coulomb_friction,
-          .viscous_friction = joint.viscous_friction,
-          .friction_speed = joint.friction_speed,
-          .bristle_stiffness = joint.bristle_stiffness,
-          .bristle_damping = joint.bristle_damping,
-          .breakaway_ratio = joint.breakaway_ratio};
+const JointAxisDef& axis_of(const JointDef& joint, int number) noexcept {
+  return number == 1 ? joint.second : joint.first;
 }
 
 bool has_limits(const JointAxisDef& axis) noexcept {

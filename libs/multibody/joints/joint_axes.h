@@ -21,7 +21,7 @@ namespace slew::multibody {
 [[nodiscard]] int coordinate_of_key(JointType type, std::string_view key) noexcept;
 
 // Friction and limits of a coordinate.
-[[nodiscard]] JointAxisDef axis_of(const JointDef& joint, int number) noexcept;
+[[nodiscard]] const JointAxisDef& axis_of(const JointDef& joint, int number) noexcept;
 [[nodiscard]] bool has_limits(const JointAxisDef& axis) noexcept;
 // True if the axis has friction or limits; the mechanism then has a row for it.
 [[nodiscard]] bool has_row(const JointAxisDef& axis) noexcept;

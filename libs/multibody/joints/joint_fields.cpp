@@ -45,54 +45,41 @@ constexpr AxisKeys kAngle{"limit_min_angle",      "limit_max_angle",         "li
 
 constexpr Range kFromOne{.min = 1, .min_is_open = false};
 
-// a member of the first coordinate, or of the second
-template <int Number, auto First, auto Second>
-constexpr Field axis_field(std::string_view key, const FieldOptions& options) {
-  if constexpr (Number == 0) {
-    return field<First>(key, options);
-  } else {
-    return field<&JointDef::second, Second>(key, options);
-  }
-}
-
-template <int Number>
+template <auto Axis>
 constexpr std::array<Field, 10> axis_rows(const AxisDimensions& d, const AxisKeys& k) {
-  using Joint = JointDef;
-  using Axis = JointAxisDef;
+  using A = JointAxisDef;
   return {
-      axis_field<Number, &Joint::limit_min, &Axis::limit_min>(
-          k.limit_min, {.dimension = d.coordinate, .doc = "lower limit of the joint coordinate"}),
-      axis_field<Number, &Joint::limit_max, &Axis::limit_max>(
-          k.limit_max, {.dimension = d.coordinate, .doc = "upper limit of the joint coordinate"}),
-      axis_field<Number, &Joint::limit_stiffness, &Axis::limit_stiffness>(
-          k.limit_stiffness, {.dimension = d.stiffness,
-                              .range = kNotNegative,
-                              .change = Change::live,
-                              .doc = "spring of the limits; they push only"}),
-      axis_field<Number, &Joint::limit_damping, &Axis::limit_damping>(
+      field<Axis, &A::limit_min>(k.limit_min,
+                                 {.dimension = d.coordinate, .doc = "lower limit of the joint coordinate"}),
+      field<Axis, &A::limit_max>(k.limit_max,
+                                 {.dimension = d.coordinate, .doc = "upper limit of the joint coordinate"}),
+      field<Axis, &A::limit_stiffness>(k.limit_stiffness, {.dimension = d.stiffness,
+                                                           .range = kNotNegative,
+                                                           .change = Change::live,
+                                                           .doc = "spring of the limits; they push only"}),
+      field<Axis, &A::limit_damping>(
           k.limit_damping,
           {.dimension = d.damping, .range = kNotNegative, .change = Change::live, .doc = "damper of the limits"}),
-      axis_field<Number, &Joint::coulomb_friction, &Axis::coulomb_friction>(
+      field<Axis, &A::coulomb_friction>(
           k.coulomb,
           {.dimension = d.force, .range = kNotNegative, .change = Change::live, .doc = "dry friction of the joint"}),
-      axis_field<Number, &Joint::viscous_friction, &Axis::viscous_friction>(k.viscous,
-                                                                            {.dimension = d.damping,
-                                                                             .range = kNotNegative,
-                                                                             .change = Change::live,
-                                                                             .doc = "viscous friction of the joint"}),
-      axis_field<Number, &Joint::friction_speed, &Axis::friction_speed>(
+      field<Axis, &A::viscous_friction>(k.viscous, {.dimension = d.damping,
+                                                    .range = kNotNegative,
+                                                    .change = Change::live,
+                                                    .doc = "viscous friction of the joint"}),
+      field<Axis, &A::friction_speed>(
           k.friction_speed, {.dimension = d.speed,
                              .range = kPositive,
                              .doc = "speed over which dry friction is smoothed, tanh(v / friction_speed); of bristles "
                                     "the Stribeck speed"}),
-      axis_field<Number, &Joint::bristle_stiffness, &Axis::bristle_stiffness>(
-          k.bristle_stiffness, {.dimension = d.stiffness,
-                                .range = kNotNegative,
-                                .doc = "dry friction by bristles, which hold at rest; 0: none"}),
-      axis_field<Number, &Joint::bristle_damping, &Axis::bristle_damping>(
+      field<Axis, &A::bristle_stiffness>(k.bristle_stiffness,
+                                         {.dimension = d.stiffness,
+                                          .range = kNotNegative,
+                                          .doc = "dry friction by bristles, which hold at rest; 0: none"}),
+      field<Axis, &A::bristle_damping>(
           k.bristle_damping, {.dimension = d.damping, .range = kNotNegative, .doc = "damping of the bristles"}),
-      axis_field<Number, &Joint::breakaway_ratio, &Axis::breakaway_ratio>(
-          k.breakaway_ratio, {.range = kFromOne, .doc = "breakaway over dry friction, of bristles"})};
+      field<Axis, &A::breakaway_ratio>(k.breakaway_ratio,
+                                       {.range = kFromOne, .doc = "breakaway over dry friction, of bristles"})};
 }
 
 template <std::size_t... Sizes>
@@ -114,9 +101,10 @@ constexpr std::array<Field, 1> initial_velocity_row(const AxisDimensions& d) {
                            .doc = "rate of the joint coordinate at the start; none: 0, or the rate given by a loop"})};
 }
 
-constexpr auto kRevoluteFields = joined(kFrames, initial_velocity_row(kRotation), axis_rows<0>(kRotation, kPlain));
+constexpr auto kRevoluteFields =
+    joined(kFrames, initial_velocity_row(kRotation), axis_rows<&JointDef::first>(kRotation, kPlain));
 constexpr auto kPrismaticFields =
-    joined(kFrames, initial_velocity_row(kTranslation), axis_rows<0>(kTranslation, kPlain));
+    joined(kFrames, initial_velocity_row(kTranslation), axis_rows<&JointDef::first>(kTranslation, kPlain));
 
 constexpr Field kInitialRotation = field<&JointDef::initial_rotation>(
     "initial_angular_velocity",
@@ -131,8 +119,8 @@ constexpr Field kInitialTranslation = field<&JointDef::initial_translation>(
 constexpr auto friction_rows(const std::array<Field, 10>& all) {
   return std::array<Field, 6>{all[4], all[5], all[6], all[7], all[8], all[9]};
 }
-constexpr auto kSphericalFields =
-    joined(kFrames, std::array<Field, 1>{kInitialRotation}, friction_rows(axis_rows<0>(kRotation, kPlain)));
+constexpr auto kSphericalFields = joined(kFrames, std::array<Field, 1>{kInitialRotation},
+                                         friction_rows(axis_rows<&JointDef::first>(kRotation, kPlain)));
 
 constexpr Field kFixedFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2, kOrientation2};
 
@@ -144,16 +132,16 @@ constexpr std::array<Field, 2> kUniversalSpeeds = {
                                        {.dimension = angular_velocity, .doc = "rate about z of frame 1 at the start"}),
     field<&JointDef::initial_velocity_2>(
         "initial_velocity_2", {.dimension = angular_velocity, .doc = "rate about z of frame 2 at the start"})};
-constexpr auto kUniversalFields =
-    joined(kFrames, kUniversalSpeeds, axis_rows<0>(kRotation, kFirst), axis_rows<1>(kRotation, kSecond));
+constexpr auto kUniversalFields = joined(kFrames, kUniversalSpeeds, axis_rows<&JointDef::first>(kRotation, kFirst),
+                                         axis_rows<&JointDef::second>(kRotation, kSecond));
 
 constexpr std::array<Field, 2> kCylindricalSpeeds = {
     field<&JointDef::initial_velocity>("initial_angular_velocity",
                                        {.dimension = angular_velocity, .doc = "rate about z at the start"}),
     field<&JointDef::initial_velocity_2>("initial_velocity",
                                          {.dimension = velocity, .doc = "rate along z at the start"})};
-constexpr auto kCylindricalFields =
-    joined(kFrames, kCylindricalSpeeds, axis_rows<0>(kRotation, kAngle), axis_rows<1>(kTranslation, kPlain));
+constexpr auto kCylindricalFields = joined(kFrames, kCylindricalSpeeds, axis_rows<&JointDef::first>(kRotation, kAngle),
+                                           axis_rows<&JointDef::second>(kTranslation, kPlain));
 
 constexpr Field kInPlaneFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2};
 constexpr Field kInLineFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2};

@@ -105,18 +105,8 @@ struct JointDef {
   double length = 0;                        // m, length of a massless link; 0: distance of its points at the start
   Triple initial_translation = kNoneGiven;  // m/s, of point 2 seen from body 1, in body 1 axes (floating)
   Triple initial_rotation = kNoneGiven;     // rad/s, of body 2 seen from body 1, in body 1 axes (spherical, floating)
-  // friction and limits of the first coordinate (joint_axes.h), then of the second
-  double limit_min = -kUnlimited;  // rad or m
-  double limit_max = kUnlimited;   // rad or m
-  double limit_stiffness = 0;      // N m/rad or N/m
-  double limit_damping = 0;        // N m s/rad or N s/m; a limit pushes only
-  double coulomb_friction = 0;     // N m or N
-  double viscous_friction = 0;     // N m s/rad or N s/m
-  double friction_speed = 1e-3;    // rad/s or m/s, over which the Coulomb part is smoothed
-  double bristle_stiffness = 0;    // N m/rad or N/m; > 0: bristles that hold at rest, instead of smoothing
-  double bristle_damping = 0;      // N m s/rad or N s/m, of the bristles
-  double breakaway_ratio = 1;      // breakaway over coulomb_friction, >= 1; falls with friction_speed
-  JointAxisDef second{};
+  JointAxisDef first{};                     // friction and limits of the first coordinate (joint_axes.h)
+  JointAxisDef second{};                    // of the second
 };
 
 // Force along the line between a point of body 1 and a point of body 2; positive pushes them apart.

@@ -119,9 +119,9 @@ double difference(const std::string& urdf) {
       peer.q(name) = q[i] = any(generator);
       peer.u(name) = u[i] = 4 * any(generator);
       for (std::size_t k = 0; k < rows.size(); ++k) {
-        if (rows[k] == name) forces[k] = -ours.joint(name).viscous_friction * u[i];
+        if (rows[k] == name) forces[k] = -ours.joint(name).first.viscous_friction * u[i];
       }
-      EXPECT_EQ(peer.damping(name), ours.joint(name).viscous_friction);
+      EXPECT_EQ(peer.damping(name), ours.joint(name).first.viscous_friction);
     }
     peer.forward();
     const std::vector<double> got = ours.accelerations(q, u, forces);

@@ -230,9 +230,9 @@ TEST(Validate, WantsJointFramesToAgreeAtTheStart) {
 }
 
 TEST(Validate, NamesSwappedLimits) {
-  expect_problem([](auto& d) { d.joints[0].limit_min = 1, d.joints[0].limit_max = -1; }, "Hinge.limit_min",
+  expect_problem([](auto& d) { d.joints[0].first.limit_min = 1, d.joints[0].first.limit_max = -1; }, "Hinge.limit_min",
                  "not below the upper limit");
-  expect_problem([](auto& d) { d.joints[0].limit_min = -1; }, "Hinge.limit_stiffness", "no stiffness");
+  expect_problem([](auto& d) { d.joints[0].first.limit_min = -1; }, "Hinge.limit_stiffness", "no stiffness");
   expect_problem([](auto& d) { d.translational_forces[0].min_length = 2, d.translational_forces[0].max_length = 1; },
                  "Strut.min_length", "not below the largest");
   expect_problem([](auto& d) { d.rotational_forces[0].min_angle = 2, d.rotational_forces[0].max_angle = 1; },
@@ -244,7 +244,7 @@ TEST(Validate, NamesSwappedLimits) {
 TEST(Validate, WantsJointsToStartInsideTheirLimits) {
   const auto limits = [](double min, double max) {
     return [=](MechanicsDef& d) {
-      d.joints[0].limit_min = min, d.joints[0].limit_max = max, d.joints[0].limit_stiffness = 1e4;
+      d.joints[0].first.limit_min = min, d.joints[0].first.limit_max = max, d.joints[0].first.limit_stiffness = 1e4;
     };
   };
   EXPECT_EQ(testing::text_of(problems_of(limits(-1, 1))), "");

@@ -138,11 +138,11 @@ TEST(References, BristlesAreStatesOfBoth) {
                           .orientation1 = {0, M_PI / 2, 0},
                           .body2 = "Cube",
                           .orientation2 = {0, M_PI / 2, 0},
-                          .coulomb_friction = friction,
-                          .friction_speed = 0.01,
-                          .bristle_stiffness = 1e4,
-                          .bristle_damping = 100,
-                          .breakaway_ratio = 1.2});
+                          .first = {.coulomb_friction = friction,
+                                    .friction_speed = 0.01,
+                                    .bristle_stiffness = 1e4,
+                                    .bristle_damping = 100,
+                                    .breakaway_ratio = 1.2}});
     EXPECT_LT(difference(def, {0.1, 0.5, 1}, 1e-11), 1e-9);
     const MechanicsReference cube = integrate(def, {1}, ReferenceEquations::body_coordinates, 1e-10);
     ASSERT_EQ(cube.states.size(), 1U);

@@ -73,26 +73,21 @@ inline void add_crane_joints(MechanicsDef& def) {
                         .orientation1 = {-90 * kDegree, 0, 0},
                         .body2 = "Truck_Pillar",
                         .orientation2 = {-90 * kDegree, 0, 0},
-                        .coulomb_friction = 800,
-                        .viscous_friction = 3000});
-  def.joints.push_back({.name = "Pillar_LiftBoom",
-                        .body1 = "Truck_Pillar",
-                        .point1 = {0.5, 2, 0},
-                        .orientation1 = {180 * kDegree, 0, 0},
-                        .body2 = "Truck_LiftBoom",
-                        .orientation2 = {180 * kDegree, 0, 0},
-                        .limit_min = -12 * kDegree,
-                        .limit_max = 65 * kDegree,
-                        .limit_stiffness = 2e7,
-                        .limit_damping = 2e6});
-  def.joints.push_back({.name = "LiftBoom_JibBoomAttachment",
-                        .body1 = "Truck_LiftBoom",
-                        .point1 = {-2.6, 0, 0},
-                        .body2 = "Truck_JibBoomAttachment",
-                        .limit_min = -5 * kDegree,
-                        .limit_max = 75 * kDegree,
-                        .limit_stiffness = 2e7,
-                        .limit_damping = 2e6});
+                        .first = {.coulomb_friction = 800, .viscous_friction = 3000}});
+  def.joints.push_back(
+      {.name = "Pillar_LiftBoom",
+       .body1 = "Truck_Pillar",
+       .point1 = {0.5, 2, 0},
+       .orientation1 = {180 * kDegree, 0, 0},
+       .body2 = "Truck_LiftBoom",
+       .orientation2 = {180 * kDegree, 0, 0},
+       .first = {.limit_min = -12 * kDegree, .limit_max = 65 * kDegree, .limit_stiffness = 2e7, .limit_damping = 2e6}});
+  def.joints.push_back(
+      {.name = "LiftBoom_JibBoomAttachment",
+       .body1 = "Truck_LiftBoom",
+       .point1 = {-2.6, 0, 0},
+       .body2 = "Truck_JibBoomAttachment",
+       .first = {.limit_min = -5 * kDegree, .limit_max = 75 * kDegree, .limit_stiffness = 2e7, .limit_damping = 2e6}});
   def.joints.push_back({.name = "JibBoomAttachment_JibBoom",
                         .type = JointType::fixed,
                         .body1 = "Truck_JibBoomAttachment",

@@ -87,8 +87,8 @@ TEST(CraneStatics, SlewingInertiaIsThatOfTheReference) {
     // as a rigid body, which is what the reference counts: weld every joint but the slewing ring
     for (std::size_t i = 1; i < def.joints.size(); ++i) {
       def.joints[i].type = JointType::fixed;
-      def.joints[i].limit_min = -kUnlimited;
-      def.joints[i].limit_max = kUnlimited;
+      def.joints[i].first.limit_min = -kUnlimited;
+      def.joints[i].first.limit_max = kUnlimited;
     }
     def.joints[1].orientation2[2] = -15 * kDegree;
     def.joints[2].orientation2[2] = -25 * kDegree;

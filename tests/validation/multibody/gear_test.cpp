@@ -164,7 +164,7 @@ MechanicsDef telescope() {
                  .orientation1 = along_y,
                  .body2 = "Stage1",
                  .orientation2 = along_y,
-                 .viscous_friction = 1},
+                 .first = {.viscous_friction = 1}},
                 {.name = "Slide2",
                  .type = JointType::prismatic,
                  .body1 = "Stage1",

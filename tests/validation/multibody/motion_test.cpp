@@ -193,7 +193,7 @@ TEST_P(Driven, JointThatClosesALoopMovesTheOthers) {
                  .orientation1 = along_x,
                  .body2 = "Slider",
                  .orientation2 = along_x}};
-  for (JointDef& joint : def.joints) joint.viscous_friction = 1e-9;
+  for (JointDef& joint : def.joints) joint.first.viscous_friction = 1e-9;
   def.motions = {{.name = "Push",
                   .kind = MotionKind::translation,
                   .shape = MotionShape::ramp,

@@ -59,16 +59,16 @@ TEST(TwoLinkArm, AcceleratesAsLagrangesEquationsSay) {
 TEST(TwoLinkArm, HasTheLawsOfItsJoints) {
   const Imported arm(example());
   const multibody::JointDef &shoulder = arm.joint("shoulder"), &elbow = arm.joint("elbow");
-  EXPECT_EQ(shoulder.viscous_friction, 0.5);
-  EXPECT_EQ(shoulder.coulomb_friction, 0.2);
-  EXPECT_EQ(shoulder.limit_min, 0.35);
-  EXPECT_EQ(shoulder.limit_max, 2.8);
-  EXPECT_EQ(elbow.limit_max, multibody::kUnlimited);
-  EXPECT_EQ(elbow.viscous_friction, 0.3);
+  EXPECT_EQ(shoulder.first.viscous_friction, 0.5);
+  EXPECT_EQ(shoulder.first.coulomb_friction, 0.2);
+  EXPECT_EQ(shoulder.first.limit_min, 0.35);
+  EXPECT_EQ(shoulder.first.limit_max, 2.8);
+  EXPECT_EQ(elbow.first.limit_max, multibody::kUnlimited);
+  EXPECT_EQ(elbow.first.viscous_friction, 0.3);
   // stops: what hangs on the shoulder, both bars about its axis, stretched: 0.25 + 0.75 + 0.10667 + 2 x 1.4^2
   const double hanging = 0.25 + 0.75 + 0.10666666666666667 + 2 * 1.96;
-  EXPECT_NEAR(shoulder.limit_stiffness, 1e4 * hanging, 1e-8);
-  EXPECT_NEAR(shoulder.limit_damping, 200 * hanging, 1e-10);
+  EXPECT_NEAR(shoulder.first.limit_stiffness, 1e4 * hanging, 1e-8);
+  EXPECT_NEAR(shoulder.first.limit_damping, 200 * hanging, 1e-10);
   // 0 is outside of the limits: it starts between them, and there the scene's coordinate is URDF's
   EXPECT_NEAR(arm.mechanism.value("shoulder.position"), (0.35 + 2.8) / 2, 1e-14);
   EXPECT_NEAR(arm.mechanism.value("elbow.position"), 0, 1e-14);

@@ -77,10 +77,10 @@ TEST(JointTypes, APrismaticJointSlidesAlongItsAxis) {
     one.mechanism.see();
     expect_pose(one.mechanism.pose("slide"), rpy(0.3, -0.7, 1.9),
                 Vec3(1, 2, 3) + rpy(0.3, -0.7, 1.9) * direction * 0.25);
-    EXPECT_EQ(one.joint("rail").viscous_friction, 7);
-    EXPECT_EQ(one.joint("rail").coulomb_friction, 8);
-    EXPECT_EQ(one.joint("rail").limit_stiffness, 1e4) << "of 1 kg";
-    EXPECT_EQ(one.joint("rail").limit_damping, 200);
+    EXPECT_EQ(one.joint("rail").first.viscous_friction, 7);
+    EXPECT_EQ(one.joint("rail").first.coulomb_friction, 8);
+    EXPECT_EQ(one.joint("rail").first.limit_stiffness, 1e4) << "of 1 kg";
+    EXPECT_EQ(one.joint("rail").first.limit_damping, 200);
   }
 }
 
@@ -159,14 +159,14 @@ TEST(JointTypes, LimitsFarFromZeroAreTakenBackByWholeTurns) {
   const Imported near(limited(0.5, 1.5)), far(limited(0.5 + 2 * M_PI, 1.5 + 2 * M_PI));
   EXPECT_NEAR(near.mechanism.value("turn.position"), 1, kRounding);
   EXPECT_NEAR(far.mechanism.value("turn.position"), 1, kRounding);
-  EXPECT_NEAR(far.joint("turn").limit_min, 0.5, kRounding);
-  EXPECT_NEAR(far.joint("turn").limit_max, 1.5, kRounding);
+  EXPECT_NEAR(far.joint("turn").first.limit_min, 0.5, kRounding);
+  EXPECT_NEAR(far.joint("turn").first.limit_max, 1.5, kRounding);
   // about half a turn, from either side
   for (const double sign : {-1.0, 1.0}) {
     const Imported half(limited(sign * M_PI - 0.2, sign * M_PI + 0.2));
     const double start = half.mechanism.value("turn.position");
-    EXPECT_GT(start, half.joint("turn").limit_min);
-    EXPECT_LT(start, half.joint("turn").limit_max);
+    EXPECT_GT(start, half.joint("turn").first.limit_min);
+    EXPECT_LT(start, half.joint("turn").first.limit_max);
   }
 }
 
