@@ -188,7 +188,7 @@ void BM_Session(benchmark::State& state, Boom boom) {
     };
     const auto io_end = endpoint("io"), mechanics_end = endpoint("mechanics"), hydraulics_end = endpoint("hydraulics");
     io::IoConfig config = io_config(boom);
-    config.pace = wire::Pace::free;
+    config.pace = Pace::free;
     config.window = 4;
     config.name_check = {0};
     config.steps = kSteps;

@@ -281,7 +281,7 @@ RunReport make_report(const session::RunOutcome& outcome, const scene::Scene& sc
   report.recording = outcome.recording;
   report.scene = scene.name;
   report.step = scene.session.step_duration().seconds();
-  report.pace = scene.session.pace == scene::Pace::free ? "free" : "real";
+  report.pace = scene.session.pace == Pace::free ? "free" : "real";
   report.steps = outcome.steps;
   report.wall_time = outcome.wall_time;
   report.paused_time = outcome.paused_time;

@@ -325,7 +325,7 @@ std::optional<Role> IoNode::holds_back(StepIndex n) const noexcept {
 
 bool IoNode::partners_allow(StepIndex n) const noexcept {
   if (holds_back(n)) return false;
-  if (config_.pace == wire::Pace::free && member_.requires_role(Role::recorder)) {
+  if (config_.pace == Pace::free && member_.requires_role(Role::recorder)) {
     const node::Peer& recorder = member_.peer(Role::recorder);
     if (recorder.status.header.epoch == member_.epoch() && recorder.status.recorded_step < n - kRecorderWindow) {
       return false;
@@ -335,7 +335,7 @@ bool IoNode::partners_allow(StepIndex n) const noexcept {
 }
 
 std::int64_t IoNode::due_ns(StepIndex n) const noexcept {
-  if (config_.pace == wire::Pace::free) return 0;
+  if (config_.pace == Pace::free) return 0;
   // catching up at no more than twice real time
   return std::max(clock_.due_ns(n), last_tick_ns_ + config_.step.ns / 2);
 }
@@ -371,7 +371,7 @@ StepIndex IoNode::complete_up_to() const noexcept {
 
 bool IoNode::advance_ticks(std::int64_t now_ns) {
   bool any = false;
-  if (config_.pace == wire::Pace::real) {
+  if (config_.pace == Pace::real) {
     obey(clock_.completed(complete_up_to(), n_, now_ns), now_ns);
     if (config_.shed != Shed::none) shed_load();
   }
@@ -398,7 +398,7 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
       return any;
     }
     end_stall(now_ns);
-    if (config_.pace == wire::Pace::real) {
+    if (config_.pace == Pace::real) {
       if (is_paused_) {
         clock_.excuse(n_, now_ns);  // a single step is due when it is asked for
       } else if (const std::optional<Verdict> verdict = clock_.keep_time(n_, now_ns)) {
@@ -520,7 +520,7 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   tick_.state_hash = hash.digest();
   tick_ns_[static_cast<std::size_t>(n_ % kLoopMemory)] = now_ns;
   send_tick(n_);
-  if (config_.pace == wire::Pace::real) {
+  if (config_.pace == Pace::real) {
     clock_.ran(n_, now_ns);
     clock_.used_input(n_, oldest_unused_input());
   }

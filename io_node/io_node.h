@@ -66,7 +66,7 @@ struct IoConfig {
   std::string scene_text;
   std::vector<wire::Asset> assets;
   SimDuration step = milliseconds(1);
-  wire::Pace pace = wire::Pace::real;
+  Pace pace = Pace::real;
   StepIndex window = 1;              // W: ticks ahead of the slowest physics node, at least 1
   std::uint32_t required_roles = 0;  // includes io itself
   StepIndex steps = -1;              // END after so many; -1: until stopped

@@ -46,7 +46,7 @@ void IoNode::shed_load() {
 }
 
 void IoNode::keep_books(std::int64_t now_ns) noexcept {
-  if (config_.pace != wire::Pace::real || stage_ >= Stage::ending) return;
+  if (config_.pace != Pace::real || stage_ >= Stage::ending) return;
   const bool is_held = is_paused_ || controllers_due_ns_ != 0 || is_saving_now() || is_replacing();
   if (is_held || stage_ != Stage::ticking) {
     clock_.excuse(n_, now_ns);

@@ -65,7 +65,7 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   config.scene_text = scene.expanded_text;
   for (const scene::Asset& asset : scene.assets) config.assets.push_back({asset.name, asset.size, asset.sha256});
   config.step = scene.session.step_duration();
-  config.pace = scene.session.pace == scene::Pace::free ? wire::Pace::free : wire::Pace::real;
+  config.pace = scene.session.pace;
   config.window = scene.session.window_steps();
   config.is_free_running = scene.session.mode == scene::ExchangeMode::free_running;
   config.save_obstacle = obstacle_to_saving(scene);

@@ -113,7 +113,7 @@ void IoNode::publish_variables(std::int64_t now_ns) {
 // in the order of kSessionVariables from the release jitter on, then of kNodeVariables by role
 void IoNode::add_timing_values(std::int64_t now_ns) {
   const node::NodeTiming& own = timing();
-  const bool is_paced = config_.pace == wire::Pace::real;
+  const bool is_paced = config_.pace == Pace::real;
   const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
   for (const double value : {seconds(own.last_release_jitter_ns), seconds(own.last_response_ns),
                              is_paced ? seconds(now_ns - clock_.due_ns(n_)) : 0.0, count(own.overruns),

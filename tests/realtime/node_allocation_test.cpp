@@ -36,7 +36,7 @@ class LockStep {
   LockStep(scene::Scene scene, StepIndex warm_up) : scene_(std::move(scene)) {
     io::IoConfig config = io::make_config(scene_, {kSession, io::Operator::script, io::Recording::none});
     config.name_check = {};
-    config.pace = wire::Pace::free;
+    config.pace = Pace::free;
     config.steps = warm_up + 1000;
     const std::uint32_t roles = config.required_roles;
     io_.emplace(endpoint(Role::io), std::move(config));

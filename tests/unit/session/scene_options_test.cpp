@@ -43,7 +43,7 @@ TEST_F(SceneOptionsTest, StepDurationAndPaceBecomePartOfTheScene) {
   const scene::Scene scene = scene::load_scene(options_);
   EXPECT_EQ(scene.session.step_duration(), milliseconds(2));
   EXPECT_EQ(scene.session.steps(), 1500);
-  EXPECT_EQ(scene.session.pace, scene::Pace::free);
+  EXPECT_EQ(scene.session.pace, Pace::free);
   // another node reads the same from the session's text
   const scene::Scene again = scene::load_text(scene.expanded_text, "again");
   EXPECT_EQ(again.session.step_duration(), milliseconds(2));
