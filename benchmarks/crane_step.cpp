@@ -63,7 +63,7 @@ Tape record(Boom boom) {
   hydraulic_node::HydraulicsSubsystem hydraulics(crane(boom));
   const scene::ScriptPlayer script(crane(boom));
   const io::IoConfig config = io_config(boom);
-  io::InputGate gate(config.channels, config.gate, kH);
+  io::InputGate gate(config.channels, config.gate(), kH);
   std::vector<SignalCourse> raw(gate.size());
   coupling::OwnSample m, h;
   start(mechanics, hydraulics, m, h);
@@ -188,10 +188,10 @@ void BM_Session(benchmark::State& state, Boom boom) {
     };
     const auto io_end = endpoint("io"), mechanics_end = endpoint("mechanics"), hydraulics_end = endpoint("hydraulics");
     io::IoConfig config = io_config(boom);
-    config.pace = Pace::free;
-    config.window = 4;
+    config.session.pace = Pace::free;
+    config.session.window = 4;
     config.name_check = {0};
-    config.steps = kSteps;
+    config.session.duration = static_cast<double>(kSteps) * kH.seconds();
     io::IoNode io(*io_end, std::move(config));
     node::PhysicsNode mechanics(wire::Role::mechanics, *mechanics_end,
                                 [boom](const wire::SessionDescription&, node::BuiltSubsystem& built) {

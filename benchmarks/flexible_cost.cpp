@@ -112,7 +112,7 @@ Tape record(const scene::Scene& scene, mechanics::MechanicsSubsystem& mechanics)
   wish.recording = io::Recording::none;
   const io::IoConfig config = io::make_config(scene, wish);
   const SimDuration H = scene.session.step_duration();
-  io::InputGate gate(config.channels, config.gate, H);
+  io::InputGate gate(config.channels, config.gate(), H);
   std::vector<SignalCourse> raw(gate.size());
   coupling::OwnSample m, h;
   static_cast<void>(mechanics.first_sample(m));

@@ -22,7 +22,7 @@ std::vector<io::ChannelConfig> channels() {
   lever.ramp = 0.2;
   lever.supervisor = "supervisor";
   loop.name = "loop";
-  loop.exchange = io::Exchange::lockstep;
+  loop.controller = scene::ControllerMode::lockstep;
   loop.delay = 3;
   loop.rate_limit = 5;
   loop.scale = -2;

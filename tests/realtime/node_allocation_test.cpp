@@ -36,8 +36,8 @@ class LockStep {
   LockStep(scene::Scene scene, StepIndex warm_up) : scene_(std::move(scene)) {
     io::IoConfig config = io::make_config(scene_, {kSession, io::Operator::script, io::Recording::none});
     config.name_check = {};
-    config.pace = Pace::free;
-    config.steps = warm_up + 1000;
+    config.session.pace = Pace::free;
+    config.session.duration = static_cast<double>(warm_up + 1000) * config.session.step;
     const std::uint32_t roles = config.required_roles;
     io_.emplace(endpoint(Role::io), std::move(config));
     for (const Role role : wire::kPhysicsRoles) {

@@ -70,10 +70,10 @@ std::vector<YardstickLoop> loops_of(Scheduling scheduling, std::uint32_t roles, 
 
 YardstickRules rules_of(const scene::Scene& scene, std::vector<YardstickLoop> loops) {
   YardstickRules rules;
-  rules.step = scene.session.step_duration();
+  rules.session.step = scene.session.step;
   rules.loops = std::move(loops);
-  rules.overrun.lag = duration_of_seconds(scene.session.overrun_lag);
-  rules.overrun.grace = kYardstickGrace;
+  rules.session.overrun_lag = scene.session.overrun_lag;
+  rules.session.start_grace = kYardstickGrace.seconds();
   return rules;
 }
 
@@ -168,7 +168,8 @@ void run_cell(const StressOptions& options, const io::SessionScene& session, con
   cell.step = scene.session.step;
   if (outcome.view.has_session()) cell.roles = outcome.view.session().required_roles;
   for (const Role role : wire::kNodeRoles) cell.nodes[static_cast<std::size_t>(role)] = outcome.view.node(role).health;
-  const std::string of_session = io::problem_of_books(outcome.view.node(Role::io).health, rules.step);
+  const std::string of_session =
+      io::problem_of_books(outcome.view.node(Role::io).health, rules.step());
   if (has_stepped(cell) && !of_session.empty()) cell.books = "session: " + of_session;
   std::error_code ignored;
   std::filesystem::remove_all(runs, ignored);

@@ -8,9 +8,8 @@ class LockstepController : public Io {
  protected:
   void start(StepIndex delay, StepIndex every = 1) {
     IoConfig lever = config();
-    lever.channels.push_back({.name = "Lever", .exchange = Exchange::lockstep, .delay = delay});
-    lever.gate.variables_every = every;
-    lever.variables_every = static_cast<std::uint32_t>(every);
+    lever.channels.push_back({.name = "Lever", .controller = scene::ControllerMode::lockstep, .delay = delay});
+    lever.variables_every = every;
     lever.join_timeout = milliseconds(1000);
     restart(std::move(lever));
     join_all();

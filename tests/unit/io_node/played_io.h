@@ -22,6 +22,9 @@ class Io : public ::testing::Test {
   static IoConfig config() {
     IoConfig config;
     config.session_name = "s";
+    config.session.duration = 0;  // until it is stopped
+    config.session.start_grace = 0;
+    config.session.controller_timeout = 0.2;
     config.scene_name = "still";
     config.required_roles = bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics);
     config.name_check = {};

@@ -135,8 +135,8 @@ TEST_F(SceneOptionsTest, TheSessionTakesChannelsStepAndRolesFromTheScene) {
   EXPECT_EQ(config.channels[0].scale, -500);
   EXPECT_EQ(config.channels[0].dead_zone, 0.2);
   EXPECT_EQ(config.channels[0].ramp, 0.5);
-  EXPECT_EQ(config.step, milliseconds(1));
-  EXPECT_EQ(config.steps, 20'000);
+  EXPECT_EQ(config.session.step_duration(), milliseconds(1));
+  EXPECT_EQ(config.session.steps(), 20'000);
   EXPECT_EQ(config.required_roles,
             bit(wire::Role::io) | bit(wire::Role::mechanics) | bit(wire::Role::hydraulics) | bit(wire::Role::recorder));
   EXPECT_TRUE(config.judge_parameter("Bag.mass", 1500, -1).is_accepted);
