@@ -288,7 +288,7 @@ RunReport make_report(const session::RunOutcome& outcome, const scene::Scene& sc
   if (outcome.view.has_session()) report.session = outcome.view.session().name;
   report_nodes(outcome.view, report);
   if (report.pace == "real" && outcome.view.is_over() && !report.nodes.empty()) {
-    report.books = io::problem_of_books(report.nodes.front().health, scene.session.step_duration());
+    report.books = io_node::problem_of_books(report.nodes.front().health, scene.session.step_duration());
   }
   if (outcome.recording.empty()) {
     report_ranges(outcome.view, scene, report);

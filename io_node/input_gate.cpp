@@ -5,7 +5,7 @@
 
 #include "io_node/input_shape.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace {
 
 std::string milliseconds_text(SimDuration time) {
@@ -432,4 +432,4 @@ void InputGate::add_to(StateHash& hash) const noexcept {
   }
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

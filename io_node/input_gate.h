@@ -40,7 +40,7 @@
 #include "scene/defs.h"
 #include "transport/transport.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // Variables of every input, in this order: quantity and unit.
 struct ChannelVariable {
@@ -229,4 +229,4 @@ class InputGate {
   std::uint64_t fell_out_of_step_ = 0;
 };
 
-}  // namespace slew::io
+}  // namespace slew::io_node

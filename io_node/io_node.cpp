@@ -8,7 +8,7 @@
 #include "node/sample_exchange.h"
 #include "transport/roles.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace {
 
 using node::to_text;
@@ -666,4 +666,4 @@ void IoNode::watch(std::int64_t now_ns) {
   }
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -33,7 +33,7 @@
 #include "node/stall_watch.h"
 #include "scene/defs.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // Where the raw values come from when no controller holds a channel, and the timed parameter changes.
 class InputSource {
@@ -295,4 +295,4 @@ class IoNode final : public node::Node {
   wire::ControllerInput input_;
 };
 
-}  // namespace slew::io
+}  // namespace slew::io_node

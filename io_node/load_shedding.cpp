@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace slew::io {
+namespace slew::io_node {
 
 using scene::ShedLoad;
 
@@ -58,4 +58,4 @@ std::string LoadShedding::look(StepIndex n, std::uint64_t judged, std::uint64_t 
   return "";
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

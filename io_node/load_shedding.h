@@ -11,7 +11,7 @@
 #include "core/time.h"
 #include "scene/defs.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // Whether there is a flex node.
 enum class View : std::uint8_t { none, flex };
@@ -43,4 +43,4 @@ class LoadShedding {
   std::uint64_t calm_from_ = 0, calm_overruns_ = 0;    // judged steps and overruns at the last overrun
 };
 
-}  // namespace slew::io
+}  // namespace slew::io_node

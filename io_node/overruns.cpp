@@ -1,7 +1,7 @@
 // io_node's part that does what the overrun policy and load shedding ask for.
 #include "io_node/io_node.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // A change that the overrun policy makes is an event: an answer that nobody asked for, in the recording; a hold and the
 // first slip are told to the user.
@@ -58,4 +58,4 @@ void IoNode::keep_books(std::int64_t now_ns) noexcept {
   clock_.close(n_, now_ns);
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -3,7 +3,7 @@
 #include "scene/parameters.h"
 #include "transport/roles.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // a scene that was loaded fits the wire
 static_assert(scene::kMaxSceneNameLength <= wire::kMaxNameLength);
@@ -98,4 +98,4 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   return config;
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace slew::io {
+namespace slew::io_node {
 
 using scene::OverrunPolicy;
 
@@ -169,4 +169,4 @@ std::uint64_t judged_steps_given_up(const wire::Health& io) noexcept {
   return io.response.count - std::min(io.response.count, io.release_jitter.count);
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -30,7 +30,7 @@
 #include "node/step_timing.h"
 #include "scene/defs.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // What the policy asks for, and why.
 struct Verdict {
@@ -115,4 +115,4 @@ class SessionClock {
 // How many of the judged steps were given up, by what io's health says.
 [[nodiscard]] std::uint64_t judged_steps_given_up(const wire::Health& io) noexcept;
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -5,7 +5,7 @@
 
 #include "io_node/io_node.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 using node::to_text;
 using wire::Phase;
@@ -129,4 +129,4 @@ void IoNode::add_timing_values(std::int64_t now_ns) {
   }
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -2,7 +2,7 @@
 #include "io_node/io_node.h"
 #include "transport/roles.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 using wire::Role;
 using wire::Topic;
@@ -48,4 +48,4 @@ void IoNode::end_stall(std::int64_t now_ns) {
   if (was_named) show_running();
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -8,7 +8,7 @@
 #include "io_node/tick_follower.h"
 #include "node/sample_exchange.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 using node::to_text;
 using wire::NodeState;
@@ -502,4 +502,4 @@ void IoNode::watch_vacancies(std::int64_t now_ns) {
   }
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

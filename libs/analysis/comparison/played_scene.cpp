@@ -8,7 +8,7 @@ namespace slew::analysis {
 using wire::Role;
 
 PlayedScene::PlayedScene(const scene::Scene& scene)
-    : config_(io::make_config(scene, {.session_name = scene.name, .recording = io::Recording::none})),
+    : config_(io_node::make_config(scene, {.session_name = scene.name, .recording = io_node::Recording::none})),
       H_(config_.session.step_duration()),
       gate_(config_.channels, config_.gate(), H_),
       session_(scene),

@@ -69,7 +69,7 @@ void Yardstick::lead(const YardstickRules& rules, SimDuration slice) {
   }
   take_place(rules.loops.front());
   wait_for(placed_, static_cast<std::int32_t>(followers.size()));
-  io::SessionClock clock(rules.session, *timing_);
+  io_node::SessionClock clock(rules.session, *timing_);
   const SimDuration step = rules.step();
   const std::int64_t grace_ns = duration_of_seconds(rules.session.start_grace).ns;
   const StepIndex not_judged = (grace_ns + step.ns - 1) / step.ns;
@@ -93,7 +93,7 @@ void Yardstick::lead(const YardstickRules& rules, SimDuration slice) {
   clock.close(n, monotonic_ns());
   release(kNoMore, 0);
   followers.clear();
-  if (problem_.empty()) problem_ = io::problem_of_books(timing_->books.read(), step);
+  if (problem_.empty()) problem_ = io_node::problem_of_books(timing_->books.read(), step);
   steps_ += static_cast<std::uint64_t>(n);
   skipped_ += clock.skipped();
   slip_ns_ += clock.slip_ns();

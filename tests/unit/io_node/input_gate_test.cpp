@@ -10,7 +10,7 @@
 
 #include "tests/support/nightly.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace input_gate_test {
 
 using testing::rounds;
@@ -557,4 +557,4 @@ TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
 }
 
 }  // namespace input_gate_test
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -1,7 +1,7 @@
 // The session as its owner runs it: its name, its time, its overruns and its end.
 #include "tests/unit/io_node/played_io.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace io_node_test {
 
 // ---- two sessions of one name ---------------------------------------------------------------------------------
@@ -633,4 +633,4 @@ TEST_F(Io, DoesNotTakeTheSamplesOfAnotherRole) {
 }
 
 }  // namespace io_node_test
-}  // namespace slew::io
+}  // namespace slew::io_node

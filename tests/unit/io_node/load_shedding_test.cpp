@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace slew::io {
+namespace slew::io_node {
 namespace load_shedding_test {
 
 class Shedding : public ::testing::Test {
@@ -81,4 +81,4 @@ TEST_F(Shedding, GoesNoFurtherThanItMay) {
 }
 
 }  // namespace load_shedding_test
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -1,7 +1,7 @@
 // Controllers that the ticks wait for.
 #include "tests/unit/io_node/played_io.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace lockstep_test {
 
 class LockstepController : public Io {
@@ -273,4 +273,4 @@ TEST_F(LockstepController, LoopDelayIsAVariableInStepsAndInMilliseconds) {
 }
 
 }  // namespace lockstep_test
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -8,7 +8,7 @@
 #include "io_node/io_node.h"
 #include "tests/support/played_session.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 using testing::kMs;
 using testing::PlayedSession;
@@ -114,4 +114,4 @@ class Io : public ::testing::Test {
   std::uint64_t requests_ = 0;
 };
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -4,7 +4,7 @@
 #include "io_node/io_node.h"
 #include "tests/support/played_session.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace rejoin_test {
 
 using testing::kMs;
@@ -360,4 +360,4 @@ TEST_F(Rejoin, AResetWaitsUntilTheRoleIsTaken) {
 }
 
 }  // namespace rejoin_test
-}  // namespace slew::io
+}  // namespace slew::io_node

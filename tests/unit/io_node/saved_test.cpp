@@ -9,7 +9,7 @@
 #include "tests/support/played_session.h"
 #include "tests/support/temporary_folder.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace saved_test {
 
 using testing::kMs;
@@ -466,4 +466,4 @@ TEST_F(SavedFile, ReplacesAnotherOnlyWhenAskedAndLeavesNothingBeside) {
 }
 
 }  // namespace saved_test
-}  // namespace slew::io
+}  // namespace slew::io_node

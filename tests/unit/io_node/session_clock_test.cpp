@@ -7,7 +7,7 @@
 #include <memory>
 #include <random>
 
-namespace slew::io {
+namespace slew::io_node {
 namespace session_clock_test {
 
 using scene::OverrunPolicy;
@@ -329,4 +329,4 @@ TEST_F(Clock, AControllersValueIsMeasuredToTheFirstSamplesThatUsedIt) {
 }
 
 }  // namespace session_clock_test
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -127,9 +127,9 @@ TEST_F(SceneOptionsTest, ArgumentsForAChildGiveTheSameScene) {
 
 TEST_F(SceneOptionsTest, TheSessionTakesChannelsStepAndRolesFromTheScene) {
   const scene::Scene scene = scene::load_scene(options_);
-  io::SessionWish wish;
+  io_node::SessionWish wish;
   wish.session_name = "s";
-  const io::IoConfig config = io::make_config(scene, wish);
+  const io_node::IoConfig config = io_node::make_config(scene, wish);
   ASSERT_EQ(config.channels.size(), 3u);
   EXPECT_EQ(config.channels[0].name, "Input_Slew");
   EXPECT_EQ(config.channels[0].scale, -500);
