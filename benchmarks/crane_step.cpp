@@ -34,12 +34,12 @@ const scene::Scene& crane(Boom boom) {
 constexpr SimDuration kH = milliseconds(1);
 constexpr StepIndex kSteps = 6000;  // rest, lift, lift and slew
 
-io::IoConfig io_config(Boom boom) {
-  io::SessionWish wish;
+io_node::IoConfig io_config(Boom boom) {
+  io_node::SessionWish wish;
   wish.session_name = "benchmark";
-  wish.operating = io::Operator::script;
-  wish.recording = io::Recording::none;
-  return io::make_config(crane(boom), wish);
+  wish.operating = io_node::Operator::script;
+  wish.recording = io_node::Recording::none;
+  return io_node::make_config(crane(boom), wish);
 }
 
 // One run with everything that either side was given: replayed to one side alone, it does the same again.
@@ -62,8 +62,8 @@ Tape record(Boom boom) {
   mechanics::MechanicsSubsystem mechanics(crane(boom));
   hydraulic_node::HydraulicsSubsystem hydraulics(crane(boom));
   const scene::ScriptPlayer script(crane(boom));
-  const io::IoConfig config = io_config(boom);
-  io::InputGate gate(config.channels, config.gate, kH);
+  const io_node::IoConfig config = io_config(boom);
+  io_node::InputGate gate(config.channels, config.gate(), kH);
   std::vector<SignalCourse> raw(gate.size());
   coupling::OwnSample m, h;
   start(mechanics, hydraulics, m, h);
@@ -187,12 +187,12 @@ void BM_Session(benchmark::State& state, Boom boom) {
           bus, transport::InProcessOptions{role, transport::TopicSet::all(), transport::TopicSet::all()});
     };
     const auto io_end = endpoint("io"), mechanics_end = endpoint("mechanics"), hydraulics_end = endpoint("hydraulics");
-    io::IoConfig config = io_config(boom);
-    config.pace = wire::Pace::free;
-    config.window = 4;
+    io_node::IoConfig config = io_config(boom);
+    config.session.pace = Pace::free;
+    config.session.window = 4;
     config.name_check = {0};
-    config.steps = kSteps;
-    io::IoNode io(*io_end, std::move(config));
+    config.session.duration = static_cast<double>(kSteps) * kH.seconds();
+    io_node::IoNode io(*io_end, std::move(config));
     node::PhysicsNode mechanics(wire::Role::mechanics, *mechanics_end,
                                 [boom](const wire::SessionDescription&, node::BuiltSubsystem& built) {
                                   built.subsystem = mechanics::make_mechanics_subsystem(crane(boom));

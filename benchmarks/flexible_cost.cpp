@@ -106,13 +106,13 @@ Tape record(const scene::Scene& scene, mechanics::MechanicsSubsystem& mechanics)
   Tape tape;
   hydraulic_node::HydraulicsSubsystem hydraulics(scene);
   const scene::ScriptPlayer script(scene);
-  io::SessionWish wish;
+  io_node::SessionWish wish;
   wish.session_name = "benchmark";
-  wish.operating = io::Operator::script;
-  wish.recording = io::Recording::none;
-  const io::IoConfig config = io::make_config(scene, wish);
+  wish.operating = io_node::Operator::script;
+  wish.recording = io_node::Recording::none;
+  const io_node::IoConfig config = io_node::make_config(scene, wish);
   const SimDuration H = scene.session.step_duration();
-  io::InputGate gate(config.channels, config.gate, H);
+  io_node::InputGate gate(config.channels, config.gate(), H);
   std::vector<SignalCourse> raw(gate.size());
   coupling::OwnSample m, h;
   static_cast<void>(mechanics.first_sample(m));

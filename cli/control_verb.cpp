@@ -120,7 +120,7 @@ ExitCode save(const Options& options) {
                                         "session");
   }
   const wire::SessionDescription& session = observer->view().session();
-  io::SavedSession saved;
+  io_node::SavedSession saved;
   saved.build = session.build;
   saved.session_name = session.name;
   saved.scene_name = session.scene_name;
@@ -129,14 +129,15 @@ ExitCode save(const Options& options) {
   saved.communication_step = {session.step_ns};
   saved.step = reply.header.step;
   for (const wire::Role role : roles) saved.states.push_back({role, *observer->state(reply.request, role)});
-  require(io::write_saved(options.file, saved, options.may_replace ? io::Replace::existing : io::Replace::never));
+  require(io_node::write_saved(options.file, saved,
+                               options.may_replace ? io_node::Replace::existing : io_node::Replace::never));
   report(options, "save", *observer, reply, fmt::format(", t = {:.6g} s: {}", saved.time(), options.file));
   return ExitCode::ok;
 }
 
 // Empty when both have the same machine; else the first difference. Duration, pace, how deadlines are kept, script,
 // controllers of the inputs, and the recorded and plotted variables are not part of the machine.
-std::string difference_of(const io::SavedSession& saved, const wire::SessionDescription& running) {
+std::string difference_of(const io_node::SavedSession& saved, const wire::SessionDescription& running) {
   scene::Scene a = scene::load_text(saved.scene_text, saved.scene_name);
   scene::Scene b = scene::load_text(running.scene_text, running.scene_name);
   b.session.duration = a.session.duration;
@@ -177,8 +178,8 @@ std::string difference_of(const io::SavedSession& saved, const wire::SessionDesc
 
 ExitCode load(const Options& options) {
   node::install_signal_handlers();
-  io::SavedSession saved;
-  require(io::read_saved(options.file, saved));
+  io_node::SavedSession saved;
+  require(io_node::read_saved(options.file, saved));
   const auto observer = session::find_session(options.session, session::Access::steer);
   const wire::SessionDescription& session = observer->view().session();
   const auto refuse = [&](const std::string& why) {

@@ -281,14 +281,14 @@ RunReport make_report(const session::RunOutcome& outcome, const scene::Scene& sc
   report.recording = outcome.recording;
   report.scene = scene.name;
   report.step = scene.session.step_duration().seconds();
-  report.pace = scene.session.pace == scene::Pace::free ? "free" : "real";
+  report.pace = scene.session.pace == Pace::free ? "free" : "real";
   report.steps = outcome.steps;
   report.wall_time = outcome.wall_time;
   report.paused_time = outcome.paused_time;
   if (outcome.view.has_session()) report.session = outcome.view.session().name;
   report_nodes(outcome.view, report);
   if (report.pace == "real" && outcome.view.is_over() && !report.nodes.empty()) {
-    report.books = io::problem_of_books(report.nodes.front().health, scene.session.step_duration());
+    report.books = io_node::problem_of_books(report.nodes.front().health, scene.session.step_duration());
   }
   if (outcome.recording.empty()) {
     report_ranges(outcome.view, scene, report);

@@ -82,7 +82,7 @@ ExitCode run(session::RunOptions options, const options::Command& verb) {
                   "--from and --monolithic exclude each other: CVODE's history is not saved; nothing was "
                   "started; leave one out");
   }
-  const io::SessionScene session = io::load_session_scene(options.scene);
+  const io_node::SessionScene session = io_node::load_session_scene(options.scene);
   if (session.scene.session.solution == scene::Solution::monolithic) {
     check_monolithic(verb);
     options.is_in_process = true;
@@ -92,7 +92,7 @@ ExitCode run(session::RunOptions options, const options::Command& verb) {
 
 }  // namespace
 
-ExitCode run_session(session::RunOptions options, const io::SessionScene& session) {
+ExitCode run_session(session::RunOptions options, const io_node::SessionScene& session) {
   const scene::Scene& scene = session.scene;
   for (const std::string& warning : scene.warnings)
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());

@@ -58,7 +58,7 @@ Json to_json(const session::FoundSession& session) {
           {"pid", description.pid},
           {"started_ns", description.started_ns},
           {"step_ns", description.step_ns},
-          {"pace", description.pace == wire::Pace::free ? "free" : "real"},
+          {"pace", description.pace == Pace::free ? "free" : "real"},
           {"step", session.step},
           {"nodes", nodes}};
 }
@@ -81,7 +81,7 @@ ExitCode show(const Options& options) {
     const wire::SessionDescription& description = session.description;
     const double time = static_cast<double>(std::max<StepIndex>(0, session.step) * description.step_ns) * 1e-9;
     table.add({description.name, description.scene_name, fmt::format("{:.2f} s", time),
-               description.pace == wire::Pace::free ? "free" : "real",
+               description.pace == Pace::free ? "free" : "real",
                fmt::format("process {} on {}", description.pid, host_of(description.host)),
                node::time_text(description.started_ns), nodes_text(session)});
   }

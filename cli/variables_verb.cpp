@@ -34,7 +34,7 @@ std::vector<Named> of_scene(const std::string& file) {
   std::vector<Named> all;
   session::SubsystemFamily family;
   for (const scene::InputDef& input : scene.inputs) {
-    for (const io::ChannelVariable& variable : io::kChannelVariables) {
+    for (const io_node::ChannelVariable& variable : io_node::kChannelVariables) {
       all.push_back({input.name + variable.quantity, variable.unit, "io"});
     }
   }

@@ -5,7 +5,7 @@
 
 #include "io_node/input_shape.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace {
 
 std::string milliseconds_text(SimDuration time) {
@@ -20,7 +20,7 @@ InputGate::InputGate(std::vector<ChannelConfig> channels, GateConfig config, Sim
     Channel state;
     state.config = std::move(channel);
     // the steps of (1) from the awaited one to the present one
-    if (state.config.exchange == Exchange::lockstep) {
+    if (state.config.controller == scene::ControllerMode::lockstep) {
       state.early.resize(static_cast<std::size_t>(state.config.delay / config_.variables_every + 2));
     }
     channels_.push_back(std::move(state));
@@ -132,7 +132,7 @@ void InputGate::set_free(std::size_t index, StepIndex n) {
   Channel& channel = channels_[index];
   const std::string holder = std::exchange(channel.holder, {});
   channel.last_value = kJoinStep;
-  if (channel.config.exchange == Exchange::sampled || n <= begin_step_) return;
+  if (channel.config.controller == scene::ControllerMode::sampled || n <= begin_step_) return;
   notices_.push_back({index, "", false,
                       "'" + holder + "' has released channel " + channel.config.name +
                           " (controller: lockstep): it is free from tick " + std::to_string(n) +
@@ -202,7 +202,7 @@ LeaseAnswer InputGate::release(std::size_t index, const std::string& controller,
             is_namesake ? held_text(channel, controller)
                         : "'" + controller + "' does not hold channel " + channel.config.name};
   }
-  const bool is_in_step = channel.config.exchange == Exchange::lockstep && channel.pace == Pace::in_step;
+  const bool is_in_step = channel.config.controller == scene::ControllerMode::lockstep && channel.pace == Pace::in_step;
   if (is_in_step && based_on >= 0) {
     channel.last_value = based_on;
   } else {
@@ -228,7 +228,7 @@ bool InputGate::write(std::size_t index, const std::string& controller, double r
   // even a wrong value is a sign of life, but it moves nothing
   channel.written_ns = now_ns;
   if (!std::isfinite(raw)) ++rejected_not_finite_;
-  if (channel.config.exchange == Exchange::lockstep) return keep_early(channel, raw, now_step, based_on);
+  if (channel.config.controller == scene::ControllerMode::lockstep) return keep_early(channel, raw, now_step, based_on);
   if (!std::isfinite(raw)) return false;
   channel.controller_raw = accepted(channel, raw);
   channel.written_step = now_step;
@@ -272,7 +272,8 @@ bool InputGate::is_through(const Channel& channel, StepIndex n) const noexcept {
 
 int InputGate::vacant() const noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if (channels_[i].config.exchange == Exchange::lockstep && channels_[i].holder.empty()) return static_cast<int>(i);
+    if (channels_[i].config.controller == scene::ControllerMode::lockstep && channels_[i].holder.empty())
+      return static_cast<int>(i);
   }
   return -1;
 }
@@ -280,7 +281,7 @@ int InputGate::vacant() const noexcept {
 SimDuration InputGate::awaited(StepIndex n) const noexcept {
   SimDuration longest{};
   for (const Channel& channel : channels_) {
-    if (channel.config.exchange == Exchange::sampled || channel.holder.empty()) continue;
+    if (channel.config.controller == scene::ControllerMode::sampled || channel.holder.empty()) continue;
     const StepIndex need = needed(channel, n);
     if (channel.pace != Pace::in_step || need < 0 || is_through(channel, n)) continue;
     const bool is_there = std::any_of(channel.early.begin(), channel.early.end(),
@@ -360,7 +361,7 @@ void InputGate::advance(StepIndex n, std::span<const SignalCourse> script, std::
   latest_ns_ = now_ns;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Channel& channel = channels_[i];
-    const bool is_lockstep = channel.config.exchange == Exchange::lockstep;
+    const bool is_lockstep = channel.config.controller == scene::ControllerMode::lockstep;
     // who is in step has sent what was asked of it, however long ago
     const std::int64_t silent_since_ns =
         is_lockstep ? std::max(channel.written_ns, channel.out_since_ns) : channel.written_ns;
@@ -431,4 +432,4 @@ void InputGate::add_to(StateHash& hash) const noexcept {
   }
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

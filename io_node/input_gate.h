@@ -37,9 +37,10 @@
 #include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "core/time.h"
+#include "scene/defs.h"
 #include "transport/transport.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // Variables of every input, in this order: quantity and unit.
 struct ChannelVariable {
@@ -48,8 +49,6 @@ struct ChannelVariable {
 };
 inline constexpr ChannelVariable kChannelVariables[] = {
     {".raw", "1"}, {".control", "1"}, {".age", "1"}, {".loop_delay", "1"}, {".loop_time_ms", "ms"}};
-
-enum class Exchange : std::uint8_t { sampled, lockstep };
 
 // One input of thesis table 22 as the gate needs it.
 struct ChannelConfig {
@@ -60,7 +59,7 @@ struct ChannelConfig {
   double ramp = 0;        // s for a full stroke 0..1; 0: none
   double rate_limit = 0;  // 1/s, of the raw value; 0: none
   double neutral = 0;     // raw value of a channel that nobody moves
-  Exchange exchange = Exchange::sampled;
+  scene::ControllerMode controller = scene::ControllerMode::sampled;
   StepIndex delay = 1;                   // d of a lockstep channel, steps, >= 1
   SimDuration wait = milliseconds(100);  // longest time that a tick waits for its controller
   std::string supervisor{};              // controller that may take the channel from its holder; empty: nobody may
@@ -230,4 +229,4 @@ class InputGate {
   std::uint64_t fell_out_of_step_ = 0;
 };
 
-}  // namespace slew::io
+}  // namespace slew::io_node

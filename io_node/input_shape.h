@@ -10,7 +10,7 @@
 
 #include "core/signal.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 inline constexpr double kAnyChange = std::numeric_limits<double>::infinity();
 
@@ -24,4 +24,4 @@ struct ShapedStep {
 [[nodiscard]] ShapedStep shape_step(std::span<const SignalPiece> raw, double dead_zone, double most,
                                     double start) noexcept;
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -8,7 +8,7 @@
 #include "node/sample_exchange.h"
 #include "transport/roles.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace {
 
 using node::to_text;
@@ -32,11 +32,13 @@ GateConfig seeing(GateConfig gate, transport::Transport& transport) {
 IoNode::IoNode(transport::Transport& transport, IoConfig config)
     : member_(Role::io, transport, kOwnTopics),
       config_(std::move(config)),
-      gate_(config_.channels, seeing(config_.gate, transport), config_.step),
-      parameters_(config_.parameters, config_.step),
+      H_(config_.session.step_duration()),
+      rejoin_(duration_of_seconds(config_.session.rejoin)),
+      gate_(config_.channels, seeing(config_.gate(), transport), H_),
+      parameters_(config_.parameters, H_),
       is_paused_(config_.starts_paused),
-      clock_(config_.step, config_.overrun, timing()),
-      shedding_(config_.shed, (config_.required_roles & bit(Role::flex)) != 0 ? View::flex : View::none),
+      clock_(config_.session, timing()),
+      shedding_(config_.session.shed, (config_.required_roles & bit(Role::flex)) != 0 ? View::flex : View::none),
       input_ns_(config_.channels.size()),
       tick_ns_(static_cast<std::size_t>(kLoopMemory)),
       script_(config_.channels.size()) {
@@ -44,11 +46,12 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
   tick_.controls.resize(gate_.size());
   tick_.age.resize(gate_.size());
   if (config_.source) {
-    const std::size_t pieces = config_.source->most_pieces(config_.step);
+    const std::size_t pieces = config_.source->most_pieces(H_);
     gate_.reserve(pieces);
     for (SignalCourse& raw : script_) raw.reserve(pieces);
   }
-  sent_.set_depth(node::sent_depth(config_.give_up_after, config_.step));
+  const SimDuration give_up_after = duration_of_seconds(config_.session.give_up_after);
+  sent_.set_depth(node::sent_depth(give_up_after, H_));
   if (transport::encode(tick_, buffer_)) sent_.reserve(buffer_.size());
   description_.name = config_.session_name;
   description_.scene_name = config_.scene_name;
@@ -56,15 +59,15 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
   description_.assets = config_.assets;
   description_.build = member_.identity().build;
   description_.self_test = member_.identity().self_test;
-  description_.step_ns = config_.step.ns;
-  description_.pace = config_.pace;
-  description_.window = static_cast<std::uint32_t>(config_.window);
+  description_.step_ns = H_.ns;
+  description_.pace = config_.session.pace;
+  description_.window = static_cast<std::uint32_t>(config_.session.window_steps());
   description_.required_roles = config_.required_roles;
   description_.host = member_.identity().host;
   description_.pid = member_.identity().pid;
   description_.started_ns = member_.identity().started_ns;
-  description_.rejoin_ns = config_.rejoin.ns;
-  description_.give_up_ns = config_.give_up_after.ns;
+  description_.rejoin_ns = rejoin_.ns;
+  description_.give_up_ns = give_up_after.ns;
   description_.header = member_.header(Phase::join, config_.beginning ? config_.beginning->step : kJoinStep);
   description_.header.session = node::random_session_id();
   static_cast<void>(member_.adopt(description_, 0));
@@ -195,7 +198,8 @@ void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::
   member_.heard(header, topic, now_ns);
   if (header.phase != Phase::running) return;
   // nobody can be further than the ticks that were sent, but a free-running node, which does not wait for them
-  if (header.step > n_ + (config_.is_free_running ? config_.window : 0)) {
+  if (header.step >
+      n_ + (config_.session.mode == scene::ExchangeMode::free_running ? config_.session.window_steps() : 0)) {
     ++member_.refusals().too_far_ahead;
     return;
   }
@@ -268,7 +272,7 @@ bool IoNode::advance_initialising(std::int64_t now_ns) {
   show_running();
   stage_ = Stage::ticking;
   clock_.begin(n_, now_ns);
-  last_tick_ns_ = now_ns - config_.step.ns;
+  last_tick_ns_ = now_ns - H_.ns;
   resend_.restart(now_ns);
   keep_first_states(now_ns);
   return true;
@@ -310,9 +314,9 @@ bool IoNode::advance_join(std::int64_t now_ns) {
 
 // the last sample that a physics node must have published before tick n
 StepIndex IoNode::needed_of(Role role, StepIndex n) const noexcept {
-  if (!transport::traits(role).is_follower) return n - config_.window + 1;
+  if (!transport::traits(role).is_follower) return n - config_.session.window_steps() + 1;
   const StepIndex oldest = n - node::kFollowerWindow;
-  return oldest < 0 ? kJoinStep : oldest - oldest % static_cast<StepIndex>(config_.flexible_every);
+  return oldest < 0 ? kJoinStep : oldest - oldest % config_.flexible_every;
 }
 
 // the first role whose samples are missing for tick n
@@ -325,7 +329,7 @@ std::optional<Role> IoNode::holds_back(StepIndex n) const noexcept {
 
 bool IoNode::partners_allow(StepIndex n) const noexcept {
   if (holds_back(n)) return false;
-  if (config_.pace == wire::Pace::free && member_.requires_role(Role::recorder)) {
+  if (!is_paced() && member_.requires_role(Role::recorder)) {
     const node::Peer& recorder = member_.peer(Role::recorder);
     if (recorder.status.header.epoch == member_.epoch() && recorder.status.recorded_step < n - kRecorderWindow) {
       return false;
@@ -335,9 +339,9 @@ bool IoNode::partners_allow(StepIndex n) const noexcept {
 }
 
 std::int64_t IoNode::due_ns(StepIndex n) const noexcept {
-  if (config_.pace == wire::Pace::free) return 0;
+  if (!is_paced()) return 0;
   // catching up at no more than twice real time
-  return std::max(clock_.due_ns(n), last_tick_ns_ + config_.step.ns / 2);
+  return std::max(clock_.due_ns(n), last_tick_ns_ + H_.ns / 2);
 }
 
 // What the status says of a session that ticks: it runs, it waits for somebody, or ticks are withheld on request.
@@ -371,16 +375,16 @@ StepIndex IoNode::complete_up_to() const noexcept {
 
 bool IoNode::advance_ticks(std::int64_t now_ns) {
   bool any = false;
-  if (config_.pace == wire::Pace::real) {
+  if (is_paced()) {
     obey(clock_.completed(complete_up_to(), n_, now_ns), now_ns);
-    if (config_.shed != Shed::none) shed_load();
+    if (config_.session.shed != scene::ShedLoad::none) shed_load();
   }
   while (stage_ == Stage::ticking && member_.send_failure().is_ok()) {
     if (is_saving_now()) {
       if (!advance_saving(now_ns)) return any;
       clock_.excuse(n_, now_ns);
     }
-    if (config_.steps >= 0 && n_ >= config_.steps) {
+    if (is_over(n_)) {
       begin_ending(ExitCode::ok, "", now_ns);
       return true;
     }
@@ -398,12 +402,12 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
       return any;
     }
     end_stall(now_ns);
-    if (config_.pace == wire::Pace::real) {
+    if (is_paced()) {
       if (is_paused_) {
         clock_.excuse(n_, now_ns);  // a single step is due when it is asked for
       } else if (const std::optional<Verdict> verdict = clock_.keep_time(n_, now_ns)) {
         obey(verdict, now_ns);
-        if (verdict->what != Overrun::slip) return true;
+        if (verdict->what != scene::OverrunPolicy::slip) return true;
       }
       if (now_ns < due_ns(n_)) return any;
     }
@@ -480,13 +484,13 @@ void IoNode::ask_for_missing(std::int64_t now_ns) {
 
 void IoNode::issue_tick(std::int64_t now_ns) {
   // inputs of this step
-  const SimTime t = start_of(n_, config_.step);
+  const SimTime t = start_of(n_, H_);
   for (SignalCourse& raw : script_) raw.clear();
   tick_.commands.clear();
   if (config_.source != nullptr) {
-    config_.source->courses(t, t + config_.step, script_);
+    config_.source->courses(t, t + H_, script_);
     script_changes_.clear();
-    config_.source->changes(t, t + config_.step, script_changes_);
+    config_.source->changes(t, t + H_, script_changes_);
     waiting_commands_.insert(waiting_commands_.end(), script_changes_.begin(), script_changes_.end());
   }
   const std::int64_t waited_ns = controllers_wait_ns_ == 0 ? 0 : now_ns - controllers_wait_ns_;
@@ -504,10 +508,11 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   parameters_.advance(n_);
   // the tick
   tick_.header = member_.header(Phase::running, n_);
-  tick_.flags = shedding_.level() == Shed::none   ? 0
-                : shedding_.level() == Shed::view ? static_cast<std::uint32_t>(wire::TickFlag::shed_view)
-                                                  : static_cast<std::uint32_t>(wire::TickFlag::shed_view) |
-                                                        static_cast<std::uint32_t>(wire::TickFlag::shed_variables);
+  tick_.flags = shedding_.level() == scene::ShedLoad::none ? 0
+                : shedding_.level() == scene::ShedLoad::view
+                    ? static_cast<std::uint32_t>(wire::TickFlag::shed_view)
+                    : static_cast<std::uint32_t>(wire::TickFlag::shed_view) |
+                          static_cast<std::uint32_t>(wire::TickFlag::shed_variables);
   tick_.controls.resize(gate_.size());
   tick_.age.resize(gate_.size());
   for (std::size_t i = 0; i < gate_.size(); ++i) {
@@ -520,7 +525,7 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   tick_.state_hash = hash.digest();
   tick_ns_[static_cast<std::size_t>(n_ % kLoopMemory)] = now_ns;
   send_tick(n_);
-  if (config_.pace == wire::Pace::real) {
+  if (is_paced()) {
     clock_.ran(n_, now_ns);
     clock_.used_input(n_, oldest_unused_input());
   }
@@ -661,4 +666,4 @@ void IoNode::watch(std::int64_t now_ns) {
   }
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

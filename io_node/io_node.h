@@ -31,8 +31,9 @@
 #include "node/resend_clock.h"
 #include "node/sent_cache.h"
 #include "node/stall_watch.h"
+#include "scene/defs.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // Where the raw values come from when no controller holds a channel, and the timed parameter changes.
 class InputSource {
@@ -62,36 +63,30 @@ struct Beginning {
 
 struct IoConfig {
   std::string session_name;
+  scene::SessionDef session;
   std::string scene_name;
   std::string scene_text;
   std::vector<wire::Asset> assets;
-  SimDuration step = milliseconds(1);
-  wire::Pace pace = wire::Pace::real;
-  StepIndex window = 1;              // W: ticks ahead of the slowest physics node, at least 1
   std::uint32_t required_roles = 0;  // includes io itself
-  StepIndex steps = -1;              // END after so many; -1: until stopped
   std::vector<ChannelConfig> channels;
-  GateConfig gate;
   std::unique_ptr<InputSource> source;  // may be null
   // over_ns: -1 when the request leaves it open
   std::function<ParameterVerdict(const std::string& path, double value, std::int64_t over_ns)> judge_parameter;
-  std::vector<LiveParameter> parameters;  // those that may change while the session runs
-  std::uint32_t variables_every = 10;
-  std::uint32_t flexible_every = 1;            // steps between two samples of flexible bodies
+  std::vector<LiveParameter> parameters;       // those that may change while the session runs
+  StepIndex variables_every = 10;              // steps between two blocks of variables
+  StepIndex flexible_every = 1;                // steps between two samples of flexible bodies
+  StepIndex exchange_unit = 1;                 // steps after which all nodes have exchanged: a state can be saved
   SimDuration name_check = milliseconds(300);  // listens so long for a holder of the name; 0 in one process
   SimDuration join_timeout = node::kJoinTimeout;
   bool starts_paused = false;
-  bool is_free_running = false;                      // nodes may be ahead of the ticks by the window
-  SimDuration rejoin{};                              // a lost physics node's place is held so long; 0: the session ends
-  SimDuration stall_timeout = milliseconds(10'000);  // longest wait for one message of a node that is heard otherwise
-  SimDuration give_up_after{wire::kGiveUpNs};        // silence after which a node is given up
-  std::string save_obstacle{};                       // why the session's state cannot be saved; empty: it can
-  StepIndex save_unit = 1;  // every how many steps it can, because all nodes have exchanged then
+  std::string save_obstacle{};  // why the session's state cannot be saved; empty: it can
   std::optional<Beginning> beginning{};
   // of those who send values: the same on loopback, where their time stamps tell when they did
   node::WriterClock controllers_clock = node::WriterClock::other;
-  OverrunRules overrun;    // of `real` pace
-  Shed shed = Shed::none;  // the most that a session that overruns leaves out
+
+  [[nodiscard]] GateConfig gate() const {
+    return {.neutral_after = duration_of_seconds(session.controller_timeout), .variables_every = variables_every};
+  }
 };
 
 // A node that has not given its state for so long: the session goes on without being saved.
@@ -139,6 +134,11 @@ class IoNode final : public node::Node {
   bool advance_initialising(std::int64_t now_ns);
   bool advance_ending(std::int64_t now_ns);
 
+  [[nodiscard]] bool is_paced() const noexcept { return config_.session.pace == Pace::real; }
+  // The session ends before this step.
+  [[nodiscard]] bool is_over(StepIndex n) const noexcept {
+    return config_.session.duration > 0 && n >= config_.session.steps();
+  }
   [[nodiscard]] bool is_withheld() const noexcept { return is_paused_ && single_steps_ == 0; }
   // The next tick waits for states.
   [[nodiscard]] bool is_saving_now() const noexcept { return saving_ && n_ >= saving_->step; }
@@ -243,6 +243,8 @@ class IoNode final : public node::Node {
 
   node::SessionMember member_;
   IoConfig config_;
+  SimDuration H_;
+  SimDuration rejoin_;  // 0: the place of a lost physics node is not held
   InputGate gate_;
   LiveParameters parameters_;
   Stage stage_ = Stage::checking_name;
@@ -293,4 +295,4 @@ class IoNode final : public node::Node {
   wire::ControllerInput input_;
 };
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace slew::io {
+namespace slew::io_node {
 
 LiveParameters::LiveParameters(const std::vector<LiveParameter>& parameters, SimDuration step)
     : ramps_(parameters.size()), step_(step) {
@@ -45,4 +45,4 @@ void LiveParameters::reset() noexcept {
   values_ = scene_values_;
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -14,7 +14,7 @@
 #include "coupling/parameter_ramps.h"
 #include "transport/wire.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 struct LiveParameter {
   std::string path;  // "Bag.mass"
@@ -48,4 +48,4 @@ class LiveParameters {
   SimDuration step_;
 };
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -9,10 +9,9 @@
 #include <string>
 
 #include "core/time.h"
+#include "scene/defs.h"
 
-namespace slew::io {
-
-enum class Shed : std::uint8_t { none, view, variables };
+namespace slew::io_node {
 
 // Whether there is a flex node.
 enum class View : std::uint8_t { none, flex };
@@ -26,22 +25,22 @@ class LoadShedding {
   static constexpr std::uint64_t kTooMany = 5;   // overruns in it
   static constexpr std::uint64_t kCalm = 2000;   // judged steps
 
-  LoadShedding(Shed most, View view) : most_(most), view_(view) {}
+  LoadShedding(scene::ShedLoad most, View view) : most_(most), view_(view) {}
 
   // n: the next step; judged, overruns: how many of the steps so far. An event when the level changes, else empty.
   [[nodiscard]] std::string look(StepIndex n, std::uint64_t judged, std::uint64_t overruns, Steering steering);
-  [[nodiscard]] Shed level() const noexcept { return level_; }
+  [[nodiscard]] scene::ShedLoad level() const noexcept { return level_; }
 
  private:
-  [[nodiscard]] std::string change_to(Shed level, StepIndex n, const std::string& why);
+  [[nodiscard]] std::string change_to(scene::ShedLoad level, StepIndex n, const std::string& why);
 
-  [[nodiscard]] Shed beside(Shed level, int way) const noexcept;
+  [[nodiscard]] scene::ShedLoad beside(scene::ShedLoad level, int way) const noexcept;
 
-  Shed most_;
+  scene::ShedLoad most_;
   View view_;
-  Shed level_ = Shed::none;
+  scene::ShedLoad level_ = scene::ShedLoad::none;
   std::uint64_t window_from_ = 0, overruns_from_ = 0;  // of the present window
   std::uint64_t calm_from_ = 0, calm_overruns_ = 0;    // judged steps and overruns at the last overrun
 };
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -17,18 +17,18 @@ struct IoOptions {
 
 ExitCode run(const IoOptions& options) {
   node::apply_real_time(options.node, "io_node");
-  const io::SessionScene session = io::load_session_scene(options.scene);
+  const io_node::SessionScene session = io_node::load_session_scene(options.scene);
   const auto transport = node::open_transport(wire::Role::io, options.node.session);
-  io::SessionWish wish;
+  io_node::SessionWish wish;
   wish.session_name = options.node.session.session;
-  wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
-  wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
-  io::IoConfig config = io::make_config(session, wish);
+  wish.operating = options.scene.has_script() ? io_node::Operator::script : io_node::Operator::nobody;
+  wish.recording = options.scene.is_recording ? io_node::Recording::required : io_node::Recording::none;
+  io_node::IoConfig config = io_node::make_config(session, wish);
   config.join_timeout = options.node.join().join_timeout;
   // on loopback everybody has this host's clock
   const bool is_on_loopback = options.node.session.interface == node::SessionOptions{}.interface;
   config.controllers_clock = is_on_loopback ? node::WriterClock::same : node::WriterClock::other;
-  io::IoNode node(*transport, std::move(config));
+  io_node::IoNode node(*transport, std::move(config));
   return node::run_node(node).value();  // its own session is nothing that it follows
 }
 

@@ -5,7 +5,7 @@
 #include "core/printable.h"
 #include "io_node/io_node.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace {
 
 constexpr std::size_t kKeptAnswers = 64;  // that a request which is sent again may need
@@ -216,4 +216,4 @@ void IoNode::tell_notices() {
   }
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

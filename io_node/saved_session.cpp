@@ -13,7 +13,7 @@
 #include "core/input_file.h"
 #include "core/state_hash.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace {
 
 constexpr char kMagic[] = {'S', 'L', 'E', 'W', 'S', 'A', 'V', 'E'};
@@ -211,4 +211,4 @@ Status read_saved(const std::filesystem::path& path, SavedSession& saved) {
   return Status::ok();
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

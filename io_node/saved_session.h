@@ -19,7 +19,7 @@
 #include "node/checkpoint.h"
 #include "transport/wire.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 inline constexpr std::uint32_t kSavedFormat = 1;
 
@@ -54,4 +54,4 @@ enum class Replace : std::uint8_t { never, existing };
 // Any bytes may come. Errors: bad_input, with what is wrong and what to do.
 [[nodiscard]] Status read_saved(const std::filesystem::path& path, SavedSession& saved);
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -3,14 +3,12 @@
 #include "scene/parameters.h"
 #include "transport/roles.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // a scene that was loaded fits the wire
 static_assert(scene::kMaxSceneNameLength <= wire::kMaxNameLength);
 static_assert(scene::kMaxAssetNameLength <= wire::kMaxReasonLength);
 static_assert(scene::kMaxExpandedBytes <= wire::kMaxSceneBytes);
-static_assert(static_cast<int>(Shed::view) == static_cast<int>(scene::ShedLoad::view));
-static_assert(static_cast<int>(Shed::variables) == static_cast<int>(scene::ShedLoad::variables));
 
 void ScriptSource::courses(SimTime from, SimTime to, std::span<SignalCourse> raw) {
   for (std::size_t i = 0; i < raw.size(); ++i) player_.read_course(i, from, to, raw[i]);
@@ -61,20 +59,13 @@ std::string obstacle_to_saving(const scene::Scene& scene) {
 IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   IoConfig config;
   config.session_name = wish.session_name;
+  config.session = scene.session;
   config.scene_name = scene.name;
   config.scene_text = scene.expanded_text;
   for (const scene::Asset& asset : scene.assets) config.assets.push_back({asset.name, asset.size, asset.sha256});
-  config.step = scene.session.step_duration();
-  config.pace = scene.session.pace == scene::Pace::free ? wire::Pace::free : wire::Pace::real;
-  config.window = scene.session.window_steps();
-  config.is_free_running = scene.session.mode == scene::ExchangeMode::free_running;
   config.save_obstacle = obstacle_to_saving(scene);
-  config.save_unit = scene.exchange_unit();
-  config.rejoin = duration_of_seconds(scene.session.rejoin);
-  config.stall_timeout = duration_of_seconds(scene.session.stall_timeout);
-  config.give_up_after = duration_of_seconds(scene.session.give_up_after);
+  config.exchange_unit = scene.exchange_unit();
   config.required_roles = required_roles(scene, wish.recording);
-  config.steps = scene.session.duration > 0 ? scene.session.steps() : -1;
   for (const scene::InputDef& input : scene.inputs) {
     ChannelConfig channel;
     channel.name = input.name;
@@ -83,15 +74,12 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
     channel.dead_zone = input.dead_zone;
     channel.ramp = input.ramp;
     channel.rate_limit = input.rate_limit;
-    const bool is_lockstep = input.controller == scene::ControllerMode::lockstep;
-    channel.exchange = is_lockstep ? Exchange::lockstep : Exchange::sampled;
+    channel.controller = input.controller;
     channel.delay = input.controller_delay;
     channel.wait = duration_of_seconds(input.controller_wait);
     channel.supervisor = input.supervisor;
     config.channels.push_back(std::move(channel));
   }
-  config.gate.neutral_after = duration_of_seconds(scene.session.controller_timeout);
-  config.gate.variables_every = scene.recording.every;
   if (wish.operating == Operator::script && !scene.script.is_empty()) {
     config.source = std::make_unique<ScriptSource>(scene);
   }
@@ -105,16 +93,9 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
     const scene::Assignment assignment = directory->check(path, value, over);
     return ParameterVerdict{assignment.status.is_ok(), assignment.status.text, assignment.over.ns};
   };
-  config.variables_every = static_cast<std::uint32_t>(scene.recording.every);
+  config.variables_every = scene.recording.every;
   config.flexible_every = scene.flexible_every();
-  config.overrun.policy = scene.session.overrun == scene::OverrunPolicy::hold   ? Overrun::hold
-                          : scene.session.overrun == scene::OverrunPolicy::stop ? Overrun::stop
-                                                                                : Overrun::slip;
-  config.shed = static_cast<Shed>(scene.session.shed);
-  config.overrun.after = scene.session.overrun_after;
-  config.overrun.lag = duration_of_seconds(scene.session.overrun_lag);
-  config.overrun.grace = duration_of_seconds(scene.session.start_grace);
   return config;
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

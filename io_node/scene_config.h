@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "scene/script.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // The scene's script as a source of raw values and parameter changes.
 class ScriptSource final : public InputSource {
@@ -38,4 +38,4 @@ struct SessionWish {
 // Everything about step, pace and duration is the scene's, overrides included.
 [[nodiscard]] IoConfig make_config(const scene::Scene& scene, const SessionWish& wish);
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -28,29 +28,27 @@
 
 #include "core/time.h"
 #include "node/step_timing.h"
+#include "scene/defs.h"
 
-namespace slew::io {
-
-enum class Overrun : std::uint8_t { slip, hold, stop };
-
-struct OverrunRules {
-  Overrun policy = Overrun::slip;
-  std::int64_t after = 0;              // steps in a row; 0: the lag alone
-  SimDuration lag = milliseconds(50);  // behind the wall clock
-  SimDuration grace = {};              // after the first step
-};
+namespace slew::io_node {
 
 // What the policy asks for, and why.
 struct Verdict {
-  Overrun what = Overrun::slip;
+  scene::OverrunPolicy what = scene::OverrunPolicy::slip;
   std::string why;  // an event: for the recording and the user; empty: nothing to tell
   bool is_for_recording_alone = false;
 };
 
 class SessionClock {
  public:
-  SessionClock(SimDuration step, OverrunRules rules, node::NodeTiming& timing)
-      : H_(step.ns), rules_(rules), timing_(timing) {}
+  // The session's step, overrun policy with its limits, and start-up grace.
+  SessionClock(const scene::SessionDef& session, node::NodeTiming& timing)
+      : H_(session.step_duration().ns),
+        policy_(session.overrun),
+        after_(session.overrun_after),
+        longest_lag_ns_(duration_of_seconds(session.overrun_lag).ns),
+        grace_ns_(duration_of_seconds(session.start_grace).ns),
+        timing_(timing) {}
 
   // Step n, the first of an epoch, is due now: 0, or that of a saved state.
   void begin(StepIndex n, std::int64_t now_ns) noexcept;
@@ -73,7 +71,7 @@ class SessionClock {
 
   // The books as of now, into the node's timing. n: the next tick.
   void close(StepIndex n, std::int64_t now_ns) noexcept;
-  [[nodiscard]] bool is_judged(StepIndex n) const noexcept { return (n - grace_from_) * H_ >= rules_.grace.ns; }
+  [[nodiscard]] bool is_judged(StepIndex n) const noexcept { return (n - grace_from_) * H_ >= grace_ns_; }
   [[nodiscard]] std::int64_t slip_ns() const noexcept { return all_slips_ns_; }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
 
@@ -91,7 +89,9 @@ class SessionClock {
   [[nodiscard]] Verdict overrun(StepIndex n, const std::string& why);
 
   std::int64_t H_;
-  OverrunRules rules_;
+  scene::OverrunPolicy policy_;
+  std::int64_t after_;  // consecutive overruns; 0: the lag alone decides
+  std::int64_t longest_lag_ns_, grace_ns_;
   node::NodeTiming& timing_;
   std::array<Issued, kDepth> issued_{};
   StepIndex grace_from_ = 0;     // the first step of this epoch, or of a process that took a place over
@@ -115,4 +115,4 @@ class SessionClock {
 // How many of the judged steps were given up, by what io's health says.
 [[nodiscard]] std::uint64_t judged_steps_given_up(const wire::Health& io) noexcept;
 
-}  // namespace slew::io
+}  // namespace slew::io_node

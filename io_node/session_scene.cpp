@@ -5,7 +5,7 @@
 #include "core/failure.h"
 #include "node/identity.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace {
 
 // t in seconds, as people write it
@@ -55,4 +55,4 @@ IoConfig make_config(const SessionScene& session, const SessionWish& wish) {
   return config;
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

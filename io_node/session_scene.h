@@ -9,7 +9,7 @@
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 struct SessionScene {
   scene::Scene scene;
@@ -23,4 +23,4 @@ struct SessionScene {
 // make_config() and the states.
 [[nodiscard]] IoConfig make_config(const SessionScene& session, const SessionWish& wish);
 
-}  // namespace slew::io
+}  // namespace slew::io_node

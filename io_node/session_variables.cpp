@@ -5,7 +5,7 @@
 
 #include "io_node/io_node.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 using node::to_text;
 using wire::Phase;
@@ -83,9 +83,8 @@ double IoNode::loop_time_ms(std::size_t channel, std::int64_t now_ns) const noex
   const StepIndex based_on = gate_.based_on(channel);
   if (based_on < 0) return kNoLoop;
   const StepIndex delay = n_ - based_on;
-  const std::int64_t spent_ns = delay < kLoopMemory
-                                    ? now_ns - tick_ns_[static_cast<std::size_t>(based_on % kLoopMemory)]
-                                    : delay * config_.step.ns;
+  const std::int64_t spent_ns =
+      delay < kLoopMemory ? now_ns - tick_ns_[static_cast<std::size_t>(based_on % kLoopMemory)] : delay * H_.ns;
   return static_cast<double>(spent_ns) * 1e-6;
 }
 
@@ -113,10 +112,9 @@ void IoNode::publish_variables(std::int64_t now_ns) {
 // in the order of kSessionVariables from the release jitter on, then of kNodeVariables by role
 void IoNode::add_timing_values(std::int64_t now_ns) {
   const node::NodeTiming& own = timing();
-  const bool is_paced = config_.pace == wire::Pace::real;
   const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
   for (const double value : {seconds(own.last_release_jitter_ns), seconds(own.last_response_ns),
-                             is_paced ? seconds(now_ns - clock_.due_ns(n_)) : 0.0, count(own.overruns),
+                             is_paced() ? seconds(now_ns - clock_.due_ns(n_)) : 0.0, count(own.overruns),
                              count(clock_.skipped()), count(own.transitions), seconds(own.input_latency.max())}) {
     block_.values.push_back(value);
   }
@@ -131,4 +129,4 @@ void IoNode::add_timing_values(std::int64_t now_ns) {
   }
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -9,9 +9,9 @@
 
 #include "transport/wire.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // In the order of the values. roles: of the session, as bits; those of physics nodes have variables.
 [[nodiscard]] std::vector<wire::VariableEntry> own_variables(std::span<const std::string> inputs, std::uint32_t roles);
 
-}  // namespace slew::io
+}  // namespace slew::io_node

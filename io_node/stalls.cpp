@@ -2,7 +2,7 @@
 #include "io_node/io_node.h"
 #include "transport/roles.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 using wire::Role;
 using wire::Topic;
@@ -24,16 +24,17 @@ void IoNode::look_for_stall(std::int64_t now_ns) {
     if (stall_.may_warn()) member_.warn(stall_.text(member_, asked));
     show_running();
   }
-  if (!stall_.is_named() || stall_.waited() < config_.stall_timeout) return;
+  const SimDuration stall_timeout = duration_of_seconds(config_.session.stall_timeout);
+  if (!stall_.is_named() || stall_.waited() < stall_timeout) return;
   const Role role = stall_.awaited().role;
   if (role == Role::recorder) return;
   const std::string text = stall_.text(member_, asked);
-  if (config_.rejoin.ns > 0 && hold_place(role, now_ns)) {
-    member_.warn(text + " for " + node::seconds_text(config_.stall_timeout) + "; its place was given away");
+  if (rejoin_.ns > 0 && hold_place(role, now_ns)) {
+    member_.warn(text + " for " + node::seconds_text(stall_timeout) + "; its place was given away");
     return;
   }
   begin_ending(ExitCode::node_lost,
-               text + ", nothing came within " + node::seconds_text(config_.stall_timeout) +
+               text + ", nothing came within " + node::seconds_text(stall_timeout) +
                    " (session.stall_timeout); the session was held after step " + std::to_string(n_) +
                    " and ended, what was recorded up to there is valid; look for a filter or tunnel that drops some "
                    "datagrams",
@@ -47,4 +48,4 @@ void IoNode::end_stall(std::int64_t now_ns) {
   if (was_named) show_running();
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -8,7 +8,7 @@
 #include "io_node/tick_follower.h"
 #include "node/sample_exchange.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 using node::to_text;
 using wire::NodeState;
@@ -105,7 +105,7 @@ void IoNode::save_own(StepIndex step, node::Checkpoint& checkpoint) const {
 Status IoNode::load_own(const node::Checkpoint& checkpoint) {
   InputGate gate = gate_;
   // a copy has no room for further changes
-  LiveParameters parameters(config_.parameters, config_.step);
+  LiveParameters parameters(config_.parameters, H_);
   std::vector<wire::Command> waiting;
   StateReader bytes(checkpoint.bytes, own_format(config_));
   gate.load(bytes, checkpoint.step);
@@ -133,7 +133,7 @@ Status IoNode::load_own(const node::Checkpoint& checkpoint) {
 
 TickFollower::TickFollower(const IoConfig& config)
     : config_(config),
-      parameters_(config.parameters, config.step),
+      parameters_(config.parameters, config.session.step_duration()),
       controls_(config.channels.size()),
       before_(controls_.size()) {
   static_cast<void>(begin(nullptr));
@@ -141,7 +141,7 @@ TickFollower::TickFollower(const IoConfig& config)
 
 Status TickFollower::begin(const node::Checkpoint* own) {
   parameters_.reset();
-  InputGate gate(config_.channels, config_.gate, config_.step);
+  InputGate gate(config_.channels, config_.gate(), config_.session.step_duration());
   Status status = Status::ok();
   if (own != nullptr) {
     StateReader bytes(own->bytes, own_format(config_));
@@ -210,14 +210,13 @@ void IoNode::begin_saving(const wire::ControlRequest& request, std::int64_t now_
   if (!vacancies_.empty()) return refuse(vacancy_text(vacancies_.front()) + "; ask again when it has come");
   if (saving_ || upload_.asked)
     return refuse("the session is being saved or loaded already; ask again when that is done");
-  const StepIndex step = (n_ + config_.save_unit - 1) / config_.save_unit * config_.save_unit;
+  const StepIndex step = (n_ + config_.exchange_unit - 1) / config_.exchange_unit * config_.exchange_unit;
   if (is_paused_ && step > n_ + single_steps_) {
     return refuse("the session is paused at step " + std::to_string(n_) + ", and all nodes exchange at every " +
-                  std::to_string(config_.save_unit) + "th step only; go on to step " + std::to_string(step) +
+                  std::to_string(config_.exchange_unit) + "th step only; go on to step " + std::to_string(step) +
                   " first ('slewring control step " + std::to_string(step - n_) + "')");
   }
-  if (config_.steps >= 0 && step > config_.steps)
-    return refuse("the session ends before the next step at which it could be saved");
+  if (is_over(step - 1)) return refuse("the session ends before the next step at which it could be saved");
   saving_ = Saving{request, step, 0, {}, true};
   // nodes save when they get there; who is there saves at once
   saving_->resend.restart(now_ns - node::kResendAfter.ns);
@@ -226,7 +225,7 @@ void IoNode::begin_saving(const wire::ControlRequest& request, std::int64_t now_
 
 // Where places are held no tick goes out before every node can be replaced.
 void IoNode::keep_first_states(std::int64_t now_ns) {
-  if (config_.rejoin.ns == 0) return;
+  if (rejoin_.ns == 0) return;
   saving_ = Saving{{}, n_, 0, {}, false};
   saving_->resend.restart(now_ns);
 }
@@ -361,10 +360,10 @@ void IoNode::advance_loading(std::int64_t now_ns) {
     }
   }
   const StepIndex step = own.checkpoint().step;
-  if (step % config_.save_unit != 0 || (config_.steps >= 0 && step >= config_.steps)) {
+  if (step % config_.exchange_unit != 0 || is_over(step)) {
     return refuse("this session cannot go on at step " + std::to_string(step) + ": it ends at step " +
-                  std::to_string(config_.steps) + ", and nodes exchange at every " + std::to_string(config_.save_unit) +
-                  "th step");
+                  std::to_string(config_.session.steps()) + ", and nodes exchange at every " +
+                  std::to_string(config_.exchange_unit) + "th step");
   }
   // on copies first, so that a refusal changes nothing
   if (const Status loaded = load_own(own.checkpoint()); !loaded.is_ok()) return refuse(loaded.text);
@@ -399,7 +398,7 @@ bool IoNode::are_bound(Role role, Role other) const noexcept {
 // What was on its way when its writer died is lost with it. Two that exchange must meet: each waits for the other's
 // sample of the step that it has reached, and can say its own from the step on that it began with.
 bool IoNode::suits(Role role, StepIndex step) const noexcept {
-  if (step % config_.save_unit != 0) return false;
+  if (step % config_.exchange_unit != 0) return false;
   for (const Role other : wire::kPhysicsRoles) {
     if (other == role || !member_.requires_role(other) || !are_bound(role, other)) continue;
     // both begin anew, at the same step
@@ -447,14 +446,14 @@ bool IoNode::is_replacing() const noexcept {
 
 std::string IoNode::vacancy_text(const Vacancy& vacancy) const {
   return vacancy.who + " is gone at step " + std::to_string(vacancy.lost_at) + "; its place is held for " +
-         node::seconds_text(config_.rejoin) + ", who takes it gets the state of step " + std::to_string(vacancy.from);
+         node::seconds_text(rejoin_) + ", who takes it gets the state of step " + std::to_string(vacancy.from);
 }
 
 // The role's process is gone. False: it cannot be replaced, and the session ends as without session.rejoin.
 bool IoNode::hold_place(Role role, std::int64_t now_ns) {
   const node::Checkpoint* state = stage_ == Stage::ticking ? state_for(role) : nullptr;
   if (state == nullptr || description_.given_up.size() == wire::kMaxGivenUp) return false;
-  Vacancy held{role, member_.describe_peer(role), n_, state->step, now_ns + config_.rejoin.ns};
+  Vacancy held{role, member_.describe_peer(role), n_, state->step, now_ns + rejoin_.ns};
   // who has not come yet begins where this one does
   for (Vacancy& other : vacancies_) {
     if (other.role == role || !are_bound(role, other.role) || !begins_anew(other.role)) continue;
@@ -496,11 +495,11 @@ void IoNode::watch_vacancies(std::int64_t now_ns) {
     }
     if (now_ns > held.deadline_ns) {
       const std::string text = held.who + " is gone, and no other process took its place within " +
-                               node::seconds_text(config_.rejoin) + "; the session was held after step " +
-                               std::to_string(n_) + " and ended, what was recorded up to there is valid";
+                               node::seconds_text(rejoin_) + "; the session was held after step " + std::to_string(n_) +
+                               " and ended, what was recorded up to there is valid";
       return begin_ending(ExitCode::node_lost, text, now_ns);
     }
   }
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

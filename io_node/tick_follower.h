@@ -12,7 +12,7 @@
 #include "io_node/live_parameters.h"
 #include "node/checkpoint.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 class TickFollower {
  public:
@@ -31,4 +31,4 @@ class TickFollower {
   std::vector<double> controls_, before_;  // of the last two ticks
 };
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -68,7 +68,7 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
   identity.build = session.build;
   identity.communication_step = {session.step_ns};
   identity.started_ns = session.started_ns;
-  identity.more["pace"] = session.pace == wire::Pace::free ? "free" : "real";
+  identity.more["pace"] = session.pace == Pace::free ? "free" : "real";
   identity.more["protocol"] = std::to_string(session.protocol);
   status = recording::Writer::create(path, identity, config_.limits, writer_, *config_.file_calls);
   if (!status.is_ok()) {
@@ -152,7 +152,7 @@ bool RecorderNode::is_left_out(Topic topic, StepIndex step, std::uint32_t epoch)
   if (most == 0) return false;
   const std::size_t waiting = writer_->backlog_bytes();
   const bool is_full = waiting + config_.limits.chunk_bytes > most;
-  if (member_.session().pace == wire::Pace::free) {
+  if (member_.session().pace == Pace::free) {
     if (is_full && !std::exchange(has_told_of_waiting_, true)) {
       std::fprintf(stderr,
                    "recorder: warning: the disk is slower than the session, which waits for it from step %lld on; "

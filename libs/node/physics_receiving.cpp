@@ -69,7 +69,7 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
     stage_ = Stage::finished;
     return;
   }
-  const bool has_deadline = session.pace == wire::Pace::real;
+  const bool has_deadline = session.pace == Pace::real;
   const bool takes_late = built_.session.mode == scene::ExchangeMode::free_running;
   samples_.configure(member_, built_.exchange, takes_late);
   step_timing_.set_deadline({has_deadline ? session.step_ns * samples_.stride() : 0});

@@ -38,7 +38,7 @@ void PhysicsNode::update_health() noexcept {
 // the time at which that pace brings it.
 void PhysicsNode::expect_next(std::int64_t now_ns) noexcept {
   const std::int64_t stride_ns = std::min(samples_.stride() * member_.session().step_ns, kResendAtMost.ns);
-  const bool has_time = is_follower() || member_.session().pace == wire::Pace::real;
+  const bool has_time = is_follower() || member_.session().pace == Pace::real;
   resend_.restart(has_time ? now_ns + stride_ns : now_ns);
 }
 

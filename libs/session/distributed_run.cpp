@@ -42,7 +42,7 @@ constexpr std::int64_t kStartAgainNs = 500'000'000;
 
 class Supervisor {
  public:
-  Supervisor(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher)
+  Supervisor(const RunOptions& options, const io_node::SessionScene& session, RunWatcher& watcher)
       : Supervisor(options, watcher, session.scene, session.beginning ? session.beginning->step : 0) {}
 
   Supervisor(const RunOptions& options, RunWatcher& watcher, const scene::Scene& scene, StepIndex begin)
@@ -50,7 +50,8 @@ class Supervisor {
         begin_(begin),
         watcher_(watcher),
         step_(scene.session.step_duration()),
-        roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
+        roles_(io_node::required_roles(
+            scene, options.scene.is_recording ? io_node::Recording::required : io_node::Recording::none)),
         name_(scene.name),
         give_up_after_(duration_of_seconds(scene.session.give_up_after)),
         rejoin_(duration_of_seconds(scene.session.rejoin)),
@@ -565,7 +566,7 @@ class Supervisor {
 
 }  // namespace
 
-RunOutcome run_distributed(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher) {
+RunOutcome run_distributed(const RunOptions& options, const io_node::SessionScene& session, RunWatcher& watcher) {
   return Supervisor(options, session, watcher).run();
 }
 

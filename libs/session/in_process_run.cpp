@@ -22,17 +22,17 @@ using wire::Role;
 
 class InProcessRun {
  public:
-  InProcessRun(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher)
+  InProcessRun(const RunOptions& options, const io_node::SessionScene& session, RunWatcher& watcher)
       : options_(options), watcher_(watcher), begin_(session.beginning ? session.beginning->step : 0) {
-    io::SessionWish wish;
+    io_node::SessionWish wish;
     wish.session_name = options.session.session;
-    wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
-    wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
-    io::IoConfig config = io::make_config(session, wish);
+    wish.operating = options.scene.has_script() ? io_node::Operator::script : io_node::Operator::nobody;
+    wish.recording = options.scene.is_recording ? io_node::Recording::required : io_node::Recording::none;
+    io_node::IoConfig config = io_node::make_config(session, wish);
     config.name_check = {};  // no other process is on this bus
     config.join_timeout = node::kNoTimeout;
     roles_ = config.required_roles;
-    io_ = std::make_unique<io::IoNode>(endpoint(Role::io), std::move(config));
+    io_ = std::make_unique<io_node::IoNode>(endpoint(Role::io), std::move(config));
     nodes_.push_back(io_.get());
     for (const Role role : wire::kPhysicsRoles) add_physics(role);
     if (options.scene.is_recording) add_recorder();
@@ -130,7 +130,7 @@ class InProcessRun {
   transport::InProcessBus bus_;
   std::vector<std::unique_ptr<transport::Transport>> endpoints_;
   std::uint32_t roles_ = 0;
-  std::unique_ptr<io::IoNode> io_;
+  std::unique_ptr<io_node::IoNode> io_;
   SubsystemFamily family_;
   std::vector<std::unique_ptr<node::PhysicsNode>> physics_;
   std::unique_ptr<recorder::RecorderNode> recorder_;
@@ -142,7 +142,7 @@ class InProcessRun {
 
 }  // namespace
 
-RunOutcome run_in_process(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher) {
+RunOutcome run_in_process(const RunOptions& options, const io_node::SessionScene& session, RunWatcher& watcher) {
   return InProcessRun(options, session, watcher).run();
 }
 

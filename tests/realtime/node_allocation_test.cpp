@@ -34,10 +34,11 @@ std::unique_ptr<coupling::Subsystem> make(Role role, const scene::Scene& scene) 
 class LockStep {
  public:
   LockStep(scene::Scene scene, StepIndex warm_up) : scene_(std::move(scene)) {
-    io::IoConfig config = io::make_config(scene_, {kSession, io::Operator::script, io::Recording::none});
+    io_node::IoConfig config =
+        io_node::make_config(scene_, {kSession, io_node::Operator::script, io_node::Recording::none});
     config.name_check = {};
-    config.pace = wire::Pace::free;
-    config.steps = warm_up + 1000;
+    config.session.pace = Pace::free;
+    config.session.duration = static_cast<double>(warm_up + 1000) * config.session.step;
     const std::uint32_t roles = config.required_roles;
     io_.emplace(endpoint(Role::io), std::move(config));
     for (const Role role : wire::kPhysicsRoles) {
@@ -104,7 +105,7 @@ class LockStep {
   const scene::Scene scene_;
   transport::InProcessBus bus_;
   std::vector<std::unique_ptr<transport::Transport>> ends_;
-  std::optional<io::IoNode> io_;
+  std::optional<io_node::IoNode> io_;
   std::vector<std::unique_ptr<node::PhysicsNode>> physics_;
   transport::Transport& controller_ = endpoint(Role::controller);
   StepIndex steered_ = kJoinStep;

@@ -8,9 +8,9 @@ namespace slew::analysis {
 using wire::Role;
 
 PlayedScene::PlayedScene(const scene::Scene& scene)
-    : config_(io::make_config(scene, {.session_name = scene.name, .recording = io::Recording::none})),
-      H_(config_.step),
-      gate_(config_.channels, config_.gate, H_),
+    : config_(io_node::make_config(scene, {.session_name = scene.name, .recording = io_node::Recording::none})),
+      H_(config_.session.step_duration()),
+      gate_(config_.channels, config_.gate(), H_),
       session_(scene),
       script_(gate_.size()),
       controls_(gate_.size()) {

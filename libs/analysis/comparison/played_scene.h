@@ -34,9 +34,9 @@ class PlayedScene {
   [[nodiscard]] StateHashes state_hashes() const noexcept;
 
  private:
-  io::IoConfig config_;
+  io_node::IoConfig config_;
   SimDuration H_;
-  io::InputGate gate_;
+  io_node::InputGate gate_;
   session::DirectSession session_;
   StepIndex n_ = 0;
   std::vector<SignalCourse> script_;  // raw, by channel

@@ -26,7 +26,7 @@ std::int64_t process_cpu_ns(std::uint32_t pid) noexcept {
 }
 
 StepIndex slices_of(const YardstickRules& rules, StepIndex steps) {
-  const double seconds = rules.step.seconds() * static_cast<double>(steps);
+  const double seconds = rules.step().seconds() * static_cast<double>(steps);
   return std::max<StepIndex>(1, std::llround(std::ceil(seconds / kLongestSlice)));
 }
 
@@ -52,7 +52,7 @@ CellWatch::CellWatch(const YardstickRules& rules, StepIndex steps, SimDuration g
       cell_(cell),
       slices_(slices_of(rules, steps)),
       steps_(steps),
-      first_slice_(std::min((grace.ns + kJudgedFirst.ns) / rules.step.ns, steps - kLeftAfterwards.ns / rules.step.ns)) {
+      first_slice_(std::min((grace.ns + kJudgedFirst.ns) / rules.step().ns, steps - kLeftAfterwards.ns / rules.step().ns)) {
 }
 
 void CellWatch::look(session::Observer& observer, std::int64_t now_ns) {
@@ -121,7 +121,7 @@ void CellWatch::measure(const session::SessionView& view) {
       if (loop.ends_step) loop.computing = computing_of(view, loop.role);
     }
   }
-  const double session = rules_.step.seconds() * static_cast<double>(steps_);
+  const double session = rules_.step().seconds() * static_cast<double>(steps_);
   around_yardstick_.begin();
   yardstick_.start(rules_, duration_of_seconds(kYardstickShare * session / static_cast<double>(slices_)));
 }
@@ -132,7 +132,7 @@ void CellWatch::follow(const session::SessionView& view) {
   followed_ = io.header.step;
   if (done_ == 0) work_.look(view, followed_);
   if (io.response.count == 0) return;
-  cell_.response.time.push_back(static_cast<double>(followed_) * rules_.step.seconds());
+  cell_.response.time.push_back(static_cast<double>(followed_) * rules_.step().seconds());
   cell_.response.values.push_back(io.response_recent * 1e6);
 }
 

@@ -104,11 +104,11 @@ void Auditor::listen() {
 VirtualSession::VirtualSession(const scene::Scene& scene, const std::string& runs, FaultPlan plan)
     : plan_(std::move(plan)), auditor_(bus_), kills_(plan_.kills) {
   set_floating_point_mode();
-  io::SessionWish wish;
+  io_node::SessionWish wish;
   wish.session_name = "faults";
-  io::IoConfig config = io::make_config(scene, wish);
+  io_node::IoConfig config = io_node::make_config(scene, wish);
   config.name_check = {};
-  auto io_node = std::make_unique<io::IoNode>(place_for(Role::io), std::move(config));
+  auto io_node = std::make_unique<io_node::IoNode>(place_for(Role::io), std::move(config));
   io_ = io_node.get();
   places_.back().node = std::move(io_node);
   for (const Role role : roles_of(scene)) {
@@ -126,7 +126,7 @@ VirtualSession::VirtualSession(const scene::Scene& scene, const std::string& run
 }
 
 std::vector<Role> VirtualSession::roles_of(const scene::Scene& scene) {
-  const std::uint32_t required = io::required_roles(scene, io::Recording::required);
+  const std::uint32_t required = io_node::required_roles(scene, io_node::Recording::required);
   std::vector<Role> roles;
   for (const Role role : wire::kNodeRoles) {
     if ((required & wire::bit(role)) != 0) roles.push_back(role);

@@ -101,7 +101,7 @@ class VirtualSession {
   Auditor auditor_;
   transport::InProcessEndpoint impostor_{bus_, {"impostor", {wire::Topic::node_status}, {}}};
   std::vector<Place> places_;
-  io::IoNode* io_ = nullptr;
+  io_node::IoNode* io_ = nullptr;
   recorder::RecorderNode* recorder_ = nullptr;
   std::int64_t next_health_ns_ = 0;
   std::vector<Kill> kills_;  // to come

@@ -66,9 +66,10 @@ RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesys
     constexpr std::array<Role, 4> kRoles = {Role::io, Role::mechanics, Role::hydraulics, Role::recorder};
     ends[i] = node::open_transport(kRoles[i], bus);
   }
-  io::IoConfig config = io::make_config(scene, {"in_process", io::Operator::script, io::Recording::required});
+  io_node::IoConfig config =
+      io_node::make_config(scene, {"in_process", io_node::Operator::script, io_node::Recording::required});
   config.name_check = {};
-  io::IoNode io(*ends[0], std::move(config));
+  io_node::IoNode io(*ends[0], std::move(config));
   const auto physics = [](Role role) {
     return node::subsystem_factory([role](const scene::Scene& s) { return make_subsystem(role, s); }, ".");
   };

@@ -10,7 +10,7 @@
 
 #include "tests/support/nightly.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace input_gate_test {
 
 using testing::rounds;
@@ -340,7 +340,7 @@ TEST(InputGate, TakingOverAFreeChannelIsAcquiringIt) {
 
 TEST(InputGate, OfTwoValuesForOneStepTheFirstCountsSinceTheClockMustNotDecide) {
   ChannelConfig lever = channel("Lever", 1, 0);
-  lever.exchange = Exchange::lockstep;
+  lever.controller = scene::ControllerMode::lockstep;
   InputGate gate({lever}, GateConfig{}, milliseconds(1));
   ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
   gate.advance(0, held({0}), 0);
@@ -355,7 +355,7 @@ TEST(InputGate, OfTwoValuesForOneStepTheFirstCountsSinceTheClockMustNotDecide) {
 
 TEST(InputGate, ValuesOfStepsThatNoTickTakesAreCountedAndNotKept) {
   ChannelConfig lever = channel("Lever", 1, 0);
-  lever.exchange = Exchange::lockstep;
+  lever.controller = scene::ControllerMode::lockstep;
   lever.delay = 3;
   GateConfig every_fifth;
   every_fifth.variables_every = 5;
@@ -370,7 +370,7 @@ TEST(InputGate, ValuesOfStepsThatNoTickTakesAreCountedAndNotKept) {
 
 TEST(InputGate, TwoLockstepChannelsAreAwaitedEach) {
   ChannelConfig slew = channel("Slew", 1, 0), lift = channel("Lift", 1, 0);
-  slew.exchange = lift.exchange = Exchange::lockstep;
+  slew.controller = lift.controller = scene::ControllerMode::lockstep;
   slew.wait = milliseconds(30);
   lift.wait = milliseconds(70);
   lift.delay = 2;
@@ -389,7 +389,7 @@ TEST(InputGate, TwoLockstepChannelsAreAwaitedEach) {
 
 TEST(InputGate, AReleaseTakesEffectAfterTheTicksOfItsLastValue) {
   ChannelConfig lever = channel("Lever", 1, 0);
-  lever.exchange = Exchange::lockstep;
+  lever.controller = scene::ControllerMode::lockstep;
   lever.delay = 2;
   InputGate gate({lever}, GateConfig{}, milliseconds(1));
   ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
@@ -417,7 +417,7 @@ TEST(InputGate, AReleaseTakesEffectAfterTheTicksOfItsLastValue) {
 
 TEST(InputGate, AControllerThatLeavesBeforeItHasAnsweredABlockIsNotWaitedFor) {
   ChannelConfig lever = channel("Lever", 1, 0);
-  lever.exchange = Exchange::lockstep;
+  lever.controller = scene::ControllerMode::lockstep;
   InputGate gate({lever}, GateConfig{}, milliseconds(1));
   ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
   gate.advance(0, held({0}), 0);
@@ -433,7 +433,7 @@ TEST(InputGate, AControllerThatLeavesBeforeItHasAnsweredABlockIsNotWaitedFor) {
 
 TEST(InputGate, ALockstepChannelOfASavedSessionIsAwaitedAsAtStepZero) {
   ChannelConfig lever = channel("Lever", 1, 0);
-  lever.exchange = Exchange::lockstep;
+  lever.controller = scene::ControllerMode::lockstep;
   lever.delay = 3;
   InputGate saved({lever}, GateConfig{}, milliseconds(1)), gate({lever}, GateConfig{}, milliseconds(1));
   std::vector<std::byte> state;
@@ -471,7 +471,7 @@ TEST(InputGate, NoStateBringsAValueThatIsNotFinite) {
 
 TEST(InputGate, ALockstepChannelThatIsTakenOverKeepsItsValueUntilTheNewHolderIsInStep) {
   ChannelConfig lever = channel("Lever", 1, 0);
-  lever.exchange = Exchange::lockstep;
+  lever.controller = scene::ControllerMode::lockstep;
   lever.supervisor = "instructor";
   InputGate gate({lever}, GateConfig{}, milliseconds(1));
   const auto advance = [&gate](StepIndex n) { gate.advance(n, held({0}), n * kMs); };
@@ -503,7 +503,7 @@ TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
     for (std::size_t i = 0; i < channels.size(); ++i) {
       channels[i].name = "C" + std::to_string(i);
       channels[i].is_digital = i == 2;
-      channels[i].exchange = below(2) == 0 ? Exchange::sampled : Exchange::lockstep;
+      channels[i].controller = below(2) == 0 ? scene::ControllerMode::sampled : scene::ControllerMode::lockstep;
       channels[i].delay = 1 + below(5);
       channels[i].supervisor = below(2) == 0 ? "" : "b";
     }
@@ -545,7 +545,8 @@ TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
           for (std::size_t i = 0; i < gate.size(); ++i) {
             ASSERT_GE(gate.raw(i), i == 2 ? 0 : -1);
             ASSERT_LE(gate.raw(i), 1);
-            const StepIndex newest = channels[i].exchange == Exchange::lockstep ? n - channels[i].delay : n;
+            const StepIndex newest =
+                channels[i].controller == scene::ControllerMode::lockstep ? n - channels[i].delay : n;
             ASSERT_LE(gate.based_on(i), std::max(newest, kJoinStep)) << "channel " << i << " tick " << n;
           }
           ++n;
@@ -556,4 +557,4 @@ TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
 }
 
 }  // namespace input_gate_test
-}  // namespace slew::io
+}  // namespace slew::io_node

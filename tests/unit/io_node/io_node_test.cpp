@@ -1,7 +1,7 @@
 // The session as its owner runs it: its name, its time, its overruns and its end.
 #include "tests/unit/io_node/played_io.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace io_node_test {
 
 // ---- two sessions of one name ---------------------------------------------------------------------------------
@@ -130,8 +130,8 @@ TEST_F(Io, CountsNoPauseAsSlip) {
 
 TEST_F(Io, HoldsASessionThatIsTooSlowUntilItIsResumed) {
   IoConfig slow = config();
-  slow.overrun.policy = Overrun::hold;
-  slow.overrun.after = 3;
+  slow.session.overrun = scene::OverrunPolicy::hold;
+  slow.session.overrun_after = 3;
   restart(std::move(slow));
   get_running();
   run_to(10);
@@ -172,7 +172,7 @@ TEST_F(Io, HoldsASessionThatIsTooSlowUntilItIsResumed) {
 
 TEST_F(Io, StopsASessionThatIsTooFarBehindWithCode3) {
   IoConfig slow = config();
-  slow.overrun.policy = Overrun::stop;
+  slow.session.overrun = scene::OverrunPolicy::stop;
   restart(std::move(slow));
   get_running();
   run_to(10);
@@ -314,8 +314,8 @@ TEST_F(Io, MeasuresFromTheOldestValueThatATickUses) {
 
 TEST_F(Io, TellsTheOthersToLeaveOutWhatItMayWhenStepsOverrun) {
   IoConfig shedding = config();
-  shedding.shed = Shed::variables;
-  shedding.overrun.lag = milliseconds(1'000'000);
+  shedding.session.shed = scene::ShedLoad::variables;
+  shedding.session.overrun_lag = 1000;
   restart(std::move(shedding));
   get_running();
   constexpr auto kShed = static_cast<std::uint32_t>(wire::TickFlag::shed_view) |
@@ -341,7 +341,7 @@ TEST_F(Io, TellsTheOthersToLeaveOutWhatItMayWhenStepsOverrun) {
 // A node that comes back just before it is given up requests the first tick that it has missed.
 TEST_F(Io, SendsTicksOfTheTimeAfterWhichANodeIsGivenUpAgain) {
   IoConfig patient = config();
-  patient.give_up_after = milliseconds(5000);
+  patient.session.give_up_after = 5;
   restart(std::move(patient));
   get_running();
   EXPECT_EQ(played.session.header.session, node->member().session().header.session);
@@ -365,7 +365,7 @@ TEST_F(Io, SendsTicksOfTheTimeAfterWhichANodeIsGivenUpAgain) {
 
 TEST_F(Io, AsksForSamplesOnlyWhenTheyAreDue) {
   IoConfig slow = config();
-  slow.step = milliseconds(10);
+  slow.session.step = 0.01;
   restart(std::move(slow));
   get_running();
   const std::int64_t sent_ns = now_ns;
@@ -633,4 +633,4 @@ TEST_F(Io, DoesNotTakeTheSamplesOfAnotherRole) {
 }
 
 }  // namespace io_node_test
-}  // namespace slew::io
+}  // namespace slew::io_node

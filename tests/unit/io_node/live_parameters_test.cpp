@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace slew::io {
+namespace slew::io_node {
 namespace live_parameters_test {
 
 class Parameters : public ::testing::Test {
@@ -46,4 +46,4 @@ TEST_F(Parameters, AreTheScenesAgainAfterAReset) {
 }
 
 }  // namespace live_parameters_test
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -1,16 +1,15 @@
 // Controllers that the ticks wait for.
 #include "tests/unit/io_node/played_io.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace lockstep_test {
 
 class LockstepController : public Io {
  protected:
   void start(StepIndex delay, StepIndex every = 1) {
     IoConfig lever = config();
-    lever.channels.push_back({.name = "Lever", .exchange = Exchange::lockstep, .delay = delay});
-    lever.gate.variables_every = every;
-    lever.variables_every = static_cast<std::uint32_t>(every);
+    lever.channels.push_back({.name = "Lever", .controller = scene::ControllerMode::lockstep, .delay = delay});
+    lever.variables_every = every;
     lever.join_timeout = milliseconds(1000);
     restart(std::move(lever));
     join_all();
@@ -274,4 +273,4 @@ TEST_F(LockstepController, LoopDelayIsAVariableInStepsAndInMilliseconds) {
 }
 
 }  // namespace lockstep_test
-}  // namespace slew::io
+}  // namespace slew::io_node

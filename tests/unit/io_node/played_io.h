@@ -8,7 +8,7 @@
 #include "io_node/io_node.h"
 #include "tests/support/played_session.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 using testing::kMs;
 using testing::PlayedSession;
@@ -22,6 +22,9 @@ class Io : public ::testing::Test {
   static IoConfig config() {
     IoConfig config;
     config.session_name = "s";
+    config.session.duration = 0;  // until it is stopped
+    config.session.start_grace = 0;
+    config.session.controller_timeout = 0.2;
     config.scene_name = "still";
     config.required_roles = bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics);
     config.name_check = {};
@@ -111,4 +114,4 @@ class Io : public ::testing::Test {
   std::uint64_t requests_ = 0;
 };
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -4,7 +4,7 @@
 #include "io_node/io_node.h"
 #include "tests/support/played_session.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace rejoin_test {
 
 using testing::kMs;
@@ -20,11 +20,14 @@ class Rejoin : public ::testing::Test {
   static IoConfig config(SimDuration rejoin, bool is_recording = false) {
     IoConfig config;
     config.session_name = "s";
+    config.session.duration = 0;  // until it is stopped
+    config.session.start_grace = 0;
+    config.session.controller_timeout = 0.2;
     config.scene_name = "still";
     config.required_roles = bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics);
     if (is_recording) config.required_roles |= bit(Role::recorder);
     config.name_check = {};
-    config.rejoin = rejoin;
+    config.session.rejoin = rejoin.seconds();
     return config;
   }
   void poll(std::int64_t after_ns = 0) { node->poll(now_ns += after_ns); }
@@ -51,7 +54,7 @@ class Rejoin : public ::testing::Test {
     poll(kMs);
   }
   void get_running(IoConfig with) {
-    const bool holds_places = with.rejoin.ns > 0;
+    const bool holds_places = with.session.rejoin > 0;
     get_ready(std::move(with));
     if (HasFatalFailure()) return;
     if (holds_places) {
@@ -195,7 +198,7 @@ TEST_F(Rejoin, AFirstStateThatDoesNotComeIsTold) {
 
 TEST_F(Rejoin, TheHoldAndWhatIsComputedAgainAreNoLagOfTheMachine) {
   IoConfig strict = config(milliseconds(30'000));
-  strict.overrun.policy = Overrun::stop;
+  strict.session.overrun = scene::OverrunPolicy::stop;
   get_running(std::move(strict));
   run_to(140);
   say_checkpoint(Role::hydraulics, 128);
@@ -357,4 +360,4 @@ TEST_F(Rejoin, AResetWaitsUntilTheRoleIsTaken) {
 }
 
 }  // namespace rejoin_test
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -9,7 +9,7 @@
 #include "tests/support/played_session.h"
 #include "tests/support/temporary_folder.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace saved_test {
 
 using testing::kMs;
@@ -40,6 +40,9 @@ class World {
   static IoConfig config(StepIndex unit = 1) {
     IoConfig config;
     config.session_name = "s";
+    config.session.duration = 0;  // until it is stopped
+    config.session.start_grace = 0;
+    config.session.controller_timeout = 0.2;
     config.scene_name = "still";
     config.required_roles = bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics);
     config.name_check = {};
@@ -50,7 +53,7 @@ class World {
     config.channels.push_back(lift);
     config.parameters = {{"Bag.mass", 1000}};
     config.source = std::make_unique<Swinging>();
-    config.save_unit = unit;
+    config.exchange_unit = unit;
     return config;
   }
   void poll(std::int64_t after_ns = 0) { node->poll(now_ns += after_ns); }
@@ -463,4 +466,4 @@ TEST_F(SavedFile, ReplacesAnotherOnlyWhenAskedAndLeavesNothingBeside) {
 }
 
 }  // namespace saved_test
-}  // namespace slew::io
+}  // namespace slew::io_node

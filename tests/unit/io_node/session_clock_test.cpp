@@ -7,16 +7,22 @@
 #include <memory>
 #include <random>
 
-namespace slew::io {
+namespace slew::io_node {
 namespace session_clock_test {
+
+using scene::OverrunPolicy;
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr SimDuration kStep = milliseconds(1);
 
 class Clock : public ::testing::Test {
  protected:
-  void rules(Overrun policy, std::int64_t after = 0, SimDuration grace = {}) {
-    clock = std::make_unique<SessionClock>(kStep, OverrunRules{policy, after, milliseconds(50), grace}, *timing);
+  void rules(OverrunPolicy policy, std::int64_t after = 0, SimDuration grace = {}) {
+    scene::SessionDef session;
+    session.overrun = policy;
+    session.overrun_after = after;
+    session.start_grace = grace.seconds();
+    clock = std::make_unique<SessionClock>(session, *timing);
     clock->begin(0, now_ns);
   }
   // does the next step, which takes so long, and is not before its time
@@ -41,7 +47,7 @@ class Clock : public ::testing::Test {
 };
 
 TEST_F(Clock, AStepLongerThanHOverrunsAndSoDoThoseThatItDelays) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   for (int i = 0; i < 10; ++i) step(kMs / 10);
   EXPECT_EQ(timing->overruns, 0u);
   step(kMs);  // in time to the nanosecond
@@ -60,12 +66,12 @@ TEST_F(Clock, AStepLongerThanHOverrunsAndSoDoThoseThatItDelays) {
 }
 
 TEST_F(Clock, GivesUpWholeStepsOfALagBeyondItsLimit) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   step(kMs / 10);
   step(60 * kMs + kMs / 3);
   const std::optional<Verdict> verdict = step(kMs / 10);
   ASSERT_TRUE(verdict);
-  EXPECT_EQ(verdict->what, Overrun::slip);
+  EXPECT_EQ(verdict->what, OverrunPolicy::slip);
   EXPECT_EQ(
       verdict->why,
       "session.overrun: slip: at step 2 the session was 59.3 ms behind the wall clock; 59 steps of wall time were "
@@ -89,7 +95,7 @@ TEST_F(Clock, GivesUpWholeStepsOfALagBeyondItsLimit) {
 }
 
 TEST_F(Clock, AStepThatWasGivenUpIsAMissWithTheTimeForWhichItWasDue) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   for (int i = 0; i < 100; ++i) step(kMs / 10);
   step(800 * kMs + kMs / 2);
   for (int i = 0; i < 100; ++i) step(kMs / 10);
@@ -111,7 +117,7 @@ TEST_F(Clock, AStepThatWasGivenUpIsAMissWithTheTimeForWhichItWasDue) {
 }
 
 TEST_F(Clock, AStepThatWasGivenUpInTheGraceIsNoMiss) {
-  rules(Overrun::slip, 0, milliseconds(20));
+  rules(OverrunPolicy::slip, 0, milliseconds(20));
   step(kMs / 10);
   step(800 * kMs);
   for (; n < 60;) step(kMs / 10);
@@ -119,7 +125,7 @@ TEST_F(Clock, AStepThatWasGivenUpInTheGraceIsNoMiss) {
   EXPECT_EQ(timing->overruns, 0u);
   EXPECT_EQ(timing->response.count(), 40u);
   // a hold counts what it gives up, and goes on with none in a row
-  rules(Overrun::hold);
+  rules(OverrunPolicy::hold);
   n = 0;
   step(60 * kMs);
   EXPECT_TRUE(step(kMs / 10));
@@ -128,12 +134,12 @@ TEST_F(Clock, AStepThatWasGivenUpInTheGraceIsNoMiss) {
 }
 
 TEST_F(Clock, WhatWasGivenUpInTheGraceIsAnEventAtItsEnd) {
-  rules(Overrun::stop, 0, milliseconds(20));
+  rules(OverrunPolicy::stop, 0, milliseconds(20));
   step(800 * kMs);
   for (; n < 20;) EXPECT_EQ(step(kMs / 10).value_or(Verdict{}).why, "");
   const std::optional<Verdict> verdict = step(kMs / 10);
   ASSERT_TRUE(verdict);
-  EXPECT_EQ(verdict->what, Overrun::slip);
+  EXPECT_EQ(verdict->what, OverrunPolicy::slip);
   EXPECT_EQ(verdict->why,
             "session.overrun: slip: at step 20 the start-up grace (session.start_grace) is over, in which 799 steps of "
             "wall time were given up");
@@ -143,7 +149,7 @@ TEST_F(Clock, WhatWasGivenUpInTheGraceIsAnEventAtItsEnd) {
 }
 
 TEST_F(Clock, AProcessThatTakesAPlaceOverHasAGraceToo) {
-  rules(Overrun::slip, 0, milliseconds(20));
+  rules(OverrunPolicy::slip, 0, milliseconds(20));
   for (; n < 100;) step(kMs / 10);
   EXPECT_EQ(timing->response.count(), 80u);
   clock->begin_grace(n);
@@ -155,7 +161,7 @@ TEST_F(Clock, AProcessThatTakesAPlaceOverHasAGraceToo) {
 }
 
 TEST_F(Clock, ATickThatDidNotGoOutUpsetsTheBooks) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   for (; n < 10;) step(kMs / 10);
   EXPECT_EQ(problem(), "");
   ++n;
@@ -164,7 +170,7 @@ TEST_F(Clock, ATickThatDidNotGoOutUpsetsTheBooks) {
 }
 
 TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
-  for (const Overrun policy : {Overrun::hold, Overrun::stop}) {
+  for (const OverrunPolicy policy : {OverrunPolicy::hold, OverrunPolicy::stop}) {
     rules(policy);
     step(51 * kMs + kMs);
     const std::optional<Verdict> verdict = step(kMs / 10);
@@ -174,7 +180,7 @@ TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
         verdict->why.find("at step 1 the session was 51.0 ms behind the wall clock (session.overrun_lag 50.0 ms)"),
         std::string::npos)
         << verdict->why;
-    EXPECT_EQ(clock->skipped(), policy == Overrun::hold ? 51u : 0u);
+    EXPECT_EQ(clock->skipped(), policy == OverrunPolicy::hold ? 51u : 0u);
     EXPECT_EQ(problem(), "");
     n = 0;
     rules(policy, 3);
@@ -190,12 +196,12 @@ TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
 }
 
 TEST_F(Clock, JudgesNothingInTheStartUpGrace) {
-  rules(Overrun::stop, 2, milliseconds(20));
+  rules(OverrunPolicy::stop, 2, milliseconds(20));
   for (int i = 0; i < 10; ++i) {
     const std::optional<Verdict> verdict = step(30 * kMs);
     // time is given up, which no policy can help
     if (verdict) {
-      EXPECT_EQ(verdict->what, Overrun::slip);
+      EXPECT_EQ(verdict->what, OverrunPolicy::slip);
       EXPECT_EQ(verdict->why, "");
     }
   }
@@ -209,7 +215,7 @@ TEST_F(Clock, JudgesNothingInTheStartUpGrace) {
 }
 
 TEST_F(Clock, ALagInTheGraceIsForTheRecordingAndALaterOneForTheUserToo) {
-  rules(Overrun::slip, 0, milliseconds(200));
+  rules(OverrunPolicy::slip, 0, milliseconds(200));
   step(60 * kMs);
   std::string told;
   for (int i = 0; i < 1500; ++i) {
@@ -237,7 +243,7 @@ TEST_F(Clock, ALagInTheGraceIsForTheRecordingAndALaterOneForTheUserToo) {
 }
 
 TEST_F(Clock, HoldsAgainWhenItIsStillTooSlowAfterAResume) {
-  rules(Overrun::hold, 3);
+  rules(OverrunPolicy::hold, 3);
   for (int round = 1; round <= 3; ++round) {
     EXPECT_FALSE(step(kMs + 1));
     EXPECT_FALSE(step(kMs + 1));
@@ -251,7 +257,7 @@ TEST_F(Clock, HoldsAgainWhenItIsStillTooSlowAfterAResume) {
 }
 
 TEST_F(Clock, BeginsAtALaterStepWithTheSameBooksAndAGraceOfItsOwn) {
-  rules(Overrun::slip, 0, milliseconds(20));
+  rules(OverrunPolicy::slip, 0, milliseconds(20));
   n = 5000;
   clock->begin(n, now_ns);
   EXPECT_EQ(problem(), "");
@@ -268,7 +274,7 @@ TEST_F(Clock, BeginsAtALaterStepWithTheSameBooksAndAGraceOfItsOwn) {
 }
 
 TEST_F(Clock, APauseIsNoLag) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   for (int i = 0; i < 10; ++i) step(kMs / 10);
   now_ns += 3'600'000 * kMs;
   clock->excuse(n, now_ns);
@@ -282,7 +288,7 @@ TEST_F(Clock, BooksBalanceWhateverTheStepsTake) {
   std::mt19937_64 random(7);
   for (int session = 0; session < 50; ++session) {
     n = 0;
-    rules(Overrun::slip);
+    rules(OverrunPolicy::slip);
     for (int i = 0; i < 300; ++i) {
       const auto dice = random() % 100;
       const auto part = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(kMs));
@@ -311,7 +317,7 @@ TEST_F(Clock, BooksThatDoNotBalanceAreNamed) {
 }
 
 TEST_F(Clock, AControllersValueIsMeasuredToTheFirstSamplesThatUsedIt) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   step(kMs / 10);
   now_ns = clock->due_ns(1);
   const std::int64_t came_ns = now_ns - kMs / 4;
@@ -323,4 +329,4 @@ TEST_F(Clock, AControllersValueIsMeasuredToTheFirstSamplesThatUsedIt) {
 }
 
 }  // namespace session_clock_test
-}  // namespace slew::io
+}  // namespace slew::io_node

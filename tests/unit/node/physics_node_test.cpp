@@ -99,7 +99,7 @@ TEST_F(Physics, AfterAFaultTickSleepsUntilIoSaysWhy) {
 }
 
 TEST_F(Physics, SaysOfAStepThatWasTooLongThatItWasAndHashesTheSame) {
-  played.session.pace = wire::Pace::real;
+  played.session.pace = Pace::real;
   node.add_work({3 * played.session.step_ns});
   get_ready();
   played.say_tick(0);
@@ -114,7 +114,7 @@ TEST_F(Physics, SaysOfAStepThatWasTooLongThatItWasAndHashesTheSame) {
 }
 
 TEST_F(Physics, HasNoDeadlineInFreePace) {
-  played.session.pace = wire::Pace::free;
+  played.session.pace = Pace::free;
   node.add_work({3 * played.session.step_ns});
   get_ready();
   played.say_tick(0);

@@ -200,7 +200,7 @@ class HeldDisk final : public recording::FileCalls {
 
 class SlowDisk : public ::testing::Test {
  protected:
-  explicit SlowDisk(wire::Pace pace = wire::Pace::real) {
+  explicit SlowDisk(Pace pace = Pace::real) {
     RecorderConfig config;
     config.file_calls = &disk_;
     config.keep_free = 0;
@@ -308,7 +308,7 @@ TEST_F(SlowDisk, ThatStandsStillCostsStepsTooAndNeverMoreMemory) {
 
 class SlowDiskInFreePace : public SlowDisk {
  protected:
-  SlowDiskInFreePace() : SlowDisk(wire::Pace::free) {}
+  SlowDiskInFreePace() : SlowDisk(Pace::free) {}
 };
 
 TEST_F(SlowDiskInFreePace, IsWaitedForAndCostsNothing) {

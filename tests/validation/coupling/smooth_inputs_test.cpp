@@ -94,8 +94,9 @@ double error_of(Machine& machine, double H, Level level, const std::vector<doubl
   machine.scene.session.step = H;
   machine.scene.session.coupling = level;
   const SimDuration step = machine.scene.session.step_duration();
-  const io::IoConfig config = io::make_config(machine.scene, {.session_name = "s", .recording = io::Recording::none});
-  io::InputGate gate(config.channels, config.gate, step);
+  const io_node::IoConfig config =
+      io_node::make_config(machine.scene, {.session_name = "s", .recording = io_node::Recording::none});
+  io_node::InputGate gate(config.channels, config.gate(), step);
   std::vector<SignalCourse> script(gate.size());
   CoupledRun run(machine.scene);
   require_ok(run.start());
