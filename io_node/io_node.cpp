@@ -195,7 +195,7 @@ void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::
     return;
   }
   if (!member_.fits(header, topic)) return;
-  member_.heard(header, topic, now_ns);
+  member_.acknowledge(header, topic, now_ns);
   if (header.phase != Phase::running) return;
   // nobody can be further than the ticks that were sent, but a free-running node, which does not wait for them
   if (header.step >
@@ -290,7 +290,7 @@ std::string IoNode::not_ready_text() const {
 }
 
 bool IoNode::advance_join(std::int64_t now_ns) {
-  if (member_.is_heard_by_all()) {
+  if (member_.is_acknowledged_by_all()) {
     member_.set_state(NodeState::ready);
     stage_ = Stage::initialising;
     deadline_ns_ = now_ns + config_.join_timeout.ns;
@@ -307,7 +307,7 @@ bool IoNode::advance_join(std::int64_t now_ns) {
     tick_ = wire::Tick{};
     tick_.header = block_.header = member_.header(Phase::join, kJoinStep);
     member_.publish(Topic::tick, tick_);
-    if (!member_.is_heard_on(Topic::variables)) member_.publish(Topic::variables, block_);
+    if (!member_.is_acknowledged_on(Topic::variables)) member_.publish(Topic::variables, block_);
   }
   return false;
 }
@@ -468,7 +468,7 @@ void IoNode::measure_wait(std::int64_t now_ns) noexcept {
 
 void IoNode::ask_for_missing(std::int64_t now_ns) {
   if (!resend_.is_due(now_ns)) return;
-  resend_.asked(now_ns);
+  resend_.requested(now_ns);
   for (const Role role : wire::kPhysicsRoles) {
     const StepIndex needed = needed_of(role, n_);
     if (!member_.requires_role(role) || newest_of(role) >= needed) continue;

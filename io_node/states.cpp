@@ -265,7 +265,7 @@ bool IoNode::advance_saving(std::int64_t now_ns) {
     return true;
   }
   if (!saving_->resend.is_due(now_ns)) return false;
-  saving_->resend.asked(now_ns);
+  saving_->resend.requested(now_ns);
   for (const Role role : wire::kPhysicsRoles) {
     if (!member_.requires_role(role)) continue;
     if (states_[static_cast<std::size_t>(role)].find(saving_->step) != nullptr) continue;

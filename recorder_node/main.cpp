@@ -1,4 +1,4 @@
-// The program recorder_node: writes everything that is said in a session into one recording.
+// The program recorder_node: writes all messages of a session into one recording.
 #include <cstdio>
 
 #include "node/node_program.h"
@@ -19,13 +19,13 @@ std::optional<ExitCode> run(const node::NodeOptions& options, const std::string&
   config.keep_free = static_cast<std::uint64_t>(keep_free_mb * 1e6);
   config.join = options.join();
   recorder::RecorderNode node(*transport, std::move(config));
-  // the path is said last, whatever the end was
-  struct SayPath {
+  // the path is printed last, whatever the end was
+  struct PrintPath {
     const recorder::RecorderNode& node;
-    ~SayPath() {
+    ~PrintPath() {
       if (!node.recording().empty()) std::printf("recording: %s\n", node.recording().c_str());
     }
-  } const say_path{node};
+  } const print_path{node};
   return node::run_node(node);
 }
 
@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
       .value_name("DIR")
       .show_default();
   double keep_free_mb = static_cast<double>(recorder::kKeepFreeBytes) * 1e-6;
-  program.option("--keep-free", keep_free_mb, "room on the file system that is left to others; 0: none")
+  program.option("--keep-free", keep_free_mb, "space on the file system that is left free; 0: none")
       .between(0.0, 1e9)
       .value_name("MB")
       .show_default();

@@ -1,4 +1,5 @@
-// When the next step of a physics node can be done, and what it is done with. A node runs one loop for the session:
+// Decides when the next step of a physics node can be done, and selects its inputs. A node runs one loop for the
+// session:
 //
 //   LockstepLoop  step n needs tick n and the samples of all partners
 //   FreeLoop      step n needs tick n, or the time at which it was due and the wait budget; it uses the newest samples
@@ -29,7 +30,7 @@ namespace slew::node {
 struct StepInput {
   coupling::PartnerSamples partners;
   std::span<const double> controls;              // by input channel
-  std::span<const wire::Command> late_commands;  // from ticks that came after their step; applied before `commands`
+  std::span<const wire::Command> late_commands;  // from late ticks; applied before `commands`
   std::span<const wire::Command> commands;
   StepIndex released_by = 0;        // step of the message that released this step
   StepIndex used_step = kJoinStep;  // step of the partner's sample
@@ -37,7 +38,7 @@ struct StepInput {
   coupling::Quality quality = coupling::Quality::ok;
 };
 
-// At most a ring of ticks and one sample of each topic.
+// Capacity: a ring of ticks and one sample of each topic.
 using MissingMessages = StaticVector<Awaited, kRingDepth + wire::kTopics>;
 
 class StepLoop {
@@ -54,7 +55,7 @@ class StepLoop {
   // Pre-condition: `input` is as constructed. A loop that returns `step` takes the step for done.
   virtual Next next(StepIndex n, std::int64_t now_ns, StepInput& input) = 0;
 
-  // The tick that releases step n has not come.
+  // The tick that releases step n is missing.
   [[nodiscard]] virtual bool lacks_tick(StepIndex n) const noexcept = 0;
   // Appends the messages to request from their writers. A tick that io withholds is not among them.
   virtual void collect_missing(StepIndex n, MissingMessages& missing) const noexcept = 0;
@@ -73,7 +74,7 @@ class StepLoop {
 
   // A new epoch begins.
   virtual void restart() noexcept = 0;
-  // Continues from the state of a session under way, with what the sample of that step stated.
+  // Continues from a state of the session. The argument is the state in the sample of that step.
   virtual void take_over(const wire::SampleState&) noexcept {}
 };
 

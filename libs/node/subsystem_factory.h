@@ -1,5 +1,5 @@
-// What a physics node's program makes of a session: the scene from the session's text, its files compared, its
-// subsystem, and the variables that the scene wants published.
+// Builds the subsystem of a physics node's program: loads the scene from the session's text, compares its files, and
+// selects the variables to publish.
 #pragma once
 
 #include <functional>
@@ -14,11 +14,11 @@ namespace slew::node {
 
 using MakeSubsystem = std::function<std::unique_ptr<coupling::Subsystem>(const scene::Scene&)>;
 
-// assets: folder in which the scene's files are looked for. The factory owns the scene it has built from: it must
-// outlive the subsystem.
+// assets: folder of the scene's files. The factory owns the scene, to which the subsystem refers: it must outlive the
+// subsystem.
 [[nodiscard]] node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets);
 
-// Compares the files of a session's manifest with those in the folder. Error bad_input: names what differs.
+// Compares the files of a session's manifest with those in the folder. Error bad_input: names the differences.
 [[nodiscard]] Status check_session_assets(const wire::SessionDescription& session, const std::string& assets);
 
 // The published variables of a subsystem, by the scene's `recording.variables`.

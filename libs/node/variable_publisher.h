@@ -15,11 +15,11 @@ class VariablePublisher {
 
   // JOIN: step -1 on the topic, until every reader has acknowledged it.
   void probe(SessionMember& member);
-  // Names and units. An empty directory is published as well, so that clients do not wait for it.
+  // Publishes names and units. An empty directory is published as well, so that clients do not wait for it.
   void publish_directory(SessionMember& member) const;
-  // The values at a step. No allocation after the first call.
+  // Publishes the values at a step. No allocation after the first call.
   void publish(SessionMember& member, StepIndex step);
-  // The same blocks without values, so that no reader counts them as lost while the session sheds load.
+  // Publishes the same blocks without values, so that no reader counts them as lost while the session sheds load.
   void publish_shed(SessionMember& member, StepIndex step);
 
  private:

@@ -1,5 +1,5 @@
-// Both physics subsystems of a scene stepped by hand inside a test: the exchange of samples written down a second time,
-// against which sessions are held.
+// Both physics subsystems of a scene stepped by hand inside a test: an independent exchange of samples, with which
+// sessions are compared.
 #pragma once
 
 #include <array>

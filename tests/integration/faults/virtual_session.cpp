@@ -39,7 +39,7 @@ Auditor::Auditor(transport::InProcessBus& bus)
           bus, transport::InProcessOptions{"auditor", {}, transport::TopicSet::all()})) {}
 
 template <typename Message>
-void Auditor::hear(const transport::Received& message) {
+void Auditor::receive(const transport::Received& message) {
   Message decoded;
   if (!transport::decode(message.bytes, decoded)) {
     contradiction_ = fmt::format("{} publishes a message that cannot be decoded", node::to_text(message.topic));
@@ -77,16 +77,16 @@ void Auditor::listen() {
   while (transport_->take(message)) {
     switch (message.topic) {
       case Topic::tick:
-        hear<wire::Tick>(message);
+        receive<wire::Tick>(message);
         break;
       case Topic::mechanism:
-        hear<wire::MechanismMessage>(message);
+        receive<wire::MechanismMessage>(message);
         break;
       case Topic::actuators:
-        hear<wire::ActuatorMessage>(message);
+        receive<wire::ActuatorMessage>(message);
         break;
       case Topic::elastic:
-        hear<wire::ElasticMessage>(message);
+        receive<wire::ElasticMessage>(message);
         break;
       case Topic::session: {
         wire::SessionDescription session;

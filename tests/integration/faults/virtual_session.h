@@ -33,7 +33,7 @@ class Auditor {
 
  private:
   template <typename Message>
-  void hear(const transport::Received& message);
+  void receive(const transport::Received& message);
 
   std::unique_ptr<transport::Transport> transport_;
   Chain chain_;

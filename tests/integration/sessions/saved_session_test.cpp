@@ -125,7 +125,7 @@ TEST_F(SavedSession, GoesOnToTheSameBitsAndTakesChangesOfLiveParametersAlone) {
   with = from;
   with.insert(with.end(), {"--duration", "0.1s"});
   EXPECT_EQ(slewring(with, folder_.path() / "run", &errors), 2);
-  EXPECT_NE(errors.find("say a longer --duration"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("a longer --duration"), std::string::npos) << errors;
   with = {"run", kScene, "--from", file()};
   EXPECT_EQ(slewring(with, folder_.path() / "run", &errors), 2);
 }
@@ -325,7 +325,7 @@ TEST_F(LateRecording, BeginsWithTheStatesOfAStepAndReplays) {
   expect_undisturbed_from(begin, recorded.chain());
 }
 
-TEST_F(LateRecording, OfASessionThatCanSayAllAgainIsWhole) {
+TEST_F(LateRecording, OfASessionThatCanResendAllIsWhole) {
   ASSERT_TRUE(session_.observer().wait_for_step(20)) << session_.errors();
   const RecordedSession recorded = record_the_rest();
   // INIT was published before the recorder came; on a slow machine where the pause came late the recording begins with

@@ -1,4 +1,4 @@
-// A second mass on a spring behind the port of a mechanism: what the hydraulics has to know of it.
+// A second mass on a spring behind the port of a mechanism: its part in the published mobility.
 //
 //   oil spring K, lambda -- port -- m1 -- k_s -- m2,   omega = sqrt(K / m1),   Omega = omega H,   d = 2 zeta omega m1
 //   on m1

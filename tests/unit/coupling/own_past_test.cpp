@@ -16,7 +16,7 @@ OwnPast with_steps(StepIndex count) {
   return past;
 }
 
-TEST(OwnPast, KnowsTheLastStepsOnly) {
+TEST(OwnPast, HasTheLastStepsOnly) {
   const OwnPast past = with_steps(kRememberedSteps + 5);
   EXPECT_FALSE(past.has(4));
   EXPECT_TRUE(past.has(5));

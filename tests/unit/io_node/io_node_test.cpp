@@ -13,11 +13,11 @@ class TwoOfOneName : public Io {
     wire::SessionDescription rival = played.session;
     rival.header.session.fill(id_byte);
     rival.header.phase = phase;
-    played.say(Topic::session, rival);
+    played.publish(Topic::session, rival);
     poll(kMs);
   }
   Phase last_said() {
-    const auto sessions = played.said<wire::SessionDescription>(Topic::session);
+    const auto sessions = played.received<wire::SessionDescription>(Topic::session);
     return sessions.empty() ? Phase::init : sessions.back().header.phase;
   }
 };
@@ -72,7 +72,7 @@ TEST_F(Io, SaysThatItRunsWhileItDoesSingleSteps) {
   EXPECT_EQ(node->member().state(), NodeState::running);
   run_to(13);
   EXPECT_EQ(node->member().state(), NodeState::holding);
-  const auto statuses = played.said<wire::NodeStatus>(Topic::node_status);
+  const auto statuses = played.received<wire::NodeStatus>(Topic::node_status);
   ASSERT_FALSE(statuses.empty());
   EXPECT_EQ(statuses.back().header.step, 13);
 }
@@ -88,9 +88,9 @@ TEST_F(Io, AnswersARequestThatIsSentAgainAndDoesItOnce) {
   step.action = wire::ControlAction::step;
   step.value = 3;
   for (int i = 0; i < 3; ++i) {
-    played.say(Topic::control_request, step);
+    played.publish(Topic::control_request, step);
     poll();
-    const auto replies = played.said<wire::ControlReply>(Topic::control_reply);
+    const auto replies = played.received<wire::ControlReply>(Topic::control_reply);
     ASSERT_EQ(replies.size(), 1u) << "copy " << i;
     EXPECT_EQ(replies[0].request, 4711u);
     EXPECT_TRUE(replies[0].is_accepted);
@@ -106,7 +106,7 @@ TEST_F(Io, AnswersARequestThatIsSentAgainAndDoesItOnce) {
   EXPECT_EQ(node->next_step(), 13);
   // another request, though by chance of the same number
   step.value = 2;
-  played.say(Topic::control_request, step);
+  played.publish(Topic::control_request, step);
   go_on();
   EXPECT_EQ(node->next_step(), 15);
 }
@@ -153,7 +153,7 @@ TEST_F(Io, HoldsASessionThatIsTooSlowUntilItIsResumed) {
   EXPECT_NE(warnings[0].find("the last 3 steps were longer than 1.0 ms"), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[0].find("'slewring control resume'"), std::string::npos) << warnings[0];
   // an event in the recording: an answer that nobody asked for
-  const auto replies = played.said<wire::ControlReply>(Topic::control_reply);
+  const auto replies = played.received<wire::ControlReply>(Topic::control_reply);
   ASSERT_EQ(replies.size(), 1u);
   EXPECT_EQ(replies[0].request, 0u);
   EXPECT_EQ(replies[0].reason, warnings[0]);
@@ -182,7 +182,7 @@ TEST_F(Io, StopsASessionThatIsTooFarBehindWithCode3) {
   EXPECT_EQ(node->member().exit_code(), ExitCode::losses);
   EXPECT_NE(node->member().reason().find("behind the wall clock (session.overrun_lag 50.0 ms)"), std::string::npos)
       << node->member().reason();
-  const auto ticks = played.said<wire::Tick>(Topic::tick);
+  const auto ticks = played.received<wire::Tick>(Topic::tick);
   ASSERT_FALSE(ticks.empty());
   EXPECT_NE(ticks.back().flags & static_cast<std::uint32_t>(wire::TickFlag::end), 0u);
 }
@@ -222,13 +222,13 @@ TEST_F(Io, CountsForWhomTicksWaitThatAreDue) {
   const auto waited = [this](Role role) { return node->timing().waited_ns[static_cast<std::size_t>(role)].load(); };
   EXPECT_EQ(waited(Role::mechanics), 0) << "nobody was late";
   poll(5 * kMs);
-  played.say_mechanism(10);
+  played.publish_mechanism(10);
   poll();
   const std::int64_t of_mechanics = waited(Role::mechanics);
   EXPECT_GE(of_mechanics, 4 * kMs);
   EXPECT_LE(of_mechanics, 5 * kMs);
   poll(2 * kMs);
-  played.say_actuators(10);
+  played.publish_actuators(10);
   poll();
   EXPECT_EQ(node->next_step(), 11);
   EXPECT_EQ(waited(Role::mechanics), of_mechanics);
@@ -242,7 +242,7 @@ TEST_F(Io, MeasuresFromAControllersValueToTheSamplesThatUsedIt) {
   get_running();
   run_to(3);
   const auto say = [this](wire::ControllerAction action) {
-    played.say(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, 0.5, 1, kJoinStep});
+    played.publish(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, 0.5, 1, kJoinStep});
     poll();
   };
   say(wire::ControllerAction::acquire);
@@ -265,10 +265,10 @@ class LateValue : public Io {
     restart(std::move(lever));
     get_running();
     wire::ControllerInput input{"s", "pid", "Lever", wire::ControllerAction::acquire, 0.5, 1, kJoinStep};
-    played.say(Topic::controller_input, input);
+    played.publish(Topic::controller_input, input);
     poll();
     input.action = wire::ControllerAction::write;
-    played.say(Topic::controller_input, input);
+    played.publish(Topic::controller_input, input);
     sleep_until_monotonic(monotonic_ns() + 30 * kMs);
     say_samples(node->next_step());
     taken_ns = now_ns = monotonic_ns();
@@ -300,7 +300,7 @@ TEST_F(Io, MeasuresFromTheOldestValueThatATickUses) {
   get_running();
   run_to(3);
   const auto say = [this](const char* channel, wire::ControllerAction action) {
-    played.say(Topic::controller_input, wire::ControllerInput{"s", "pid", channel, action, 0.5, 1, kJoinStep});
+    played.publish(Topic::controller_input, wire::ControllerInput{"s", "pid", channel, action, 0.5, 1, kJoinStep});
     poll();
   };
   for (const char* channel : {"Lever", "Pedal"}) say(channel, wire::ControllerAction::acquire);
@@ -320,7 +320,7 @@ TEST_F(Io, TellsTheOthersToLeaveOutWhatItMayWhenStepsOverrun) {
   get_running();
   constexpr auto kShed = static_cast<std::uint32_t>(wire::TickFlag::shed_view) |
                          static_cast<std::uint32_t>(wire::TickFlag::shed_variables);
-  const auto flags = [this] { return played.said<wire::Tick>(Topic::tick).back().flags; };
+  const auto flags = [this] { return played.received<wire::Tick>(Topic::tick).back().flags; };
   run_to(150);
   EXPECT_EQ(flags() & kShed, 0u);
   for (int late = 0; late < 150; ++late) {
@@ -329,7 +329,7 @@ TEST_F(Io, TellsTheOthersToLeaveOutWhatItMayWhenStepsOverrun) {
     poll();
   }
   EXPECT_EQ(flags(), kShed);
-  const auto events = played.said<wire::ControlReply>(Topic::control_reply);
+  const auto events = played.received<wire::ControlReply>(Topic::control_reply);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events.front().request, 0u);
   EXPECT_EQ(events.front().reason.rfind("session.shed: ", 0), 0u) << events.front().reason;
@@ -354,9 +354,9 @@ TEST_F(Io, SendsTicksOfTheTimeAfterWhichANodeIsGivenUpAgain) {
     request.role = Role::io;
     request.topic = static_cast<std::uint8_t>(Topic::tick);
     request.last_step = step;
-    played.say(Topic::resend, request);
+    played.publish(Topic::resend, request);
     poll();
-    const auto ticks = played.said<wire::Tick>(Topic::tick);
+    const auto ticks = played.received<wire::Tick>(Topic::tick);
     return !ticks.empty() && ticks.front().header.step == step;
   };
   EXPECT_TRUE(has_tick(5600 - 5500));
@@ -370,9 +370,9 @@ TEST_F(Io, AsksForSamplesOnlyWhenTheyAreDue) {
   get_running();
   const std::int64_t sent_ns = now_ns;
   while (now_ns < sent_ns + 12 * kMs) poll(kMs);
-  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
+  EXPECT_TRUE(played.received<wire::ResendRequest>(Topic::resend).empty());
   while (now_ns < sent_ns + 14 * kMs) poll(kMs);
-  EXPECT_EQ(played.said<wire::ResendRequest>(Topic::resend).size(), 2u);
+  EXPECT_EQ(played.received<wire::ResendRequest>(Topic::resend).size(), 2u);
 }
 
 TEST_F(Io, HoldsUntilTheLastSilentNodeIsBack) {
@@ -380,12 +380,12 @@ TEST_F(Io, HoldsUntilTheLastSilentNodeIsBack) {
   for (int i = 0; i < 4; ++i) poll(76 * kMs);
   poll();
   EXPECT_EQ(node->member().state(), NodeState::holding);
-  played.say_status(Role::mechanics, NodeState::running, 1);
+  played.publish_status(Role::mechanics, NodeState::running, 1);
   poll(kMs);
   poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::holding);
   EXPECT_NE(node->member().reason().find("hydraulics"), std::string::npos) << node->member().reason();
-  played.say_status(Role::hydraulics, NodeState::running, 1);
+  played.publish_status(Role::hydraulics, NodeState::running, 1);
   poll(kMs);
   // heard again, but the sample of step 1 has not come all the while
   EXPECT_EQ(node->member().state(), NodeState::holding);
@@ -406,7 +406,7 @@ TEST_F(Io, NamesTheNodeThatASignalEnded) {
   EXPECT_EQ(node->member().exit_code(), ExitCode::terminated);
   EXPECT_EQ(node->member().state(), NodeState::ended);
   EXPECT_EQ(node->member().reason(), "mechanics (process 1001 on elsewhere): ended by a signal");
-  const auto statuses = played.said<wire::NodeStatus>(Topic::node_status);
+  const auto statuses = played.received<wire::NodeStatus>(Topic::node_status);
   ASSERT_FALSE(statuses.empty());
   EXPECT_EQ(statuses.back().reason, node->member().reason());
 }
@@ -415,7 +415,7 @@ TEST_F(Io, SaysItselfWhoIsLostThoughAnotherOneTellsItFirst) {
   get_running();
   run_to(10);
   for (int i = 0; i < 19; ++i) {
-    played.say_status(Role::mechanics, NodeState::holding, 10);
+    played.publish_status(Role::mechanics, NodeState::holding, 10);
     poll(100 * kMs);
   }
   say_fault(Role::mechanics, 10, ExitCode::node_lost,
@@ -450,11 +450,11 @@ TEST_F(Io, SaysEndInTheLastTickAndWhyInItsStatus) {
   say_fault(Role::mechanics, 10, ExitCode::diverged, "diverged");
   poll(kMs);
   poll(kFaultGathering.ns);
-  const auto ticks = played.said<wire::Tick>(Topic::tick);
+  const auto ticks = played.received<wire::Tick>(Topic::tick);
   ASSERT_EQ(ticks.size(), 1u);
   EXPECT_EQ(ticks[0].flags,
             static_cast<std::uint32_t>(wire::TickFlag::end) | static_cast<std::uint32_t>(wire::TickFlag::fault));
-  const auto statuses = played.said<wire::NodeStatus>(Topic::node_status);
+  const auto statuses = played.received<wire::NodeStatus>(Topic::node_status);
   ASSERT_FALSE(statuses.empty());
   EXPECT_EQ(statuses.back().exit_code, static_cast<std::int32_t>(ExitCode::diverged));
 }
@@ -465,7 +465,7 @@ TEST_F(Io, NamesNoTickOfAnEpochThatHadNone) {
   ASSERT_TRUE(request(wire::ControlAction::reset).is_accepted);
   node->request_stop(ExitCode::interrupted);
   poll(kMs);
-  const auto statuses = played.said<wire::NodeStatus>(Topic::node_status);
+  const auto statuses = played.received<wire::NodeStatus>(Topic::node_status);
   ASSERT_FALSE(statuses.empty());
   EXPECT_EQ(statuses.back().header.epoch, 1u);
   EXPECT_EQ(statuses.back().header.step, kJoinStep);
@@ -488,17 +488,17 @@ TEST_F(Io, NamesTheNodeThatDoesNotGetReady) {
   with.join_timeout = milliseconds(2000);
   restart(std::move(with));
   poll();
-  const auto sessions = played.said<wire::SessionDescription>(Topic::session);
+  const auto sessions = played.received<wire::SessionDescription>(Topic::session);
   ASSERT_FALSE(sessions.empty());
   played.session.header = sessions.back().header;
   for (const Role role : {Role::mechanics, Role::hydraulics}) {
-    played.say_heard(role, NodeState::joining, node->member().header(Phase::join, kJoinStep), {Topic::tick});
+    played.acknowledge(role, NodeState::joining, node->member().header(Phase::join, kJoinStep), {Topic::tick});
   }
   poll(kMs);
-  played.say_status(Role::mechanics, NodeState::ready, 0);
+  played.publish_status(Role::mechanics, NodeState::ready, 0);
   for (int i = 0; i < 25; ++i) {
-    played.say_status(Role::mechanics, NodeState::ready, 0);
-    played.say_status(Role::hydraulics, NodeState::initialising, 0);
+    played.publish_status(Role::mechanics, NodeState::ready, 0);
+    played.publish_status(Role::hydraulics, NodeState::initialising, 0);
     poll(100 * kMs);
   }
   EXPECT_EQ(node->member().exit_code(), ExitCode::failed);
@@ -517,9 +517,9 @@ TEST_F(Io, RefusesWhatCannotBeDoneNowSayingWhen) {
   set.value = 1;
   const auto answer_to = [&] {
     ++set.request;
-    played.say(Topic::control_request, set);
+    played.publish(Topic::control_request, set);
     poll();
-    const auto replies = played.said<wire::ControlReply>(Topic::control_reply);
+    const auto replies = played.received<wire::ControlReply>(Topic::control_reply);
     return replies.empty() ? wire::ControlReply{} : replies.back();
   };
   IoConfig with = config();
@@ -546,7 +546,7 @@ TEST_F(Io, PublishesWhatItHeldAtABoundAndWhoFellSilent) {
   restart(std::move(lever));
   get_running();
   const auto say = [this](wire::ControllerAction action, double value) {
-    played.say(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, value, 1, kJoinStep});
+    played.publish(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, value, 1, kJoinStep});
   };
   say(wire::ControllerAction::acquire, 0);
   say(wire::ControllerAction::write, 7);
@@ -566,7 +566,7 @@ TEST_F(Io, AStandstillOfTheSessionIsNoSilenceOfAController) {
   restart(std::move(lever));
   get_running();
   const auto say = [this](wire::ControllerAction action, double value) {
-    played.say(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, value, 1, kJoinStep});
+    played.publish(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, value, 1, kJoinStep});
     poll();
   };
   say(wire::ControllerAction::acquire, 0);
@@ -576,9 +576,9 @@ TEST_F(Io, AStandstillOfTheSessionIsNoSilenceOfAController) {
   live(8000);
   ASSERT_TRUE(request(wire::ControlAction::resume).is_accepted);
   run_to(10);
-  const auto ticks = played.said<wire::Tick>(Topic::tick);
+  const auto ticks = played.received<wire::Tick>(Topic::tick);
   EXPECT_EQ(ticks.back().controls[0], 0.5);
-  for (const auto& lease : played.said<wire::ControllerLease>(Topic::controller_lease)) {
+  for (const auto& lease : played.received<wire::ControllerLease>(Topic::controller_lease)) {
     EXPECT_EQ(lease.reason, "");
   }
 }
@@ -591,10 +591,10 @@ TEST_F(Io, AnswersInNamesOfAnyLengthAreCutToWhatTheWireBears) {
   restart(std::move(lever));
   get_running();
   const auto acquire = [&](const std::string& who, double how) {
-    played.say(Topic::controller_input,
-               wire::ControllerInput{"s", who, channel, wire::ControllerAction::acquire, how, 1, kJoinStep});
+    played.publish(Topic::controller_input,
+                   wire::ControllerInput{"s", who, channel, wire::ControllerAction::acquire, how, 1, kJoinStep});
     poll();
-    const auto leases = played.said<wire::ControllerLease>(Topic::controller_lease);
+    const auto leases = played.received<wire::ControllerLease>(Topic::controller_lease);
     EXPECT_FALSE(leases.empty());
     return leases.empty() ? wire::ControllerLease{} : leases.back();
   };
@@ -623,10 +623,10 @@ TEST_F(Io, DoesNotTakeTheSamplesOfAnotherRole) {
   run_to(5);
   wire::MechanismMessage sample;
   sample.header = played.header(Role::hydraulics, 5);
-  played.say(Topic::mechanism, sample);
+  played.publish(Topic::mechanism, sample);
   sample.header = played.header(Role::controller, 5);
-  played.say(Topic::mechanism, sample);
-  played.say_actuators(5);
+  played.publish(Topic::mechanism, sample);
+  played.publish_actuators(5);
   poll(kMs);
   EXPECT_EQ(node->next_step(), 5);
   EXPECT_EQ(node->member().refusals().unexpected_writer, 2u);

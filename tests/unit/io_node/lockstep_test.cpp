@@ -15,7 +15,7 @@ class LockstepController : public Io {
     join_all();
   }
   void say(wire::ControllerAction action, double value = 0, StepIndex based_on = kJoinStep) {
-    played.say(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, value, 1, based_on});
+    played.publish(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, value, 1, based_on});
     poll();
   }
   // every sample is there: what may hold the next tick back is the controller
@@ -23,7 +23,9 @@ class LockstepController : public Io {
     say_samples(node->next_step());
     poll(kMs);
   }
-  std::vector<wire::ControllerLease> leases() { return played.said<wire::ControllerLease>(Topic::controller_lease); }
+  std::vector<wire::ControllerLease> leases() {
+    return played.received<wire::ControllerLease>(Topic::controller_lease);
+  }
 };
 
 TEST_F(LockstepController, StepZeroWaitsUntilItsChannelIsTaken) {
@@ -70,7 +72,7 @@ TEST_F(LockstepController, TheTickWaitsForTheValueOfItsStepAndTakesNoOther) {
   say(wire::ControllerAction::write, -1, 0);  // too late
   give_samples();
   EXPECT_EQ(node->next_step(), 4);
-  const auto ticks = played.said<wire::Tick>(Topic::tick);
+  const auto ticks = played.received<wire::Tick>(Topic::tick);
   ASSERT_GE(ticks.size(), 4u);
   const std::size_t first = ticks.size() - 4;
   EXPECT_EQ(ticks[first].controls[0], 0);
@@ -118,12 +120,12 @@ TEST_F(LockstepController, OneThatDiesIsHeldThenPutToNeutralAndEachIsTold) {
   EXPECT_EQ(told[0].reason,
             "tick 6 waited 100 ms for the value of 'pid' from step 5, its last one is from step 4; channel Lever holds "
             "its value until it is in step again, for 200 ms");
-  EXPECT_EQ(played.said<wire::Tick>(Topic::tick).back().controls[0], 0.5);
+  EXPECT_EQ(played.received<wire::Tick>(Topic::tick).back().controls[0], 0.5);
   run_to(220);  // nothing waits for it now
   told = leases();
   ASSERT_EQ(told.size(), 1u);
   EXPECT_EQ(told[0].reason, "'pid' has been out of step for 200 ms: channel Lever goes to neutral");
-  EXPECT_EQ(played.said<wire::Tick>(Topic::tick).back().controls[0], 0);
+  EXPECT_EQ(played.received<wire::Tick>(Topic::tick).back().controls[0], 0);
   run_to(5300);
   told = leases();
   ASSERT_EQ(told.size(), 1u);
@@ -151,7 +153,7 @@ TEST_F(LockstepController, OneThatIsBackInTimeIsWaitedForAgain) {
   const auto told = leases();
   ASSERT_EQ(told.size(), 1u);
   EXPECT_EQ(told[0].reason, "'pid' is in step from tick 51 on; channel Lever had been without it since tick 2");
-  EXPECT_EQ(played.said<wire::Tick>(Topic::tick).back().controls[0], 0.6);
+  EXPECT_EQ(played.received<wire::Tick>(Topic::tick).back().controls[0], 0.6);
   give_samples();
   EXPECT_EQ(node->next_step(), 52);
 }
@@ -176,7 +178,7 @@ TEST_F(LockstepController, AValueThatIsNoNumberHoldsTheLastOneAndDoesNotStopTheT
   say(wire::ControllerAction::write, std::numeric_limits<double>::quiet_NaN(), 1);
   give_samples();
   EXPECT_EQ(node->next_step(), 3);
-  EXPECT_EQ(played.said<wire::Tick>(Topic::tick).back().controls[0], 0.5);
+  EXPECT_EQ(played.received<wire::Tick>(Topic::tick).back().controls[0], 0.5);
 }
 
 TEST_F(LockstepController, APauseIsNotItsFault) {
@@ -205,7 +207,7 @@ TEST_F(LockstepController, AResetWaitsForItAgain) {
   for (const Role role : {Role::mechanics, Role::hydraulics}) {
     wire::NodeStatus ready = played.status(role, NodeState::ready, 0);
     ready.header.epoch = 1;
-    played.say(Topic::node_status, ready);
+    played.publish(Topic::node_status, ready);
   }
   say_samples(0);
   poll(kMs);
@@ -232,7 +234,7 @@ TEST_F(LockstepController, OneThatLeavesInMidRunIsAnEventAndAWarning) {
       "'pid' has released channel Lever (controller: lockstep): it is free from tick 6 on, and no tick waits for a "
       "controller until one is in step with it";
   EXPECT_EQ(node->member().take_warnings(), std::vector<std::string>{expected});
-  const auto events = played.said<wire::ControlReply>(Topic::control_reply);
+  const auto events = played.received<wire::ControlReply>(Topic::control_reply);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].reason, expected);
   const auto told = leases();

@@ -35,8 +35,8 @@ class Io : public ::testing::Test {
   // so many milliseconds in which the others give signs of life
   void live(std::int64_t ms) {
     for (const std::int64_t end_ns = now_ns + ms * kMs; now_ns < end_ns;) {
-      played.say_status(Role::mechanics, NodeState::running, 1);
-      played.say_status(Role::hydraulics, NodeState::running, 1);
+      played.publish_status(Role::mechanics, NodeState::running, 1);
+      played.publish_status(Role::hydraulics, NodeState::running, 1);
       poll(100 * kMs);
     }
   }
@@ -44,15 +44,15 @@ class Io : public ::testing::Test {
   // every node is ready and has its first sample
   void join_all() {
     poll();
-    const auto sessions = played.said<wire::SessionDescription>(Topic::session);
+    const auto sessions = played.received<wire::SessionDescription>(Topic::session);
     ASSERT_FALSE(sessions.empty());
     played.session.header = sessions.back().header;
     for (const Role role : {Role::mechanics, Role::hydraulics}) {
-      played.say_heard(role, NodeState::joining, node->member().header(Phase::join, kJoinStep), {Topic::tick});
+      played.acknowledge(role, NodeState::joining, node->member().header(Phase::join, kJoinStep), {Topic::tick});
     }
     poll(kMs);
-    played.say_status(Role::mechanics, NodeState::ready, 0);
-    played.say_status(Role::hydraulics, NodeState::ready, 0);
+    played.publish_status(Role::mechanics, NodeState::ready, 0);
+    played.publish_status(Role::hydraulics, NodeState::ready, 0);
     say_samples(0);
     poll(kMs);
   }
@@ -63,8 +63,8 @@ class Io : public ::testing::Test {
     ASSERT_EQ(node->next_step(), 1);
   }
   void say_samples(StepIndex step) {
-    played.say_mechanism(step, Phase::running, node->member().epoch());
-    played.say_actuators(step, Phase::running, node->member().epoch());
+    played.publish_mechanism(step, Phase::running, node->member().epoch());
+    played.publish_actuators(step, Phase::running, node->member().epoch());
   }
   // steps in time: each tick is answered at once
   void run_to(StepIndex step) {
@@ -79,9 +79,9 @@ class Io : public ::testing::Test {
     request.request = ++requests_;
     request.action = action;
     request.value = value;
-    played.say(Topic::control_request, request);
+    played.publish(Topic::control_request, request);
     poll();
-    const auto replies = played.said<wire::ControlReply>(Topic::control_reply);
+    const auto replies = played.received<wire::ControlReply>(Topic::control_reply);
     EXPECT_EQ(replies.size(), 1u);
     return replies.empty() ? wire::ControlReply{} : replies.back();
   }
@@ -91,14 +91,14 @@ class Io : public ::testing::Test {
     wire::NodeStatus fault = played.status(role, NodeState::fault, step);
     fault.exit_code = static_cast<std::int32_t>(code);
     fault.reason = std::move(reason);
-    played.say(Topic::node_status, fault);
+    played.publish(Topic::node_status, fault);
     return fault;
   }
   // the last values that were published, by their names
   std::map<std::string, double> last_variables() {
     std::map<std::string, double> values;
-    const auto directory = played.said<wire::VariableDirectory>(Topic::variable_directory);
-    const auto blocks = played.said<wire::VariableBlock>(Topic::variables);
+    const auto directory = played.received<wire::VariableDirectory>(Topic::variable_directory);
+    const auto blocks = played.received<wire::VariableBlock>(Topic::variables);
     EXPECT_FALSE(directory.empty() || blocks.empty());
     if (directory.empty() || blocks.empty()) return values;
     EXPECT_EQ(directory.back().entries.size(), blocks.back().values.size());

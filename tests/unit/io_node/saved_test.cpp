@@ -62,17 +62,17 @@ class World {
     const StepIndex begin = with.beginning ? with.beginning->step : 0;
     node = std::make_unique<IoNode>(played.transport(), std::move(with));
     poll();
-    const auto sessions = played.said<wire::SessionDescription>(Topic::session);
+    const auto sessions = played.received<wire::SessionDescription>(Topic::session);
     ASSERT_FALSE(sessions.empty());
     played.session.header = sessions.back().header;
     EXPECT_EQ(sessions.back().header.step, begin == 0 ? kJoinStep : begin);
     for (const Role role : {Role::mechanics, Role::hydraulics}) {
-      played.say_heard(role, NodeState::joining, node->member().header(Phase::join, kJoinStep), {Topic::tick});
+      played.acknowledge(role, NodeState::joining, node->member().header(Phase::join, kJoinStep), {Topic::tick});
     }
     poll(kMs);
     for (const Role role : {Role::mechanics, Role::hydraulics}) {
       wire::NodeStatus ready = played.status(role, NodeState::ready, begin);
-      played.say(Topic::node_status, ready);
+      played.publish(Topic::node_status, ready);
     }
     poll(kMs);
     say_samples(begin);
@@ -80,8 +80,8 @@ class World {
     ASSERT_EQ(node->next_step(), begin + 1);
   }
   void say_samples(StepIndex step) {
-    played.say_mechanism(step, Phase::running, node->member().epoch());
-    played.say_actuators(step, Phase::running, node->member().epoch());
+    played.publish_mechanism(step, Phase::running, node->member().epoch());
+    played.publish_actuators(step, Phase::running, node->member().epoch());
   }
   void run_to(StepIndex step) {
     for (int i = 0; node->next_step() < step && i < 1000; ++i) {
@@ -90,7 +90,7 @@ class World {
     }
   }
   void collect(std::map<StepIndex, wire::Tick>& ticks) {
-    for (wire::Tick& tick : played.said<wire::Tick>(Topic::tick)) {
+    for (wire::Tick& tick : played.received<wire::Tick>(Topic::tick)) {
       if (tick.header.phase == Phase::running) ticks[tick.header.step] = tick;
     }
   }
@@ -99,19 +99,19 @@ class World {
     request.session = "s";
     request.request = number;
     request.action = action;
-    played.say(Topic::control_request, request);
+    played.publish(Topic::control_request, request);
     poll();
   }
   // to requests; events are told without one
   std::vector<wire::ControlReply> replies() {
-    std::vector<wire::ControlReply> all = played.said<wire::ControlReply>(Topic::control_reply);
+    std::vector<wire::ControlReply> all = played.received<wire::ControlReply>(Topic::control_reply);
     std::erase_if(all, [](const wire::ControlReply& reply) { return reply.request == 0; });
     return all;
   }
 
   // what io asks of the nodes is answered
   void give_states() {
-    for (const auto& asked : played.said<wire::ResendRequest>(Topic::resend)) {
+    for (const auto& asked : played.received<wire::ResendRequest>(Topic::resend)) {
       if (asked.topic != static_cast<std::uint8_t>(Topic::checkpoint)) continue;
       wire::StatePart part;
       part.header = played.header(asked.role, asked.header.step, Phase::running, node->member().epoch());
@@ -119,13 +119,13 @@ class World {
       part.state_hash = 7;
       part.total = 3;
       part.bytes.resize(3);
-      played.say(Topic::checkpoint, part);
+      played.publish(Topic::checkpoint, part);
     }
     poll();
   }
   std::vector<SavedState> states_of(std::uint64_t request) {
     std::map<Role, node::CheckpointParts> parts;
-    for (const auto& part : played.said<wire::StatePart>(Topic::state)) {
+    for (const auto& part : played.received<wire::StatePart>(Topic::state)) {
       EXPECT_EQ(part.request, request);
       parts[part.role].take(part);
     }
@@ -202,7 +202,7 @@ TEST(Saved, AtAStepBoundaryWithTheStatesOfAllAndGoesOnToTheSameTicks) {
   get.request = 3;
   get.action = ControlAction::get_parameter;
   get.path = "Bag.mass";
-  other.played.say(Topic::control_request, get);
+  other.played.publish(Topic::control_request, get);
   other.poll();
   EXPECT_EQ(other.replies().back().value, 1500);
 }
@@ -237,8 +237,8 @@ TEST(Saved, NotWithoutTheStateOfANodeAndTheSessionGoesOn) {
   world.run_to(20);
   world.ask(ControlAction::save, 2);
   for (int i = 0; i < 60; ++i) {
-    world.played.say_status(Role::mechanics, NodeState::running, 20);
-    world.played.say_status(Role::hydraulics, NodeState::running, 20);
+    world.played.publish_status(Role::mechanics, NodeState::running, 20);
+    world.played.publish_status(Role::hydraulics, NodeState::running, 20);
     world.say_samples(20);
     world.poll(100 * kMs);
   }
@@ -253,7 +253,7 @@ TEST(Saved, NotWithoutTheStateOfANodeAndTheSessionGoesOn) {
   wire::StatePart nothing;
   nothing.header = world.played.header(Role::hydraulics, world.node->next_step());
   nothing.role = Role::hydraulics;
-  world.played.say(Topic::checkpoint, nothing);
+  world.played.publish(Topic::checkpoint, nothing);
   world.poll(kMs);
   const auto more = world.replies();
   ASSERT_EQ(more.size(), 1u);
@@ -284,7 +284,7 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
     wire::Header header = world.played.header(Role::observer, 110);
     for (std::size_t i = 0; i < count; ++i) {
       for (const auto& part : node::parts_of(states[i].state, header, states[i].role, request)) {
-        world.played.say(Topic::state, part);
+        world.played.publish(Topic::state, part);
       }
     }
     world.poll();
@@ -311,7 +311,7 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
   EXPECT_EQ(answers[0].header.step, 110);
   EXPECT_EQ(world.node->member().epoch(), 1u);
   bool has_begun = false;
-  for (const auto& tick : world.played.said<wire::Tick>(Topic::tick)) {
+  for (const auto& tick : world.played.received<wire::Tick>(Topic::tick)) {
     if (tick.header.phase != Phase::init) continue;
     has_begun = true;
     EXPECT_EQ(tick.header.step, 110);
@@ -324,16 +324,16 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
   request.role = Role::hydraulics;
   request.topic = static_cast<std::uint8_t>(Topic::state);
   request.last_step = kJoinStep;
-  world.played.say(Topic::resend, request);
+  world.played.publish(Topic::resend, request);
   world.poll();
-  const auto given = world.played.said<wire::StatePart>(Topic::state);
+  const auto given = world.played.received<wire::StatePart>(Topic::state);
   ASSERT_EQ(given.size(), 1u);
   EXPECT_EQ(given[0].role, Role::hydraulics);
   EXPECT_EQ(given[0].header.step, 110);
   for (const Role role : {Role::mechanics, Role::hydraulics}) {
     wire::NodeStatus ready = world.played.status(role, NodeState::ready, 110);
     ready.header.epoch = 1;
-    world.played.say(Topic::node_status, ready);
+    world.played.publish(Topic::node_status, ready);
   }
   world.say_samples(110);
   world.poll(kMs);

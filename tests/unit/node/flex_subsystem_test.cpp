@@ -59,7 +59,7 @@ TEST_F(Flex, StatesALinearLawOnceAboutTheUndeformedBody) {
   }
 }
 
-TEST_F(Flex, StatesItAnewAboutTheMechanicsCoordinates) {
+TEST_F(Flex, LinearisesAgainAboutTheMechanicsCoordinates) {
   const scene::Scene scene = load({"session.flexible=every_step"});
   FlexSubsystem flex(scene);
   const coupling::FlexibleSample at = bent();
@@ -203,7 +203,7 @@ TEST_F(Flex, RefusesAMechanicsWithOtherModes) {
       "with the same one");
 }
 
-TEST_F(Flex, KnowsNoBodyWhoseModesAreFrozen) {
+TEST_F(Flex, LeavesOutBodiesWithFrozenModes) {
   const scene::Scene scene = load({"Truck_JibBoom.flex_modes=none"});
   EXPECT_FALSE(scene.has_modes());
   EXPECT_TRUE(scene.flexible_bodies.empty());
