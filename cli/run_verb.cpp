@@ -12,9 +12,9 @@
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/printable.h"
+#include "observer/observer.h"
 #include "session/distributed_run.h"
 #include "session/in_process_run.h"
-#include "session/observer.h"
 #include "session/unrecorded.h"
 
 namespace slew::cli {
@@ -35,7 +35,7 @@ class TerminalWatcher final : public session::RunWatcher {
     if (keyboard_) status_.print_line(keyboard_->levers().help());
   }
   void report(const std::string& message) override { status_.print_line(message); }
-  bool update(session::Observer& observer, std::int64_t now_ns, bool is_ending) override {
+  bool update(observer::Observer& observer, std::int64_t now_ns, bool is_ending) override {
     if (keyboard_) keyboard_->poll(observer, now_ns);
     text_.measure(observer.view(), now_ns);
     if (status_.is_due(now_ns) && !is_ending) status_.show(text_.text(observer.view()), now_ns);

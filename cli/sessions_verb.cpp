@@ -7,9 +7,8 @@
 #include "core/json.h"
 #include "core/report_table.h"
 #include "node/identity.h"
-#include "node/tick_counter.h"
-#include "session/session_view.h"
 #include "session/survey.h"
+#include "transport/session_state.h"
 
 namespace slew::cli {
 namespace {
@@ -32,7 +31,7 @@ std::string nodes_text(const session::FoundSession& session) {
     const bool is_required = (session.description.required_roles & (1u << role)) != 0;
     if (!is_required) continue;
     const wire::NodeStatus& status = session.nodes[role];
-    const bool is_paused = static_cast<Role>(role) == Role::io && node::is_pause(status);
+    const bool is_paused = static_cast<Role>(role) == Role::io && transport::is_pause(status);
     const std::string state = is_paused ? "paused" : std::string(node::to_text(status.state));
     text += (text.empty() ? "" : ", ") + std::string(node::to_text(static_cast<Role>(role))) + ' ' +
             (session.has_status[role] ? state : "no status");

@@ -11,7 +11,7 @@
 #include "io_node/input_gate.h"
 #include "scene/names.h"
 #include "session/monolithic_session.h"
-#include "session/observer.h"
+#include "session/survey.h"
 
 namespace slew::cli {
 namespace {
@@ -57,7 +57,7 @@ std::vector<Named> of_session(const node::SessionOptions& options) {
                                         "starting: try again");
   }
   std::vector<Named> all;
-  for (const session::VariableView* variable : observer->view().variables())
+  for (const observer::VariableView* variable : observer->view().variables())
     all.push_back({variable->name, variable->unit, ""});
   return all;
 }

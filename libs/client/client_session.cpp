@@ -8,7 +8,7 @@
 
 #include "core/printable.h"
 #include "transport/cdr/codec.h"
-#include "transport/given_up.h"
+#include "transport/session_state.h"
 #include "transport/protection.h"
 
 namespace slew::client {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "transport/given_up.h"
 #include "transport/roles.h"
+#include "transport/session_state.h"
 #include "transport/topics.h"
 
 namespace slew::node {

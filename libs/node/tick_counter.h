@@ -27,9 +27,6 @@ struct TickSpan {
 [[nodiscard]] std::string text_of(const TickSpan& span);
 [[nodiscard]] std::optional<TickSpan> tick_span_of(const std::string& text);
 
-// io's status in a requested pause; when io holds for a node, its status has a reason.
-[[nodiscard]] bool is_pause(const wire::NodeStatus& io) noexcept;
-
 class TickCounter {
  public:
   explicit TickCounter(SimDuration step) : step_ns_(step.ns) {}

@@ -9,10 +9,10 @@
 #include "node/open_transport.h"
 #include "node/physics_node.h"
 #include "node/subsystem_factory.h"
+#include "observer/observer.h"
 #include "recorder_node/recorder_node.h"
 #include "session/interrupts.h"
 #include "session/monolithic_session.h"
-#include "session/observer.h"
 #include "transport/roles.h"
 
 namespace slew::session {
@@ -23,7 +23,10 @@ using wire::Role;
 class InProcessRun {
  public:
   InProcessRun(const RunOptions& options, const io_node::SessionScene& session, RunWatcher& watcher)
-      : options_(options), watcher_(watcher), begin_(session.beginning ? session.beginning->step : 0) {
+      : options_(options),
+        watcher_(watcher),
+        begin_(session.beginning ? session.beginning->step : 0),
+        tally_({options.kept, session.scene.session.step_duration()}) {
     io_node::SessionWish wish;
     wish.session_name = options.session.session;
     wish.operating = options.scene.has_script() ? io_node::Operator::script : io_node::Operator::nobody;
@@ -36,8 +39,9 @@ class InProcessRun {
     nodes_.push_back(io_.get());
     for (const Role role : wire::kPhysicsRoles) add_physics(role);
     if (options.scene.is_recording) add_recorder();
-    observer_ = std::make_unique<Observer>(node::open_observer_with_samples(bus_), options.session.session);
-    observer_->keep_curves({options.kept, session.scene.session.step_duration()});
+    observer_ = std::make_unique<observer::Observer>(
+        node::open_observer_with_samples(bus_),
+        observer::ObserverOptions{.session = options.session.session, .receiver = &tally_});
   }
 
   RunOutcome run() {
@@ -112,9 +116,10 @@ class InProcessRun {
     outcome.wall_time = clock_.running();
     outcome.paused_time = clock_.paused();
     outcome.view = observer_->view();
+    outcome.tally = std::move(tally_);
     for (const auto& node : physics_) {
       const node::HealthState& health = node->health();
-      StepTimes times;
+      observer::StepTimes times;
       times.sum = static_cast<double>(health.step_time_sum_ns.load()) * 1e-9;
       times.steps = health.steps_done.load();
       const Role role = node->member().role();
@@ -135,7 +140,8 @@ class InProcessRun {
   std::vector<std::unique_ptr<node::PhysicsNode>> physics_;
   std::unique_ptr<recorder::RecorderNode> recorder_;
   std::vector<node::Node*> nodes_;  // io first: it takes a request to stop
-  std::unique_ptr<Observer> observer_;
+  Tally tally_;
+  std::unique_ptr<observer::Observer> observer_;
   bool has_stepped_ = false;
   RunClock clock_;
 };

@@ -17,10 +17,10 @@
 #include "io_node/scene_config.h"
 #include "io_node/session_scene.h"
 #include "node/identity.h"
+#include "observer/observer.h"
 #include "scene/cpu_places.h"
 #include "session/distributed_run.h"
 #include "session/interrupts.h"
-#include "session/observer.h"
 #include "transport/roles.h"
 
 namespace slew::analysis {
@@ -31,14 +31,14 @@ using wire::Role;
 // Measures a cell in each round of its run.
 class CellWatcher final : public session::RunWatcher {
  public:
-  explicit CellWatcher(std::function<bool(session::Observer&, std::int64_t now_ns)> measure)
+  explicit CellWatcher(std::function<bool(observer::Observer&, std::int64_t now_ns)> measure)
       : measure_(std::move(measure)) {}
-  bool update(session::Observer& observer, std::int64_t now_ns, bool /*is_ending*/) override {
+  bool update(observer::Observer& observer, std::int64_t now_ns, bool /*is_ending*/) override {
     return measure_(observer, now_ns);
   }
 
  private:
-  std::function<bool(session::Observer&, std::int64_t)> measure_;
+  std::function<bool(observer::Observer&, std::int64_t)> measure_;
 };
 
 bool fifo_is_allowed() {
@@ -152,7 +152,7 @@ void run_cell(const StressOptions& options, const io_node::SessionScene& session
   CellWatch watch(rules, scene.session.steps(), duration_of_seconds(scene.session.start_grace), cell);
   Status of_load;
   std::optional<LoadProcesses> load;
-  CellWatcher watcher([&](session::Observer& observer, std::int64_t now_ns) {
+  CellWatcher watcher([&](observer::Observer& observer, std::int64_t now_ns) {
     watch.look(observer, now_ns);
     if (of_load.is_ok()) of_load = load->check();
     if (!of_load.is_ok()) return false;
