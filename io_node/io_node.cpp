@@ -145,6 +145,7 @@ void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
     case Topic::mechanism:
     case Topic::actuators:
     case Topic::elastic:
+    case Topic::sensors:
       return receive_sample(message.bytes, message.topic, now_ns);
     case Topic::controller_input:
       return receive_controller(message.bytes, now_ns);
@@ -315,8 +316,11 @@ bool IoNode::advance_join(std::int64_t now_ns) {
 // the last sample that a physics node must have published before tick n
 StepIndex IoNode::needed_of(Role role, StepIndex n) const noexcept {
   if (!transport::traits(role).is_follower) return n - config_.session.window_steps() + 1;
+  // sensors delay no tick of the wall clock
+  if (role == Role::sensor && is_paced()) return kJoinStep;
   const StepIndex oldest = n - node::kFollowerWindow;
-  return oldest < 0 ? kJoinStep : oldest - oldest % config_.flexible_every;
+  const StepIndex every = role == Role::sensor ? config_.variables_every : config_.flexible_every;
+  return oldest < 0 ? kJoinStep : oldest - oldest % every;
 }
 
 // the first role whose samples are missing for tick n

@@ -406,10 +406,12 @@ bool IoNode::suits(Role role, StepIndex step) const noexcept {
       if (states_[static_cast<std::size_t>(other)].find(step) == nullptr) return false;
       continue;
     }
-    // a flex node whose samples nobody waits for reads those of the mechanics all the same
-    const bool is_followed = config_.flexible_every > 1;
-    const bool reads_other = !(is_followed && other == Role::flex);
-    const bool is_read = !(is_followed && role == Role::flex) || begins_anew(Role::mechanics);
+    // a follower for whose samples no node waits reads those of the mechanics all the same
+    const auto is_followed = [&](Role follower) {
+      return follower == Role::sensor || (follower == Role::flex && config_.flexible_every > 1);
+    };
+    const bool reads_other = !is_followed(other);
+    const bool is_read = !is_followed(role) || begins_anew(Role::mechanics);
     const Replaced& replaced = replaced_[static_cast<std::size_t>(other)];
     // who is ready has come to the step that it began with, whatever io has heard of it since
     const StepIndex reached = replaced.until == kJoinStep ? std::max(newest_of(other), replaced.from) : replaced.from;

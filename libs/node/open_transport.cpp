@@ -34,7 +34,7 @@ std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role r
 std::unique_ptr<transport::Transport> open_transport(Role role, const SessionOptions& options) {
   auto transport =
       open(options, role, {options.session, std::string(traits(role).name), traits(role).writes, traits(role).reads});
-  if (static_cast<std::size_t>(role) >= wire::kRoles) return transport;
+  if (traits(role).needed == transport::Needed::never) return transport;
   return std::make_unique<MeteredTransport>(std::move(transport));
 }
 

@@ -523,9 +523,8 @@ void Sensors::read_variables(std::span<double> values) const noexcept {
   }
 }
 
-std::string Sensors::text(const Event& event) const {
-  const SensorDef& def = sensors_[event.sensor].def;
-  const auto watched = [&] { return def.watch[event.watched]; };
+std::string event_text(const SensorDef& def, const Event& event) {
+  const auto watched = [&] { return event.watched < def.watch.size() ? def.watch[event.watched] : std::string("?"); };
   switch (event.kind) {
     case EventKind::close:
       return fmt::format("{}: {:.3g} m, below the limit of {:.3g} m", def.name, event.value, def.limit);

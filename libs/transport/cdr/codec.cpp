@@ -309,6 +309,12 @@ bool encode(const wire::FlexibleMessage& message, ByteBuffer& buffer) {
 bool encode(const wire::ElasticMessage& message, ByteBuffer& buffer) {
   return encode_message(message, buffer);
 }
+bool encode(const wire::PoseMessage& message, ByteBuffer& buffer) {
+  return encode_message(message, buffer);
+}
+bool encode(const wire::SensorMessage& message, ByteBuffer& buffer) {
+  return encode_message(message, buffer);
+}
 bool encode(const wire::VariableDirectory& message, ByteBuffer& buffer) {
   return encode_message(message, buffer);
 }
@@ -356,6 +362,12 @@ bool decode(Bytes bytes, wire::FlexibleMessage& message) {
   return decode_message(bytes, message);
 }
 bool decode(Bytes bytes, wire::ElasticMessage& message) {
+  return decode_message(bytes, message);
+}
+bool decode(Bytes bytes, wire::PoseMessage& message) {
+  return decode_message(bytes, message);
+}
+bool decode(Bytes bytes, wire::SensorMessage& message) {
   return decode_message(bytes, message);
 }
 bool decode(Bytes bytes, wire::VariableDirectory& message) {

@@ -20,7 +20,7 @@ namespace {
 static_assert(wire::kTopics < 31);
 
 constexpr std::size_t kInFlight = 64;  // messages received and not taken, or written and not sent
-constexpr std::int32_t kWriters = 4;   // variables: io, mechanics, hydraulics, flex; inputs: as many controllers
+constexpr std::int32_t kWriters = 5;  // variables: io, mechanics, hydraulics, flex, sensor; inputs: as many controllers
 
 // in the order of wire::Topic
 constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors = {
@@ -41,6 +41,8 @@ constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors 
     &slewring_ResendRequest_desc,
     &slewring_StatePart_desc,
     &slewring_StatePart_desc,
+    &slewring_PoseMessage_desc,
+    &slewring_SensorMessage_desc,
 };
 
 [[nodiscard]] std::string partition_of(const std::string& session) {

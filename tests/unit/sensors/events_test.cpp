@@ -38,7 +38,7 @@ TEST(Clearance, IsCloseBelowItsLimitUntilItIsBeyondTheHysteresis) {
     ASSERT_TRUE(sensors.observe(at(at_x(x))));
     EXPECT_EQ(words(sensors), expected) << x;
   }
-  EXPECT_EQ(sensors.text(sensors.events()[0]), "S: 0.25 m, below the limit of 0.5 m");
+  EXPECT_EQ(event_text(sensor, sensors.events()[0]), "S: 0.25 m, below the limit of 0.5 m");
   EXPECT_EQ(value(sensors, "S.close"), 1);
 }
 
@@ -53,7 +53,7 @@ TEST(Zone, TellsWhoEntersStaysAndLeaves) {
   for (const auto& [x, expected] : steps) {
     ASSERT_TRUE(sensors.observe(at(at_x(x))));
     EXPECT_EQ(words(sensors), expected) << x;
-    for (const Event& event : sensors.events()) texts.push_back(sensors.text(event));
+    for (const Event& event : sensors.events()) texts.push_back(event_text(zone, event));
   }
   const std::vector<std::string> expected = {"S: A entered", "S: A has stayed for 0.06 s", "S: A left after 0.08 s",
                                              "S: A entered"};
@@ -91,12 +91,12 @@ TEST(Collision, GivesSpeedAndPlaceOfAHit) {
   EXPECT_DOUBLE_EQ(value(sensors, "S.speed"), 3);
   EXPECT_EQ(value(sensors, "S.touching"), 1);
   EXPECT_NEAR(norm(point(sensors, "S.place") - Vec3(1, 2, -0.01)), 0, 1e-12);
-  EXPECT_EQ(sensors.text(sensors.events()[0]), "S: hit at 3 m/s, at 1.000 2.000 -0.010 m");
+  EXPECT_EQ(event_text(sensor, sensors.events()[0]), "S: hit at 3 m/s, at 1.000 2.000 -0.010 m");
   ASSERT_TRUE(sensors.observe(at(falling(0.48))));
   EXPECT_EQ(words(sensors), "");
   ASSERT_TRUE(sensors.observe(at(falling(0.51))));
   EXPECT_EQ(words(sensors), "apart");
-  EXPECT_EQ(sensors.text(sensors.events()[0]), "S: apart after 0.02 s");
+  EXPECT_EQ(event_text(sensor, sensors.events()[0]), "S: apart after 0.02 s");
   EXPECT_EQ(value(sensors, "S.hits"), 1);
 }
 
