@@ -11,6 +11,7 @@
 #include "build_paths.h"
 #include "flex_node/flex_subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
+#include "io_node/io_node.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "node/driver.h"
@@ -35,11 +36,7 @@ constexpr SimDuration kH = milliseconds(1);
 constexpr StepIndex kSteps = 6000;  // rest, lift, lift and slew
 
 io_node::IoConfig io_config(Boom boom) {
-  io_node::SessionWish wish;
-  wish.session_name = "benchmark";
-  wish.operating = io_node::Operator::script;
-  wish.recording = io_node::Recording::none;
-  return io_node::make_config(crane(boom), wish);
+  return io_node::make_config(crane(boom), "benchmark", io_node::Recording::none);
 }
 
 // One run with everything that either side was given: replayed to one side alone, it does the same again.

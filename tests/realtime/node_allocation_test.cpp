@@ -8,6 +8,7 @@
 #include "core/allocation_guard.h"
 #include "flex_node/flex_subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
+#include "io_node/io_node.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "node/open_transport.h"
@@ -34,8 +35,7 @@ std::unique_ptr<coupling::Subsystem> make(Role role, const scene::Scene& scene) 
 class LockStep {
  public:
   LockStep(scene::Scene scene, StepIndex warm_up) : scene_(std::move(scene)) {
-    io_node::IoConfig config =
-        io_node::make_config(scene_, {kSession, io_node::Operator::script, io_node::Recording::none});
+    io_node::IoConfig config = io_node::make_config(scene_, kSession, io_node::Recording::none);
     config.name_check = {};
     config.session.pace = Pace::free;
     config.session.duration = static_cast<double>(warm_up + 1000) * config.session.step;

@@ -9,6 +9,7 @@
 #include "core/arithmetic_self_test.h"
 #include "flex_node/flex_subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
+#include "io_node/io_node.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "node/identity.h"
@@ -104,9 +105,7 @@ void Auditor::listen() {
 VirtualSession::VirtualSession(const scene::Scene& scene, const std::string& runs, FaultPlan plan)
     : plan_(std::move(plan)), auditor_(bus_), kills_(plan_.kills) {
   set_floating_point_mode();
-  io_node::SessionWish wish;
-  wish.session_name = "faults";
-  io_node::IoConfig config = io_node::make_config(scene, wish);
+  io_node::IoConfig config = io_node::make_config(scene, "faults", io_node::Recording::required);
   config.name_check = {};
   auto io_node = std::make_unique<io_node::IoNode>(place_for(Role::io), std::move(config));
   io_ = io_node.get();

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "hydraulics_node/hydraulics_subsystem.h"
+#include "io_node/io_node.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "node/driver.h"
@@ -66,8 +67,7 @@ RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesys
     constexpr std::array<Role, 4> kRoles = {Role::io, Role::mechanics, Role::hydraulics, Role::recorder};
     ends[i] = node::open_transport(kRoles[i], bus);
   }
-  io_node::IoConfig config =
-      io_node::make_config(scene, {"in_process", io_node::Operator::script, io_node::Recording::required});
+  io_node::IoConfig config = io_node::make_config(scene, "in_process", io_node::Recording::required);
   config.name_check = {};
   io_node::IoNode io(*ends[0], std::move(config));
   const auto physics = [](Role role) {
