@@ -4,13 +4,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/time.h"
 #include "node/session_member.h"
-#include "transport/in_process/in_process_bus.h"
+#include "tests/support/played_session.h"
 
 namespace slew::node {
 namespace session_member_test {
 
+using testing::kMs;
 using transport::InProcessBus;
 using transport::InProcessEndpoint;
 using wire::NodeState;
@@ -19,28 +19,19 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-constexpr std::int64_t kMs = 1'000'000;
+testing::PlayedSession played_session() {
+  return testing::PlayedSession{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::recorder)};
+}
 
 wire::SessionDescription description() {
-  wire::SessionDescription session;
-  session.header.session[0] = 42;
-  session.header.role = Role::io;
+  wire::SessionDescription session = played_session().session;
   session.header.incarnation = 9;
-  session.header.phase = Phase::running;
-  session.name = "s";
-  session.required_roles = bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::recorder);
-  session.host = "elsewhere#1";
-  session.pid = 77;
   return session;
 }
 
 NodeStatus status_of(Role role, std::uint32_t incarnation, NodeState state = NodeState::running) {
-  NodeStatus status;
-  status.header.session = description().header.session;
-  status.header.role = role;
+  NodeStatus status = played_session().status(role, state);
   status.header.incarnation = incarnation;
-  status.state = state;
-  status.host = "elsewhere#1";
   status.pid = 1000 + incarnation;
   status.started_ns = incarnation;
   return status;
@@ -255,7 +246,7 @@ TEST_F(Member, TakesTheProcessThatIoHasChosenWhicheverStatusCameFirst) {
 TEST(TwoOfOneRole, AreDecidedByTheOneWhoseStatusIoTookFirst) {
   InProcessBus bus;
   InProcessEndpoint place(bus, {"io", {Topic::node_status}, transport::TopicSet::all()});
-  InProcessEndpoint hears(bus, {"listener", {}, {Topic::node_status}});
+  InProcessEndpoint reader(bus, {"listener", {}, {Topic::node_status}});
   SessionMember owner(Role::io, place, {});
   wire::SessionDescription own = description();
   own.header.incarnation = owner.header(Phase::join, kJoinStep).incarnation;
@@ -269,7 +260,7 @@ TEST(TwoOfOneRole, AreDecidedByTheOneWhoseStatusIoTookFirst) {
   }
   owner.publish_status_if_changed();
   transport::Received received;
-  ASSERT_TRUE(hears.take(received));
+  ASSERT_TRUE(reader.take(received));
   NodeStatus published;
   ASSERT_TRUE(transport::decode(received.bytes, published));
   const wire::Heard chosen{Role::mechanics, 6, static_cast<std::uint8_t>(Topic::node_status)};
@@ -467,7 +458,7 @@ TEST_F(Member, ThatOwnsTheSessionWarnsOnceOfWhatMayChangeTheLastBit) {
   InProcessEndpoint place(bus, {"io", {Topic::node_status}, transport::TopicSet::all()});
   SessionMember owner(Role::io, place, {});
   ASSERT_TRUE(owner.adopt(description(), 0).is_ok());
-  const auto hears = [&](NodeStatus status) {
+  const auto receives = [&](NodeStatus status) {
     std::vector<std::byte> bytes;
     ASSERT_TRUE(transport::encode(status, bytes));
     ASSERT_TRUE(owner.on_node_status(bytes, 0).is_ok());
@@ -475,20 +466,20 @@ TEST_F(Member, ThatOwnsTheSessionWarnsOnceOfWhatMayChangeTheLastBit) {
   NodeStatus same = status_of(Role::mechanics, 5);
   same.build = owner.identity().build;
   same.self_test = owner.identity().self_test;
-  hears(same);
+  receives(same);
   EXPECT_TRUE(owner.take_warnings().empty());
   NodeStatus other = status_of(Role::hydraulics, 5);
   other.build = "another";
   other.self_test = same.self_test;
-  hears(other);
-  hears(other);
+  receives(other);
+  receives(other);
   EXPECT_EQ(owner.take_warnings(),
             std::vector<std::string>{"hydraulics on elsewhere is of build 'another', io of '" + same.build +
                                      "': bits may differ from those of one build; install one build on all machines"});
   NodeStatus inexact = status_of(Role::recorder, 5);
   inexact.build = same.build;
   inexact.self_test = same.self_test + 1;
-  hears(inexact);
+  receives(inexact);
   const std::vector<std::string> warnings = owner.take_warnings();
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_TRUE(

@@ -314,8 +314,8 @@ TEST_F(Stated, WhatCannotBeAnElasticLawIsRefused) {
       {[](ElasticSample& s) { s.K[0] *= 1e6; }, "its fastest mode turns with"},
   };
   for (const Case& one : cases) {
-    const std::string said = refusal(one.change);
-    EXPECT_NE(said.find(one.says), std::string::npos) << said << "\nexpected: " << one.says;
+    const std::string text = refusal(one.change);
+    EXPECT_NE(text.find(one.says), std::string::npos) << text << "\nexpected: " << one.says;
   }
   EXPECT_EQ(refusal([](ElasticSample&) {}), "");
 }
