@@ -102,9 +102,9 @@ struct Tape {
   std::vector<std::vector<double>> controls;
 };
 
-Tape record(const scene::Scene& scene, mechanics::MechanicsSubsystem& mechanics) {
+Tape record(const scene::Scene& scene, mechanics_node::MechanicsSubsystem& mechanics) {
   Tape tape;
-  hydraulic_node::HydraulicsSubsystem hydraulics(scene);
+  hydraulics_node::HydraulicsSubsystem hydraulics(scene);
   const scene::ScriptPlayer script(scene);
   io::SessionWish wish;
   wish.session_name = "benchmark";
@@ -214,7 +214,7 @@ struct Crane {
 
   std::string name;
   scene::Scene scene;
-  mechanics::MechanicsSubsystem mechanics;
+  mechanics_node::MechanicsSubsystem mechanics;
   Tape tape;
   Falling alone;
   double iterations = 0;  // iterations of the ports' laws in the last run

@@ -13,7 +13,7 @@
 #include "hydraulics/circuit_integrator.h"
 #include "scene/scene.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 class ControlSignals {
  public:
@@ -36,4 +36,4 @@ class ControlSignals {
   std::vector<double> present_;          // scratch: the signals while expected ones replace them
 };
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

@@ -11,7 +11,7 @@
 #include "hydraulics/circuit.h"
 #include "hydraulics/circuit_integrator.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 // The numbers of an actuator sample as bytes.
 template <typename Sample, typename Bytes>
@@ -71,4 +71,4 @@ class LateSamples {
   std::vector<SentSample> sent_;  // of the last steps
 };
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

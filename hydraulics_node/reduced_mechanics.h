@@ -18,7 +18,7 @@
 #include "coupling/samples.h"
 #include "hydraulics/circuit_integrator.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 class ReducedMechanics final : public hydraulics::PistonMotion {
  public:
@@ -65,4 +65,4 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
   coupling::PortArray a_free_;
 };
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

@@ -10,7 +10,7 @@
 #include "multibody/flexible/deflection.h"
 #include "multibody/model/observe.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;  // rad a sub-step: beyond, the direction of the turn is unknown
@@ -110,4 +110,4 @@ bool DivergenceWatch::ends_run(const multibody::Model& model, const multibody::S
   return name_suspect(model, state, ws, h);
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -12,7 +12,7 @@
 #include "multibody/constraints/rows.h"
 #include "multibody/joints/joint_law.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 // An actuator as the mechanics compute it.
 struct Port {
@@ -76,4 +76,4 @@ inline coupling::RowForce RowForceLaws::evaluate(std::size_t index, double z, do
   return {joint.force, 0, joint.d_x, joint.d_v, joint.limit};
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

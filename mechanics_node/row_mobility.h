@@ -14,7 +14,7 @@
 #include "mechanics_node/mechanism.h"
 #include "multibody/constraints/step_rows.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 // Of all rows, on their own coordinates; W is row-major.
 struct Rows {
@@ -45,4 +45,4 @@ class RowMobility {
   bool varies_over_substep_ = false;                // the same for long sub-steps and all rows
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

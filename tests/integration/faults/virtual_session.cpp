@@ -109,9 +109,9 @@ VirtualSession::VirtualSession(const scene::Scene& scene, const std::string& run
       add_physics(role);
     }
   }
-  recorder::RecorderConfig recording;
+  recorder_node::RecorderConfig recording;
   recording.runs_directory = runs;
-  auto recorder_node = std::make_unique<recorder::RecorderNode>(place_for(Role::recorder), std::move(recording));
+  auto recorder_node = std::make_unique<recorder_node::RecorderNode>(place_for(Role::recorder), std::move(recording));
   recorder_ = recorder_node.get();
   places_.back().node = std::move(recorder_node);
   for (Place& place : places_) place.health = std::make_unique<node::HealthReport>(*place.node);

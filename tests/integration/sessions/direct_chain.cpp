@@ -63,9 +63,9 @@ RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesys
     return std::make_unique<node::PhysicsNode>(role, endpoint(role), node::subsystem_factory(make, "."));
   };
   const auto mechanics = physics(Role::mechanics), hydraulics = physics(Role::hydraulics);
-  recorder::RecorderConfig recording;
+  recorder_node::RecorderConfig recording;
   recording.runs_directory = runs;
-  recorder::RecorderNode recorder(endpoint(Role::recorder), std::move(recording));
+  recorder_node::RecorderNode recorder(endpoint(Role::recorder), std::move(recording));
   const std::array<node::Node*, 4> nodes = {&io, mechanics.get(), hydraulics.get(), &recorder};
   const ExitCode code = node::run_together(nodes, {});
   if (code != ExitCode::ok) {

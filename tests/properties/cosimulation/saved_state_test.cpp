@@ -102,7 +102,7 @@ void expect_contacts(const scene::Scene& scene, const Drive& drive, StepIndex at
   SessionChain chain(scene, drive);
   chain.start();
   chain.run_to(at);
-  const auto& mechanics = dynamic_cast<const mechanics::MechanicsSubsystem&>(*chain.part(Role::mechanics));
+  const auto& mechanics = dynamic_cast<const mechanics_node::MechanicsSubsystem&>(*chain.part(Role::mechanics));
   EXPECT_FALSE(mechanics.state().contacts.states().empty());
 }
 

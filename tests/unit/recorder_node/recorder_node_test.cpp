@@ -8,7 +8,7 @@
 
 #include "recorder_bench.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 namespace recorder_node_test {
 
 class Recorder : public ::testing::Test, public RecorderBench {};
@@ -418,4 +418,4 @@ TEST_F(Recorder, ThatIsLateAndReceivesNoStatusOfAFirstOneReportsIt) {
 }
 
 }  // namespace recorder_node_test
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

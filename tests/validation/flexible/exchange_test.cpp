@@ -96,11 +96,11 @@ class Exchange {
   ElasticExchange exchange_;
 
  public:
-  mechanics::MechanicsSubsystem mechanics;
+  mechanics_node::MechanicsSubsystem mechanics;
   OwnSample now, stated;
 
  private:
-  flexible::FlexSubsystem flex_;
+  flex_node::FlexSubsystem flex_;
   StepIndex n_ = 0;
 };
 
@@ -126,7 +126,7 @@ TEST(ElasticExchange, StatedOnceIsTheFilesOwnLawToTheBit) {
   const scene::Scene scene = load({});
   Exchange coupled(scene);
   ASSERT_TRUE(coupled.start().is_ok());
-  mechanics::MechanicsSubsystem alone(scene);
+  mechanics_node::MechanicsSubsystem alone(scene);
   OwnSample sample;
   static_cast<void>(alone.first_sample(sample));
   ASSERT_TRUE(alone.start({}, sample).is_ok());
