@@ -2,7 +2,6 @@
 #pragma once
 
 #include "node/step_loop.h"
-#include "node/tick_ring.h"
 
 namespace slew::node {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "node/built_subsystem.h"
 #include "node/session_member.h"
+#include "node/subsystem_factory.h"
 
 namespace slew::node {
 
