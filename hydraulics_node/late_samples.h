@@ -68,7 +68,7 @@ class LateSamples {
 
   std::size_t ports_;
   coupling::OwnPast past_;        // position and speed of the pistons
-  std::vector<SentSample> sent_;  // of the last steps
+  std::vector<SentSample> sent_;  // samples of the last steps
 };
 
 }  // namespace slew::hydraulics_node

@@ -22,7 +22,7 @@ constexpr const char* kRemedy =
 
 struct BentBody {
   std::string_view name;
-  double share = 0;  // of its length
+  double share = 0;  // deflection over its length
 };
 
 BentBody most_bent(const multibody::Model& model, const multibody::State& state,

@@ -226,7 +226,7 @@ StepReport MechanicsSubsystem::end_with(const StepReport& report, coupling::OwnS
   return report;
 }
 
-// Of the published instant: joint limits, deflections beyond the theory.
+// Flags of the published instant: joint limits, deflections beyond the theory.
 void MechanicsSubsystem::raise_flags(StepReport& report) const noexcept {
   const multibody::Workspace& workspace = mechanism_.workspace();
   for (std::size_t row = port_problem_.ports().size(); row < model().rows.size(); ++row) {

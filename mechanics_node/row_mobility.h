@@ -16,7 +16,7 @@
 
 namespace slew::mechanics_node {
 
-// Of all rows, on their own coordinates; W is row-major.
+// Free acceleration and mobility of all rows, on their own coordinates; W is row-major.
 struct Rows {
   std::span<const double> a_free, W;
   coupling::MobilityKind kind = coupling::MobilityKind::instant;

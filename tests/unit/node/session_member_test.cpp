@@ -50,14 +50,16 @@ PeerEvent watch_until(SessionMember& member, std::int64_t& watched_ns, std::int6
   return member.watch_peers(now_ns, about);
 }
 
+Status receive_at(SessionMember& reader, const NodeStatus& status, std::int64_t now_ns = 0) {
+  std::vector<std::byte> bytes;
+  EXPECT_TRUE(transport::encode(status, bytes));
+  return reader.on_node_status(bytes, now_ns);
+}
+
 class Member : public ::testing::Test {
  protected:
   static constexpr Topic kTopics[] = {Topic::mechanism};
-  Status receive(const NodeStatus& status, std::int64_t now_ns = 0) {
-    std::vector<std::byte> bytes;
-    EXPECT_TRUE(transport::encode(status, bytes));
-    return member.on_node_status(bytes, now_ns);
-  }
+  Status receive(const NodeStatus& status, std::int64_t now_ns = 0) { return receive_at(member, status, now_ns); }
   void receive_health(Role role, std::uint32_t incarnation, std::int64_t now_ns) {
     wire::Health health;
     health.header = status_of(role, incarnation).header;
@@ -254,9 +256,7 @@ TEST(TwoOfOneRole, AreDecidedByTheOneWhoseStatusIoTookFirst) {
   for (const std::uint32_t incarnation : {6u, 5u}) {
     NodeStatus claim =
         status_of(Role::mechanics, incarnation, incarnation == 5 ? NodeState::running : NodeState::joining);
-    std::vector<std::byte> bytes;
-    ASSERT_TRUE(transport::encode(claim, bytes));
-    ASSERT_TRUE(owner.on_node_status(bytes, 0).is_ok());
+    ASSERT_TRUE(receive_at(owner, claim).is_ok());
   }
   owner.publish_status_if_changed();
   transport::Received received;
@@ -458,11 +458,7 @@ TEST_F(Member, ThatOwnsTheSessionWarnsOnceOfWhatMayChangeTheLastBit) {
   InProcessEndpoint place(bus, {"io", {Topic::node_status}, transport::TopicSet::all()});
   SessionMember owner(Role::io, place, {});
   ASSERT_TRUE(owner.adopt(description(), 0).is_ok());
-  const auto receives = [&](NodeStatus status) {
-    std::vector<std::byte> bytes;
-    ASSERT_TRUE(transport::encode(status, bytes));
-    ASSERT_TRUE(owner.on_node_status(bytes, 0).is_ok());
-  };
+  const auto receives = [&](const NodeStatus& status) { ASSERT_TRUE(receive_at(owner, status).is_ok()); };
   NodeStatus same = status_of(Role::mechanics, 5);
   same.build = owner.identity().build;
   same.self_test = owner.identity().self_test;
