@@ -75,11 +75,11 @@ class InProcessRun {
   }
 
   void add_recorder() {
-    recorder::RecorderConfig config;
+    recorder_node::RecorderConfig config;
     config.join.session_timeout = node::kNoTimeout;
     config.runs_directory = options_.runs;
     config.keep_free = static_cast<std::uint64_t>(options_.keep_free_mb * 1e6);
-    recorder_ = std::make_unique<recorder::RecorderNode>(endpoint(Role::recorder), std::move(config));
+    recorder_ = std::make_unique<recorder_node::RecorderNode>(endpoint(Role::recorder), std::move(config));
     nodes_.push_back(recorder_.get());
   }
 
@@ -136,7 +136,7 @@ class InProcessRun {
   std::unique_ptr<io_node::IoNode> io_;
   SubsystemFamily family_;
   std::vector<std::unique_ptr<node::PhysicsNode>> physics_;
-  std::unique_ptr<recorder::RecorderNode> recorder_;
+  std::unique_ptr<recorder_node::RecorderNode> recorder_;
   std::vector<node::Node*> nodes_;  // io first: it takes a request to stop
   Tally tally_;
   std::unique_ptr<observer::Observer> observer_;
