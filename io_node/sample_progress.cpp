@@ -48,7 +48,7 @@ StepIndex SampleProgress::complete_up_to(StepIndex n) const noexcept {
 
 std::uint64_t SampleProgress::request_missing(StepIndex n, std::int64_t now_ns, node::SessionMember& member) {
   if (!resend_.is_due(now_ns)) return 0;
-  resend_.asked(now_ns);
+  resend_.requested(now_ns);
   std::uint64_t requests = 0;
   for (const Role role : wire::kPhysicsRoles) {
     const StepIndex last = needed(role, n);

@@ -135,7 +135,7 @@ StateKeeper::Progress StateKeeper::advance_saving(StepIndex n, std::int64_t now_
     return end(false, missed + "; nothing was saved, the session goes on", n);
   }
   if (!saving_->resend.is_due(now_ns)) return {};
-  saving_->resend.asked(now_ns);
+  saving_->resend.requested(now_ns);
   for (const Role role : wire::kPhysicsRoles) {
     if (!member_.requires_role(role) || kept(role).find(saving_->step) != nullptr) continue;
     wire::ResendRequest request;
