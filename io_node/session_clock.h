@@ -33,7 +33,7 @@
 namespace slew::io_node {
 
 // What the policy asks for, and why.
-struct Verdict {
+struct OverrunAction {
   scene::OverrunPolicy what = scene::OverrunPolicy::slip;
   std::string why;  // an event: for the recording and the user; empty: nothing to tell
   bool is_for_recording_alone = false;
@@ -60,14 +60,14 @@ class SessionClock {
   void forget_under_way() noexcept { issued_.fill({}); }
   [[nodiscard]] std::int64_t due_ns(StepIndex n) const noexcept { return base_ns_ + n * H_; }
 
-  // Looks at the lag before step n: gives up whole steps of it, or has the policy's verdict.
-  [[nodiscard]] std::optional<Verdict> keep_time(StepIndex n, std::int64_t now_ns);
+  // Looks at the lag before step n: gives up whole steps of it, or has the policy's action.
+  [[nodiscard]] std::optional<OverrunAction> keep_time(StepIndex n, std::int64_t now_ns);
   // Tick n went out.
   void ran(StepIndex n, std::int64_t now_ns) noexcept;
   // A controller's value that Tick n uses came then.
   void used_input(StepIndex n, std::int64_t came_ns) noexcept;
   // All samples up to `step` have come; those of several steps at once count as come now. n: the next tick.
-  [[nodiscard]] std::optional<Verdict> completed(StepIndex step, StepIndex n, std::int64_t now_ns);
+  [[nodiscard]] std::optional<OverrunAction> completed(StepIndex step, StepIndex n, std::int64_t now_ns);
 
   // The books as of now, into the node's timing. n: the next tick.
   void close(StepIndex n, std::int64_t now_ns) noexcept;
@@ -85,8 +85,8 @@ class SessionClock {
   [[nodiscard]] Issued& issued(StepIndex n) noexcept { return issued_[static_cast<std::size_t>(n) % kDepth]; }
   [[nodiscard]] std::string in_words(const char* what, StepIndex n) const;
   StepIndex give_up(StepIndex n, std::int64_t lag_ns) noexcept;
-  // The verdict of `hold` or `stop`.
-  [[nodiscard]] Verdict overrun(StepIndex n, const std::string& why);
+  // The action of `hold` or `stop`.
+  [[nodiscard]] OverrunAction overrun(StepIndex n, const std::string& why);
 
   std::int64_t H_;
   scene::OverrunPolicy policy_;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 using coupling::ElasticSample;
 using multibody::FlexiblePart;
@@ -111,4 +111,4 @@ void ModalExchange::add_to(const Model& model, StateHash& hash) const noexcept {
   }
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

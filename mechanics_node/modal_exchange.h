@@ -13,7 +13,7 @@
 #include "multibody/model/observe.h"
 #include "scene/scene.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 // Appends position, quaternion, velocity and angular velocity of a body, in Ground.
 template <typename Array>
@@ -64,4 +64,4 @@ class ModalExchange {
   std::size_t modes_ = 0, pairs_ = 0;
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -3,7 +3,7 @@
 
 #include "recorder_node/recorder_node.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 
 using wire::NodeState;
 using wire::Phase;
@@ -139,4 +139,4 @@ void RecorderNode::request_states(std::int64_t now_ns) {
   for (const auto& [role, parts] : missing_states_) request_state(role, states_step_);
 }
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

@@ -14,14 +14,14 @@ using namespace slew;
 std::optional<ExitCode> run(const node::NodeOptions& options, const std::string& runs, double keep_free_mb) {
   node::apply_real_time(options, "recorder_node");
   const auto transport = node::open_transport(wire::Role::recorder, options.session);
-  recorder::RecorderConfig config;
+  recorder_node::RecorderConfig config;
   config.runs_directory = runs;
   config.keep_free = static_cast<std::uint64_t>(keep_free_mb * 1e6);
   config.join = options.join();
-  recorder::RecorderNode node(*transport, std::move(config));
+  recorder_node::RecorderNode node(*transport, std::move(config));
   // the path is printed last, whatever the end was
   struct PrintPath {
-    const recorder::RecorderNode& node;
+    const recorder_node::RecorderNode& node;
     ~PrintPath() {
       if (!node.recording().empty()) std::printf("recording: %s\n", node.recording().c_str());
     }
@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
   program.option("--out", runs, "folder in which the session gets a folder of its own")
       .value_name("DIR")
       .show_default();
-  double keep_free_mb = static_cast<double>(recorder::kKeepFreeBytes) * 1e-6;
+  double keep_free_mb = static_cast<double>(recorder_node::kKeepFreeBytes) * 1e-6;
   program.option("--keep-free", keep_free_mb, "space on the file system that is left free; 0: none")
       .between(0.0, 1e9)
       .value_name("MB")

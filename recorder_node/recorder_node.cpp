@@ -8,7 +8,7 @@
 #include "transport/roles.h"
 #include "transport/topics.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 namespace {
 
 using node::to_text;
@@ -518,4 +518,4 @@ void RecorderNode::count_losses(EpochStreams& streams, bool is_present) {
   streams = {};
 }
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

@@ -30,7 +30,7 @@
 #include "recorder_node/stream_gaps.h"
 #include "recording/writer.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 
 inline constexpr std::uint64_t kKeepFreeBytes = 256'000'000;
 inline constexpr std::size_t kBacklogBytes = 64u << 20;
@@ -236,4 +236,4 @@ class RecorderNode final : public node::Node {
   std::uint64_t unstepped_ = 0;               // running number of messages without a step of their own
 };
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

@@ -10,7 +10,7 @@
 #include "recording/run_directory.h"
 #include "transport/topics.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 
 using node::to_text;
 using wire::Topic;
@@ -283,4 +283,4 @@ void RecorderNode::close_file(SessionEnd session) {
   if (!status.is_ok() && stopped_.is_ok()) stopped_ = status;
 }
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

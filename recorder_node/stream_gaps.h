@@ -9,7 +9,7 @@
 
 #include "core/time.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 
 class StreamGaps {
  public:
@@ -98,4 +98,4 @@ class StreamGaps {
   Lost newly_lost_;
 };
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

@@ -101,7 +101,7 @@ class CheckpointParts {
 
  private:
   Checkpoint checkpoint_;
-  std::vector<bool> has_;  // by part
+  std::vector<bool> has_;  // received parts
   std::size_t missing_ = 0;
   bool is_begun_ = false;
 

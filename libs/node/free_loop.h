@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "node/step_loop.h"
-#include "node/tick_ring.h"
 
 namespace slew::node {
 

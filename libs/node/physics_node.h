@@ -13,13 +13,13 @@
 #include <string>
 
 #include "coupling/subsystem.h"
-#include "node/built_subsystem.h"
 #include "node/node.h"
 #include "node/resend_clock.h"
 #include "node/sample_exchange.h"
 #include "node/stall_watch.h"
 #include "node/state_transfer.h"
 #include "node/step_loop.h"
+#include "node/subsystem_factory.h"
 #include "node/variable_publisher.h"
 #include "transport/roles.h"
 

@@ -17,7 +17,7 @@ struct SessionOptions {
   std::string interface = "lo";    // network interface that messages are sent on
   std::vector<std::string> peers;  // addresses of the other machines; empty: this machine only
   std::string keys;                // folder of a key store, see transport/protection.h; empty: none
-  std::string identity;            // which of its keys; empty: those of the role
+  std::string identity;            // name of the keys in it; empty: those of the role
   bool is_insecure_lan = false;    // sends beyond this machine without keys
 };
 

@@ -9,9 +9,9 @@
 #include <cstddef>
 #include <span>
 
-#include "node/built_subsystem.h"
 #include "node/checkpoint.h"
 #include "node/session_member.h"
+#include "node/subsystem_factory.h"
 
 namespace slew::node {
 

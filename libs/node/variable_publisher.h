@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "node/built_subsystem.h"
 #include "node/session_member.h"
+#include "node/subsystem_factory.h"
 
 namespace slew::node {
 
@@ -27,7 +27,7 @@ class VariablePublisher {
   void publish_blocks(SessionMember& member, StepIndex step, Content content);
 
   const BuiltSubsystem& built_;
-  std::vector<double> values_;  // of all variables of the subsystem
+  std::vector<double> values_;  // values of all variables of the subsystem
   wire::VariableBlock block_;
 };
 

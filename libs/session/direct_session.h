@@ -69,7 +69,7 @@ class DirectSession {
   // Cause of the last step's failure, as "Arm is not finite" or the subsystem's own text; empty when it succeeded.
   [[nodiscard]] std::string failure() const;
 
- private:
+ protected:  // the tests of saved states save and load between two exchanges
   // The two samples that mechanics and hydraulics exchange.
   struct Exchanged {
     coupling::MechanismSample mechanism;

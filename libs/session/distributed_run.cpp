@@ -45,7 +45,7 @@ constexpr std::int64_t kStartAgainNs = 500'000'000;
 class Supervisor {
  public:
   Supervisor(const RunOptions& options, const io_node::SessionScene& session, RunWatcher& watcher)
-      : Supervisor(options, watcher, session.scene, session.beginning ? session.beginning->step : 0) {}
+      : Supervisor(options, watcher, session.scene, session.resume ? session.resume->step : 0) {}
 
   Supervisor(const RunOptions& options, RunWatcher& watcher, const scene::Scene& scene, StepIndex begin)
       : options_(options),

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/real_time_thread.h"
+#include "io_node/io_node.h"
 #include "io_node/scene_config.h"
 #include "node/driver.h"
 #include "node/open_transport.h"
@@ -25,13 +26,10 @@ class InProcessRun {
   InProcessRun(const RunOptions& options, const io_node::SessionScene& session, RunWatcher& watcher)
       : options_(options),
         watcher_(watcher),
-        begin_(session.beginning ? session.beginning->step : 0),
+        begin_(session.resume ? session.resume->step : 0),
         tally_({options.kept, session.scene.session.step_duration()}) {
-    io_node::SessionWish wish;
-    wish.session_name = options.session.session;
-    wish.operating = options.scene.has_script() ? io_node::Operator::script : io_node::Operator::nobody;
-    wish.recording = options.scene.is_recording ? io_node::Recording::required : io_node::Recording::none;
-    io_node::IoConfig config = io_node::make_config(session, wish);
+    const auto recording = options.scene.is_recording ? io_node::Recording::required : io_node::Recording::none;
+    io_node::IoConfig config = io_node::make_config(session, options.session.session, recording);
     config.name_check = {};  // no other process is on this bus
     config.join_timeout = node::kNoTimeout;
     roles_ = config.required_roles;
@@ -77,11 +75,11 @@ class InProcessRun {
   }
 
   void add_recorder() {
-    recorder::RecorderConfig config;
+    recorder_node::RecorderConfig config;
     config.join.session_timeout = node::kNoTimeout;
     config.runs_directory = options_.runs;
     config.keep_free = static_cast<std::uint64_t>(options_.keep_free_mb * 1e6);
-    recorder_ = std::make_unique<recorder::RecorderNode>(endpoint(Role::recorder), std::move(config));
+    recorder_ = std::make_unique<recorder_node::RecorderNode>(endpoint(Role::recorder), std::move(config));
     nodes_.push_back(recorder_.get());
   }
 
@@ -138,7 +136,7 @@ class InProcessRun {
   std::unique_ptr<io_node::IoNode> io_;
   SubsystemFamily family_;
   std::vector<std::unique_ptr<node::PhysicsNode>> physics_;
-  std::unique_ptr<recorder::RecorderNode> recorder_;
+  std::unique_ptr<recorder_node::RecorderNode> recorder_;
   std::vector<node::Node*> nodes_;  // io first: it takes a request to stop
   Tally tally_;
   std::unique_ptr<observer::Observer> observer_;

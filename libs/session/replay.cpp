@@ -55,7 +55,7 @@ class Replay {
     epoch_ = first_epoch();
     if (end_ != nullptr) {
       last_epoch_ = last_epoch();
-      config_ = io_node::make_config(scene_, {});
+      config_ = io_node::make_config(scene_, "", io_node::Recording::none);
       follower_.emplace(config_);
     }
     start_epoch();

@@ -101,9 +101,9 @@ class Machine {
  public:
   explicit Machine(const std::string& file)
       : scene_(load_scene(file)),
-        mechanics_(mechanics::make_mechanics_subsystem(scene_)),
-        hydraulics_(hydraulic_node::make_hydraulics_subsystem(scene_)) {
-    if (scene_.has_modes()) flex_ = flexible::make_flex_subsystem(scene_);
+        mechanics_(mechanics_node::make_mechanics_subsystem(scene_)),
+        hydraulics_(hydraulics_node::make_hydraulics_subsystem(scene_)) {
+    if (scene_.has_modes()) flex_ = flex_node::make_flex_subsystem(scene_);
     start();
     const std::vector<double> controls(scene_.inputs.size(), 0.3);
     coupling::OwnSample mechanics, hydraulics;

@@ -146,6 +146,20 @@ class PlayedSession {
     publish(wire::Topic::actuators, message);
   }
 
+  // Takes the node under test through JOIN: every other required role acknowledges these topics in this state.
+  void join(node::Node& node, std::int64_t& now_ns, std::initializer_list<wire::Topic> topics,
+            wire::NodeState state = wire::NodeState::joining) {
+    publish(wire::Topic::session, session);
+    node.poll(now_ns);
+    const wire::Header own = node.member().header(wire::Phase::join, kJoinStep);
+    for (const wire::Role role : wire::kNodeRoles) {
+      const bool is_played = role != own.role && (session.required_roles & wire::bit(role)) != 0;
+      if (is_played) acknowledge(role, state, own, topics);
+    }
+    node.poll(now_ns += kMs);
+    node.poll(now_ns += kMs);
+  }
+
   // Messages that the node under test has published on a topic since the last call.
   template <typename Message>
   [[nodiscard]] std::vector<Message> received(wire::Topic topic) {

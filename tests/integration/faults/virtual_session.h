@@ -102,7 +102,7 @@ class VirtualSession {
   transport::InProcessEndpoint impostor_{bus_, {"impostor", {wire::Topic::node_status}, {}}};
   std::vector<Place> places_;
   io_node::IoNode* io_ = nullptr;
-  recorder::RecorderNode* recorder_ = nullptr;
+  recorder_node::RecorderNode* recorder_ = nullptr;
   std::int64_t next_health_ns_ = 0;
   std::vector<Kill> kills_;  // to come
   std::size_t restarts_ = 0;

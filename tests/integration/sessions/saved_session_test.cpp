@@ -125,7 +125,7 @@ TEST_F(SavedSession, GoesOnToTheSameBitsAndTakesChangesOfLiveParametersAlone) {
   with = from;
   with.insert(with.end(), {"--duration", "0.1s"});
   EXPECT_EQ(slewring(with, folder_.path() / "run", &errors), 2);
-  EXPECT_NE(errors.find("a longer --duration"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("choose a longer --duration"), std::string::npos) << errors;
   with = {"run", kScene, "--from", file()};
   EXPECT_EQ(slewring(with, folder_.path() / "run", &errors), 2);
 }

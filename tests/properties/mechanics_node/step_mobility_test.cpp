@@ -16,7 +16,7 @@
 #include "multibody/formulations/dynamics.h"
 #include "scene/scene.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace step_mobility_test {
 
 constexpr double kOmega = 100, kMass = 2, kOil = kMass * kOmega * kOmega;  // rad/s, kg, N/m
@@ -206,4 +206,4 @@ TEST(StepMobility, IsThatOfBothMassesWhereTheSpringIsFast) {
 }
 
 }  // namespace step_mobility_test
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

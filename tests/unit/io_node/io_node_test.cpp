@@ -523,7 +523,7 @@ TEST_F(Io, RefusesWhatCannotBeDoneNowSayingWhen) {
     return replies.empty() ? wire::ControlReply{} : replies.back();
   };
   IoConfig with = config();
-  with.judge_parameter = [](std::string_view, double, std::int64_t) { return ParameterVerdict{true, "", 0}; };
+  with.check_parameter = [](std::string_view, double, std::int64_t) { return ParameterCheck{true, "", 0}; };
   restart(std::move(with));
   poll();
   EXPECT_EQ(answer_to().reason, "the session is not running yet");

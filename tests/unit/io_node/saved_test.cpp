@@ -23,15 +23,15 @@ using wire::Topic;
 // moves the stick to and fro, so that the ramp is never at rest
 class Swinging final : public InputSource {
  public:
-  void courses(SimTime from, SimTime, std::span<SignalCourse> raw) override {
+  [[nodiscard]] std::span<const std::string> channels() const noexcept override { return names_; }
+  void read(std::size_t, SimTime from, SimTime, SignalCourse& raw) const override {
     const double value = (from.ns / (70 * kMs)) % 2 == 0 ? 1.0 : -0.5;
-    raw[0].assign({{1, value, value}});
+    raw.assign({{1, value, value}});
   }
   [[nodiscard]] std::size_t most_pieces(SimDuration) const noexcept override { return 1; }
-  void changes(SimTime from, SimTime to, std::vector<wire::Command>& due) override {
-    const std::int64_t at = 95 * kMs;
-    if (from.ns <= at && at < to.ns) due.push_back({0, "Bag.mass", 1500, 40 * kMs});
-  }
+
+ private:
+  std::vector<std::string> names_{"Input_Lift"};
 };
 
 // One io_node and those it talks to.
@@ -52,14 +52,15 @@ class World {
     lift.scale = 0.7;
     config.channels.push_back(lift);
     config.parameters = {{"Bag.mass", 1000}};
-    config.source = std::make_unique<Swinging>();
+    config.sources.push_back(std::make_unique<Swinging>());
+    config.changes.push_back({SimTime{95 * kMs}, {0, "Bag.mass", 1500, 40 * kMs}});
     config.exchange_unit = unit;
     return config;
   }
   void poll(std::int64_t after_ns = 0) { node->poll(now_ns += after_ns); }
 
   void get_running(IoConfig with) {
-    const StepIndex begin = with.beginning ? with.beginning->step : 0;
+    const StepIndex begin = with.resume ? with.resume->step : 0;
     node = std::make_unique<IoNode>(played.transport(), std::move(with));
     poll();
     const auto sessions = played.received<wire::SessionDescription>(Topic::session);
@@ -187,7 +188,7 @@ TEST(Saved, AtAStepBoundaryWithTheStatesOfAllAndGoesOnToTheSameTicks) {
   // another io goes on from there: the ramps of channel and parameter, and the script
   World other;
   IoConfig next = World::config();
-  next.beginning = Beginning{110, states, {}};
+  next.resume = ResumeState{110, states, {}};
   other.get_running(std::move(next));
   other.run_to(200);
   other.collect(again);
@@ -355,8 +356,8 @@ TEST(Saved, TicksOfARecordingTellWhereIoIs) {
   const IoConfig config = World::config();
   TickFollower follower(config);
   for (StepIndex step = 0; step < 120; ++step) follower.take(ticks.at(step));
-  Beginning beginning{120, world.states_of(9), {}};
-  std::vector<SavedState> followed = beginning.states;
+  ResumeState resume{120, world.states_of(9), {}};
+  std::vector<SavedState> followed = resume.states;
   for (SavedState& state : followed) {
     if (state.role == Role::io) state.state = follower.state(120);
   }
@@ -365,7 +366,7 @@ TEST(Saved, TicksOfARecordingTellWhereIoIs) {
   world.collect(live);
   World other;
   IoConfig next = World::config();
-  next.beginning = Beginning{120, followed, {}};
+  next.resume = ResumeState{120, followed, {}};
   other.get_running(std::move(next));
   other.run_to(160);
   other.collect(again);

@@ -26,13 +26,13 @@ class Clock : public ::testing::Test {
     clock->begin(0, now_ns);
   }
   // does the next step, which takes so long, and is not before its time
-  std::optional<Verdict> step(std::int64_t response_ns) {
+  std::optional<OverrunAction> step(std::int64_t response_ns) {
     now_ns = std::max(now_ns, clock->due_ns(n));
-    std::optional<Verdict> verdict = clock->keep_time(n, now_ns);
+    std::optional<OverrunAction> verdict = clock->keep_time(n, now_ns);
     clock->ran(n, now_ns);
     now_ns += response_ns;
     ++n;
-    if (std::optional<Verdict> later = clock->completed(n, n, now_ns)) verdict = later;
+    if (std::optional<OverrunAction> later = clock->completed(n, n, now_ns)) verdict = later;
     return verdict;
   }
   [[nodiscard]] std::string problem() {
@@ -69,7 +69,7 @@ TEST_F(Clock, GivesUpWholeStepsOfALagBeyondItsLimit) {
   rules(OverrunPolicy::slip);
   step(kMs / 10);
   step(60 * kMs + kMs / 3);
-  const std::optional<Verdict> verdict = step(kMs / 10);
+  const std::optional<OverrunAction> verdict = step(kMs / 10);
   ASSERT_TRUE(verdict);
   EXPECT_EQ(verdict->what, OverrunPolicy::slip);
   EXPECT_EQ(
@@ -81,13 +81,13 @@ TEST_F(Clock, GivesUpWholeStepsOfALagBeyondItsLimit) {
   EXPECT_EQ(problem(), "");
   // told once while it goes on, and again when it is over
   step(100 * kMs);
-  const std::optional<Verdict> again = step(kMs / 10);
+  const std::optional<OverrunAction> again = step(kMs / 10);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->why, "");
   EXPECT_EQ(timing->transitions, 1u);
   std::string over;
   for (int i = 0; i < 1200; ++i) {
-    if (const std::optional<Verdict> told = step(kMs / 10)) over += told->why;
+    if (const std::optional<OverrunAction> told = step(kMs / 10)) over += told->why;
   }
   EXPECT_NE(over.find("has kept up with the wall clock for 1 s again"), std::string::npos) << over;
   EXPECT_EQ(timing->transitions, 2u);
@@ -136,8 +136,8 @@ TEST_F(Clock, AStepThatWasGivenUpInTheGraceIsNoMiss) {
 TEST_F(Clock, WhatWasGivenUpInTheGraceIsAnEventAtItsEnd) {
   rules(OverrunPolicy::stop, 0, milliseconds(20));
   step(800 * kMs);
-  for (; n < 20;) EXPECT_EQ(step(kMs / 10).value_or(Verdict{}).why, "");
-  const std::optional<Verdict> verdict = step(kMs / 10);
+  for (; n < 20;) EXPECT_EQ(step(kMs / 10).value_or(OverrunAction{}).why, "");
+  const std::optional<OverrunAction> verdict = step(kMs / 10);
   ASSERT_TRUE(verdict);
   EXPECT_EQ(verdict->what, OverrunPolicy::slip);
   EXPECT_EQ(verdict->why,
@@ -173,7 +173,7 @@ TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
   for (const OverrunPolicy policy : {OverrunPolicy::hold, OverrunPolicy::stop}) {
     rules(policy);
     step(51 * kMs + kMs);
-    const std::optional<Verdict> verdict = step(kMs / 10);
+    const std::optional<OverrunAction> verdict = step(kMs / 10);
     ASSERT_TRUE(verdict);
     EXPECT_EQ(verdict->what, policy);
     EXPECT_NE(
@@ -186,7 +186,7 @@ TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
     rules(policy, 3);
     EXPECT_FALSE(step(kMs + 1));
     EXPECT_FALSE(step(kMs));
-    const std::optional<Verdict> third = step(kMs);
+    const std::optional<OverrunAction> third = step(kMs);
     ASSERT_TRUE(third);
     EXPECT_EQ(third->what, policy);
     EXPECT_NE(third->why.find("the last 3 steps were longer than 1.0 ms (session.overrun_after)"), std::string::npos)
@@ -198,7 +198,7 @@ TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
 TEST_F(Clock, JudgesNothingInTheStartUpGrace) {
   rules(OverrunPolicy::stop, 2, milliseconds(20));
   for (int i = 0; i < 10; ++i) {
-    const std::optional<Verdict> verdict = step(30 * kMs);
+    const std::optional<OverrunAction> verdict = step(30 * kMs);
     // time is given up, which no policy can help
     if (verdict) {
       EXPECT_EQ(verdict->what, OverrunPolicy::slip);
@@ -219,14 +219,14 @@ TEST_F(Clock, ALagInTheGraceIsForTheRecordingAndALaterOneForTheUserToo) {
   step(60 * kMs);
   std::string told;
   for (int i = 0; i < 1500; ++i) {
-    const std::optional<Verdict> verdict = step(kMs / 10);
+    const std::optional<OverrunAction> verdict = step(kMs / 10);
     if (verdict && !verdict->is_for_recording_alone) told += verdict->why;
   }
   EXPECT_EQ(told, "");
   EXPECT_EQ(timing->transitions, 1u);
   EXPECT_EQ(clock->skipped(), 59u);
   step(60 * kMs);
-  const std::optional<Verdict> verdict = step(kMs / 10);
+  const std::optional<OverrunAction> verdict = step(kMs / 10);
   ASSERT_TRUE(verdict);
   EXPECT_NE(verdict->why.find("steps of wall time were given up"), std::string::npos) << verdict->why;
   EXPECT_FALSE(verdict->is_for_recording_alone);
@@ -235,7 +235,7 @@ TEST_F(Clock, ALagInTheGraceIsForTheRecordingAndALaterOneForTheUserToo) {
   now_ns += 5000 * kMs;
   clock->excuse(n, now_ns);
   for (int i = 0; i < 500; ++i) {
-    if (const std::optional<Verdict> again = step(kMs / 10)) {
+    if (const std::optional<OverrunAction> again = step(kMs / 10)) {
       EXPECT_EQ(again->why, "");
     }
   }

@@ -221,21 +221,14 @@ class Rejoining : public ::testing::Test {
     return Status::ok();
   }
   void poll(std::int64_t after_ns = 0) { node.poll(now_ns += after_ns); }
-  void publish_actuators(StepIndex step) {
+  static void publish_force(PlayedSession& session, StepIndex step) {
     wire::ActuatorMessage message;
-    message.header = played.header(Role::hydraulics, step);
+    message.header = session.header(Role::hydraulics, step);
     message.sample.F.push_back(static_cast<double>(step % 17));
-    played.publish(Topic::actuators, message);
+    session.publish(Topic::actuators, message);
   }
-  void join() {
-    played.publish(Topic::session, played.session);
-    poll();
-    const wire::Header own = node.member().header(Phase::join, kJoinStep);
-    played.acknowledge(Role::io, NodeState::running, own, {Topic::mechanism});
-    played.acknowledge(Role::hydraulics, NodeState::running, own, {Topic::mechanism});
-    poll(kMs);
-    poll(kMs);
-  }
+  void publish_actuators(StepIndex step) { publish_force(played, step); }
+  void join() { played.join(node, now_ns, {Topic::mechanism}, NodeState::running); }
   void get_ready() {
     join();
     publish_actuators(0);
@@ -276,10 +269,8 @@ TEST_F(Rejoining, PublishesItsStateAtTheStartAndInPartsAfterEveryIntervalAndNoth
   PlayedSession other{bit(Role::io) | bit(Role::mechanics)};
   other.session.rejoin_ns = 1000 * kMs;
   PhysicsNode saving{Role::mechanics, other.transport(), build};
-  other.publish(Topic::session, other.session);
-  saving.poll(now_ns);
-  other.acknowledge(Role::io, NodeState::joining, saving.member().header(Phase::join, kJoinStep), {Topic::mechanism});
-  for (int i = 0; i < 4; ++i) saving.poll(now_ns += kMs);
+  other.join(saving, now_ns, {Topic::mechanism});
+  for (int i = 0; i < 2; ++i) saving.poll(now_ns += kMs);
   auto parts = other.received<wire::StatePart>(Topic::checkpoint);
   ASSERT_EQ(parts.size(), 3u);  // the first one at once
   EXPECT_EQ(parts[0].header.step, 0);
@@ -381,12 +372,7 @@ TEST_F(Rejoining, WithTheStateOfAnEarlierStepPublishesTheSameBitsAgainAndGoesOn)
         for (StepIndex n = request.header.step; n <= request.last_step; ++n) other.publish_tick(n);
       } else {
         EXPECT_EQ(request.topic, static_cast<std::uint8_t>(Topic::actuators));
-        for (StepIndex n = request.header.step; n <= request.last_step; ++n) {
-          wire::ActuatorMessage message;
-          message.header = other.header(Role::hydraulics, n);
-          message.sample.F.push_back(static_cast<double>(n % 17));
-          other.publish(Topic::actuators, message);
-        }
+        for (StepIndex n = request.header.step; n <= request.last_step; ++n) publish_force(other, n);
       }
     }
     second.poll(now_ns += kMs);
@@ -397,10 +383,7 @@ TEST_F(Rejoining, WithTheStateOfAnEarlierStepPublishesTheSameBitsAgainAndGoesOn)
     if (again.size() == 81) {
       for (StepIndex n = 120; n < 130; ++n) {
         other.publish_tick(n);
-        wire::ActuatorMessage message;
-        message.header = other.header(Role::hydraulics, n);
-        message.sample.F.push_back(static_cast<double>(n % 17));
-        other.publish(Topic::actuators, message);
+        publish_force(other, n);
       }
     }
   }

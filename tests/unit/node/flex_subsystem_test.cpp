@@ -12,7 +12,7 @@
 #include "build_paths.h"
 #include "flex/recovery.h"
 
-namespace slew::flexible {
+namespace slew::flex_node {
 namespace flex_subsystem_test {
 
 class Flex : public ::testing::Test {
@@ -210,4 +210,4 @@ TEST_F(Flex, LeavesOutBodiesWithFrozenModes) {
 }
 
 }  // namespace flex_subsystem_test
-}  // namespace slew::flexible
+}  // namespace slew::flex_node

@@ -54,13 +54,7 @@ class Mechanics : public WithFlexibleBodies {
  protected:
   void get_ready(ElasticExchange exchange) {
     node = std::make_unique<PhysicsNode>(Role::mechanics, played.transport(), built_for(exchange));
-    played.publish(Topic::session, played.session);
-    poll(0);
-    const wire::Header own = node->member().header(Phase::join, kJoinStep);
-    played.acknowledge(Role::io, NodeState::joining, own, {Topic::mechanism});
-    played.acknowledge(Role::flex, NodeState::joining, own, {Topic::flexible});
-    poll(kMs);
-    poll(kMs);
+    played.join(*node, now_ns, {Topic::mechanism, Topic::flexible});
     ASSERT_EQ(node->member().state(), NodeState::initialising);
     publish_elastic(kJoinStep, Phase::init);
     poll(kMs);
@@ -154,13 +148,7 @@ class FlexNode : public WithFlexibleBodies {
  protected:
   void get_ready(ElasticExchange exchange) {
     node = std::make_unique<PhysicsNode>(Role::flex, played.transport(), built_for(exchange));
-    played.publish(Topic::session, played.session);
-    poll(0);
-    const wire::Header own = node->member().header(Phase::join, kJoinStep);
-    played.acknowledge(Role::io, NodeState::joining, own, {Topic::elastic});
-    played.acknowledge(Role::mechanics, NodeState::joining, own, {Topic::elastic});
-    poll(kMs);
-    poll(kMs);
+    played.join(*node, now_ns, {Topic::elastic});
     // its first sample needs no partner
     EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic).back(), kJoinStep);
     EXPECT_EQ(node->member().state(), NodeState::initialising);
@@ -289,11 +277,8 @@ TEST(NodesWithoutFlexibleBodies, ProveNoTopicOfTheirs) {
     built.subsystem = std::make_unique<testing::StillSubsystem>();
     return Status::ok();
   });
-  played.publish(Topic::session, played.session);
-  node.poll(1000 * kMs);
-  played.acknowledge(Role::io, NodeState::joining, node.member().header(Phase::join, kJoinStep), {Topic::mechanism});
-  node.poll(1001 * kMs);
-  node.poll(1002 * kMs);
+  std::int64_t now_ns = 1000 * kMs;
+  played.join(node, now_ns, {Topic::mechanism});
   EXPECT_GE(node.member().state(), NodeState::initialising);
   EXPECT_TRUE(played.received<wire::FlexibleMessage>(Topic::flexible).empty());
 }

@@ -50,13 +50,7 @@ class FreeRunning : public ::testing::Test {
  protected:
   void SetUp() override {
     played.session.window = kWindow;
-    played.publish(Topic::session, played.session);
-    poll();
-    const wire::Header own = node.member().header(Phase::join, kJoinStep);
-    played.acknowledge(Role::io, NodeState::joining, own, {Topic::mechanism});
-    played.acknowledge(Role::hydraulics, NodeState::joining, own, {Topic::mechanism});
-    poll(kMs);
-    poll(kMs);
+    played.join(node, now_ns, {Topic::mechanism});
     played.publish_actuators(0);
     poll(kMs);
     ASSERT_EQ(node.member().state(), NodeState::ready);

@@ -28,13 +28,7 @@ class Physics : public ::testing::Test {
 
   // mechanics has joined, has published sample 0 and waits for tick 0
   void get_ready() {
-    played.publish(Topic::session, played.session);
-    poll();
-    const wire::Header own = node.member().header(Phase::join, kJoinStep);
-    played.acknowledge(Role::io, NodeState::joining, own, {Topic::mechanism});
-    played.acknowledge(Role::hydraulics, NodeState::joining, own, {Topic::mechanism});
-    poll(kMs);
-    poll(kMs);
+    played.join(node, now_ns, {Topic::mechanism});
     played.publish_actuators(0);
     poll(kMs);
     ASSERT_EQ(node.member().state(), NodeState::ready);
@@ -134,13 +128,7 @@ TEST_F(Physics, LeavesOutTheValuesOfItsVariablesWhereTheTickOrdersIt) {
     return Status::ok();
   });
   const auto go_on = [&] { observed.poll(now_ns += kMs); };
-  played.publish(Topic::session, played.session);
-  go_on();
-  const wire::Header own = observed.member().header(Phase::join, kJoinStep);
-  played.acknowledge(Role::io, NodeState::joining, own, {Topic::mechanism, Topic::variables});
-  played.acknowledge(Role::hydraulics, NodeState::joining, own, {Topic::mechanism});
-  go_on();
-  go_on();
+  played.join(observed, now_ns, {Topic::mechanism, Topic::variables});
   const auto view = static_cast<std::uint32_t>(TickFlag::shed_view);
   const auto all = view | static_cast<std::uint32_t>(TickFlag::shed_variables);
   const std::uint32_t flags[] = {0, view, all, 0};

@@ -4,13 +4,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/time.h"
 #include "node/session_member.h"
-#include "transport/in_process/in_process_bus.h"
+#include "tests/support/played_session.h"
 
 namespace slew::node {
 namespace session_member_test {
 
+using testing::kMs;
 using transport::InProcessBus;
 using transport::InProcessEndpoint;
 using wire::NodeState;
@@ -19,28 +19,19 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-constexpr std::int64_t kMs = 1'000'000;
+testing::PlayedSession played_session() {
+  return testing::PlayedSession{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::recorder)};
+}
 
 wire::SessionDescription description() {
-  wire::SessionDescription session;
-  session.header.session[0] = 42;
-  session.header.role = Role::io;
+  wire::SessionDescription session = played_session().session;
   session.header.incarnation = 9;
-  session.header.phase = Phase::running;
-  session.name = "s";
-  session.required_roles = bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::recorder);
-  session.host = "elsewhere#1";
-  session.pid = 77;
   return session;
 }
 
 NodeStatus status_of(Role role, std::uint32_t incarnation, NodeState state = NodeState::running) {
-  NodeStatus status;
-  status.header.session = description().header.session;
-  status.header.role = role;
+  NodeStatus status = played_session().status(role, state);
   status.header.incarnation = incarnation;
-  status.state = state;
-  status.host = "elsewhere#1";
   status.pid = 1000 + incarnation;
   status.started_ns = incarnation;
   return status;
@@ -59,14 +50,16 @@ PeerEvent watch_until(SessionMember& member, std::int64_t& watched_ns, std::int6
   return member.watch_peers(now_ns, about);
 }
 
+Status receive_at(SessionMember& reader, const NodeStatus& status, std::int64_t now_ns = 0) {
+  std::vector<std::byte> bytes;
+  EXPECT_TRUE(transport::encode(status, bytes));
+  return reader.on_node_status(bytes, now_ns);
+}
+
 class Member : public ::testing::Test {
  protected:
   static constexpr Topic kTopics[] = {Topic::mechanism};
-  Status receive(const NodeStatus& status, std::int64_t now_ns = 0) {
-    std::vector<std::byte> bytes;
-    EXPECT_TRUE(transport::encode(status, bytes));
-    return member.on_node_status(bytes, now_ns);
-  }
+  Status receive(const NodeStatus& status, std::int64_t now_ns = 0) { return receive_at(member, status, now_ns); }
   void receive_health(Role role, std::uint32_t incarnation, std::int64_t now_ns) {
     wire::Health health;
     health.header = status_of(role, incarnation).header;
@@ -255,7 +248,7 @@ TEST_F(Member, TakesTheProcessThatIoHasChosenWhicheverStatusCameFirst) {
 TEST(TwoOfOneRole, AreDecidedByTheOneWhoseStatusIoTookFirst) {
   InProcessBus bus;
   InProcessEndpoint place(bus, {"io", {Topic::node_status}, transport::TopicSet::all()});
-  InProcessEndpoint hears(bus, {"listener", {}, {Topic::node_status}});
+  InProcessEndpoint reader(bus, {"listener", {}, {Topic::node_status}});
   SessionMember owner(Role::io, place, {});
   wire::SessionDescription own = description();
   own.header.incarnation = owner.header(Phase::join, kJoinStep).incarnation;
@@ -263,13 +256,11 @@ TEST(TwoOfOneRole, AreDecidedByTheOneWhoseStatusIoTookFirst) {
   for (const std::uint32_t incarnation : {6u, 5u}) {
     NodeStatus claim =
         status_of(Role::mechanics, incarnation, incarnation == 5 ? NodeState::running : NodeState::joining);
-    std::vector<std::byte> bytes;
-    ASSERT_TRUE(transport::encode(claim, bytes));
-    ASSERT_TRUE(owner.on_node_status(bytes, 0).is_ok());
+    ASSERT_TRUE(receive_at(owner, claim).is_ok());
   }
   owner.publish_status_if_changed();
   transport::Received received;
-  ASSERT_TRUE(hears.take(received));
+  ASSERT_TRUE(reader.take(received));
   NodeStatus published;
   ASSERT_TRUE(transport::decode(received.bytes, published));
   const wire::Heard chosen{Role::mechanics, 6, static_cast<std::uint8_t>(Topic::node_status)};
@@ -467,28 +458,24 @@ TEST_F(Member, ThatOwnsTheSessionWarnsOnceOfWhatMayChangeTheLastBit) {
   InProcessEndpoint place(bus, {"io", {Topic::node_status}, transport::TopicSet::all()});
   SessionMember owner(Role::io, place, {});
   ASSERT_TRUE(owner.adopt(description(), 0).is_ok());
-  const auto hears = [&](NodeStatus status) {
-    std::vector<std::byte> bytes;
-    ASSERT_TRUE(transport::encode(status, bytes));
-    ASSERT_TRUE(owner.on_node_status(bytes, 0).is_ok());
-  };
+  const auto receives = [&](const NodeStatus& status) { ASSERT_TRUE(receive_at(owner, status).is_ok()); };
   NodeStatus same = status_of(Role::mechanics, 5);
   same.build = owner.identity().build;
   same.self_test = owner.identity().self_test;
-  hears(same);
+  receives(same);
   EXPECT_TRUE(owner.take_warnings().empty());
   NodeStatus other = status_of(Role::hydraulics, 5);
   other.build = "another";
   other.self_test = same.self_test;
-  hears(other);
-  hears(other);
+  receives(other);
+  receives(other);
   EXPECT_EQ(owner.take_warnings(),
             std::vector<std::string>{"hydraulics on elsewhere is of build 'another', io of '" + same.build +
                                      "': bits may differ from those of one build; install one build on all machines"});
   NodeStatus inexact = status_of(Role::recorder, 5);
   inexact.build = same.build;
   inexact.self_test = same.self_test + 1;
-  hears(inexact);
+  receives(inexact);
   const std::vector<std::string> warnings = owner.take_warnings();
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_TRUE(

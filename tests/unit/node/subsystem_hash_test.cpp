@@ -135,7 +135,7 @@ joints:
           limit_stiffness: 1e4 Nm/rad}
 )",
                                               "pendulum");
-  mechanics::MechanicsSubsystem pendulum(scene);
+  mechanics_node::MechanicsSubsystem pendulum(scene);
   coupling::OwnSample sample;
   static_cast<void>(pendulum.first_sample(sample));
   ASSERT_TRUE(pendulum.start({}, sample).is_ok());

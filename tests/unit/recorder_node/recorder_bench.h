@@ -13,7 +13,7 @@
 #include "recording/reader.h"
 #include "tests/support/played_session.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 
 using testing::kMs;
 using testing::PlayedSession;
@@ -122,4 +122,4 @@ class RecorderBench {
   std::int64_t now_ns = 1000 * kMs;
 };
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

@@ -8,7 +8,7 @@
 
 #include "recorder_bench.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 namespace recorder_node_test {
 
 class Recorder : public ::testing::Test, public RecorderBench {};
@@ -45,7 +45,7 @@ TEST_F(Recorder, RequestsAGapWhileAllElseComesInOrder) {
   join();
   publish_steps(0, 5);
   static_cast<void>(played.received<wire::ResendRequest>(Topic::resend));
-  const auto say_step = [&](StepIndex step, bool has_mechanism) {
+  const auto publish_step = [&](StepIndex step, bool has_mechanism) {
     played.publish_tick(step);
     if (has_mechanism) played.publish_mechanism(step);
     played.publish_actuators(step);
@@ -88,7 +88,7 @@ TEST_F(Recorder, BehindAGapInTheTicksRecordsTheStatesOfAllNodes) {
   wire::StatePart part;
   part.total = 5;
   part.bytes.resize(5);
-  const auto say_state = [&](Role role, StepIndex step) {
+  const auto publish_state = [&](Role role, StepIndex step) {
     part.header = played.header(Role::io, step);
     part.role = role;
     played.publish(Topic::state, part);
@@ -174,7 +174,7 @@ TEST_F(Recorder, CountsVariableBlocksThatNeverCame) {
 
 TEST_F(Recorder, DoesNotFileMessagesOfAnotherSessionOfTheName) {
   join();
-  const auto say_all = [&](std::uint8_t session) {
+  const auto publish_all = [&](std::uint8_t session) {
     wire::NodeStatus status = played.status(Role::mechanics, NodeState::running, 1);
     wire::Health health;
     wire::ControllerLease lease;
@@ -385,7 +385,7 @@ TEST_F(Recorder, OfASessionThatGoesOnTakesNoPartOfAStateThatHasNoPlace) {
   part.role = Role::mechanics;
   part.total = 5;
   part.bytes.resize(2);
-  const auto say_from = [&](std::uint32_t first) {
+  const auto publish_from = [&](std::uint32_t first) {
     part.first = first;
     played.publish(Topic::state, part);
     poll(kMs);
@@ -418,4 +418,4 @@ TEST_F(Recorder, ThatIsLateAndReceivesNoStatusOfAFirstOneReportsIt) {
 }
 
 }  // namespace recorder_node_test
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

@@ -11,7 +11,7 @@
 
 #include "recorder_bench.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 namespace recorder_storage_test {
 
 // A disk on which write number n fails, alone or with all later ones; some writes fail after half of their bytes.
@@ -337,4 +337,4 @@ TEST_F(SlowDiskInFreePace, IsWaitedForAndCostsNothing) {
 }
 
 }  // namespace recorder_storage_test
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

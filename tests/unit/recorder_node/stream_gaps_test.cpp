@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 namespace stream_gaps_test {
 
 using Arrival = StreamGaps::Arrival;
@@ -102,4 +102,4 @@ TEST(StreamGaps, ClosingFarAheadCountsWithoutCountingOneByOne) {
 }
 
 }  // namespace stream_gaps_test
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

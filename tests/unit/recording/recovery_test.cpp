@@ -69,7 +69,7 @@ TEST_F(RecoveredRecording, NamesItsSessionInTheFirstOfSeveralRecords) {
   // cut behind the first chunk's Mark, and another record of the name behind that
   std::string content = whole_.substr(0, chunks_[1].begin);
   Bytes more;
-  encode_metadata(more, {kIdentityName, {{"format_version", "1"}}});
+  encode(more, MetadataRecord{kIdentityName, {{"format_version", "1"}}});
   content += as_text(more);
   Bytes mark;
   encode_mark(mark, crc32_of(as_byte_span(content)));

@@ -142,8 +142,8 @@ TEST_F(FlexibleScene, RigidKeysMayStayAndAreComparedWithTheFiles) {
 }
 
 TEST_F(FlexibleScene, RigidIsTheDefaultType) {
-  const std::string said = with(kPendulum, "{mass", "{type: rigid, mass");
-  EXPECT_EQ(load_text(said, "test").expanded_text, load_text(kPendulum, "test").expanded_text);
+  const std::string named = with(kPendulum, "{mass", "{type: rigid, mass");
+  EXPECT_EQ(load_text(named, "test").expanded_text, load_text(kPendulum, "test").expanded_text);
   expect_part(problems_of(with(kPendulum, "{mass", "{type: flexibel, mass")), "did you mean 'flexible'");
 }
 

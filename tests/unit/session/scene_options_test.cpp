@@ -127,9 +127,7 @@ TEST_F(SceneOptionsTest, ArgumentsForAChildGiveTheSameScene) {
 
 TEST_F(SceneOptionsTest, TheSessionTakesChannelsStepAndRolesFromTheScene) {
   const scene::Scene scene = scene::load_scene(options_);
-  io_node::SessionWish wish;
-  wish.session_name = "s";
-  const io_node::IoConfig config = io_node::make_config(scene, wish);
+  const io_node::IoConfig config = io_node::make_config(scene, "s", io_node::Recording::required);
   ASSERT_EQ(config.channels.size(), 3u);
   EXPECT_EQ(config.channels[0].name, "Input_Slew");
   EXPECT_EQ(config.channels[0].scale, -500);
@@ -139,9 +137,9 @@ TEST_F(SceneOptionsTest, TheSessionTakesChannelsStepAndRolesFromTheScene) {
   EXPECT_EQ(config.session.steps(), 20'000);
   EXPECT_EQ(config.required_roles,
             bit(wire::Role::io) | bit(wire::Role::mechanics) | bit(wire::Role::hydraulics) | bit(wire::Role::recorder));
-  EXPECT_TRUE(config.judge_parameter("Bag.mass", 1500, -1).is_accepted);
-  EXPECT_FALSE(config.judge_parameter("Bag.mass", -1, -1).is_accepted);
-  EXPECT_FALSE(config.judge_parameter("Bag.mas", 1, -1).is_accepted);
+  EXPECT_TRUE(config.check_parameter("Bag.mass", 1500, -1).is_accepted);
+  EXPECT_FALSE(config.check_parameter("Bag.mass", -1, -1).is_accepted);
+  EXPECT_FALSE(config.check_parameter("Bag.mas", 1, -1).is_accepted);
 }
 
 }  // namespace scene_options_test
