@@ -411,10 +411,10 @@ TEST_F(Member, ThatStoodStillAndReceivesNothingAfterwardsReportsIt) {
   EXPECT_EQ(watch(30'100 * kMs + kSilentAfter.ns), PeerEvent::none);
   EXPECT_EQ(watch(31'000 * kMs), PeerEvent::none);
   EXPECT_EQ(watch(32'001 * kMs), PeerEvent::lost);
-  EXPECT_EQ(member.end_text(about, "io is gone"),
-            "io is gone; this node itself had stood still for 30 s, and after 2 s (session.give_up_after) the other "
-            "nodes give "
-            "a node up; look for what stopped the process (a signal, a debugger, lack of memory or of processors)");
+  EXPECT_EQ(
+      member.end_text(about, "io is gone"),
+      "io is gone; this node itself had stood still for 30 s, and after 2 s (session.give_up_after) the others give "
+      "a node up; look for what stopped the process (a signal, a debugger, lack of memory or of processors)");
 }
 
 // A transport whose cable is out: it sends when it is plugged in again.
@@ -447,7 +447,7 @@ TEST_F(Member, ThatCouldNotSendNamesItsNetworkAsACause) {
   EXPECT_EQ(
       sender.end_text(about, "io is gone"),
       "io is gone; this node itself had stood still for 2 s while it sent, and after 2 s (session.give_up_after) the "
-      "other nodes give a node up; look for what stopped the process (a signal, a debugger, lack of memory or of "
+      "others give a node up; look for what stopped the process (a signal, a debugger, lack of memory or of "
       "processors) or took "
       "nothing from it (a cable that is out, an interface that is down)");
 }
