@@ -42,7 +42,7 @@ class Keeper : public ::testing::Test {
     for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) {
       node::Checkpoint state{role == Role::hydraulics ? of_hydraulics : step, 1, {std::byte{1}}};
       if (role == Role::io) inputs.save(step, state);
-      for (const auto& part : node::parts_of(state, played.header(Role::observer, step), role, 7)) {
+      for (const auto& part : node::parts_of(state, played.header(Role::observer, state.step), role, 7)) {
         std::vector<std::byte> bytes;
         EXPECT_TRUE(transport::encode(part, bytes));
         keeper.receive_upload(bytes);
