@@ -11,6 +11,7 @@
 #include "build_paths.h"
 #include "flex_node/flex_subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
+#include "io_node/io_node.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "node/driver.h"
@@ -34,12 +35,8 @@ const scene::Scene& crane(Boom boom) {
 constexpr SimDuration kH = milliseconds(1);
 constexpr StepIndex kSteps = 6000;  // rest, lift, lift and slew
 
-io::IoConfig io_config(Boom boom) {
-  io::SessionWish wish;
-  wish.session_name = "benchmark";
-  wish.operating = io::Operator::script;
-  wish.recording = io::Recording::none;
-  return io::make_config(crane(boom), wish);
+io_node::IoConfig io_config(Boom boom) {
+  return io_node::make_config(crane(boom), "benchmark", io_node::Recording::none);
 }
 
 // One run with everything that either side was given: replayed to one side alone, it does the same again.
@@ -59,11 +56,11 @@ void start(coupling::Subsystem& mechanics, coupling::Subsystem& hydraulics, coup
 
 Tape record(Boom boom) {
   Tape t;
-  mechanics::MechanicsSubsystem mechanics(crane(boom));
-  hydraulic_node::HydraulicsSubsystem hydraulics(crane(boom));
+  mechanics_node::MechanicsSubsystem mechanics(crane(boom));
+  hydraulics_node::HydraulicsSubsystem hydraulics(crane(boom));
   const scene::ScriptPlayer script(crane(boom));
-  const io::IoConfig config = io_config(boom);
-  io::InputGate gate(config.channels, config.gate, kH);
+  const io_node::IoConfig config = io_config(boom);
+  io_node::InputGate gate(config.channels, config.gate(), kH);
   std::vector<SignalCourse> raw(gate.size());
   coupling::OwnSample m, h;
   start(mechanics, hydraulics, m, h);
@@ -100,8 +97,8 @@ void run_side(benchmark::State& state, Boom boom, Side side) {
   const Tape& t = tape(boom);
   for (auto _ : state) {
     state.PauseTiming();
-    mechanics::MechanicsSubsystem mechanics(crane(boom));
-    hydraulic_node::HydraulicsSubsystem hydraulics(crane(boom));
+    mechanics_node::MechanicsSubsystem mechanics(crane(boom));
+    hydraulics_node::HydraulicsSubsystem hydraulics(crane(boom));
     coupling::OwnSample m, h;
     start(mechanics, hydraulics, m, h);
     state.ResumeTiming();
@@ -153,8 +150,8 @@ enum class Saving { save, load };
 
 void BM_SavedState(benchmark::State& state, Boom boom, Saving saving) {
   const Tape& t = tape(boom);
-  mechanics::MechanicsSubsystem mechanics(crane(boom));
-  hydraulic_node::HydraulicsSubsystem hydraulics(crane(boom));
+  mechanics_node::MechanicsSubsystem mechanics(crane(boom));
+  hydraulics_node::HydraulicsSubsystem hydraulics(crane(boom));
   coupling::OwnSample m, h;
   start(mechanics, hydraulics, m, h);
   for (StepIndex n = 0; n < 1000; ++n) step_both(mechanics, hydraulics, n, t, m, h);
@@ -187,20 +184,20 @@ void BM_Session(benchmark::State& state, Boom boom) {
           bus, transport::InProcessOptions{role, transport::TopicSet::all(), transport::TopicSet::all()});
     };
     const auto io_end = endpoint("io"), mechanics_end = endpoint("mechanics"), hydraulics_end = endpoint("hydraulics");
-    io::IoConfig config = io_config(boom);
-    config.pace = wire::Pace::free;
-    config.window = 4;
+    io_node::IoConfig config = io_config(boom);
+    config.session.pace = Pace::free;
+    config.session.window = 4;
     config.name_check = {0};
-    config.steps = kSteps;
-    io::IoNode io(*io_end, std::move(config));
+    config.session.duration = static_cast<double>(kSteps) * kH.seconds();
+    io_node::IoNode io(*io_end, std::move(config));
     node::PhysicsNode mechanics(wire::Role::mechanics, *mechanics_end,
                                 [boom](const wire::SessionDescription&, node::BuiltSubsystem& built) {
-                                  built.subsystem = mechanics::make_mechanics_subsystem(crane(boom));
+                                  built.subsystem = mechanics_node::make_mechanics_subsystem(crane(boom));
                                   return Status::ok();
                                 });
     node::PhysicsNode hydraulics(wire::Role::hydraulics, *hydraulics_end,
                                  [boom](const wire::SessionDescription&, node::BuiltSubsystem& built) {
-                                   built.subsystem = hydraulic_node::make_hydraulics_subsystem(crane(boom));
+                                   built.subsystem = hydraulics_node::make_hydraulics_subsystem(crane(boom));
                                    return Status::ok();
                                  });
     std::vector<node::Node*> nodes = {&io, &mechanics, &hydraulics};
@@ -210,7 +207,7 @@ void BM_Session(benchmark::State& state, Boom boom) {
       flex_end = endpoint("flex");
       flex = std::make_unique<node::PhysicsNode>(wire::Role::flex, *flex_end,
                                                  [boom](const wire::SessionDescription&, node::BuiltSubsystem& built) {
-                                                   built.subsystem = flexible::make_flex_subsystem(crane(boom));
+                                                   built.subsystem = flex_node::make_flex_subsystem(crane(boom));
                                                    return Status::ok();
                                                  });
       nodes.push_back(flex.get());

@@ -102,17 +102,13 @@ struct Tape {
   std::vector<std::vector<double>> controls;
 };
 
-Tape record(const scene::Scene& scene, mechanics::MechanicsSubsystem& mechanics) {
+Tape record(const scene::Scene& scene, mechanics_node::MechanicsSubsystem& mechanics) {
   Tape tape;
-  hydraulic_node::HydraulicsSubsystem hydraulics(scene);
+  hydraulics_node::HydraulicsSubsystem hydraulics(scene);
   const scene::ScriptPlayer script(scene);
-  io::SessionWish wish;
-  wish.session_name = "benchmark";
-  wish.operating = io::Operator::script;
-  wish.recording = io::Recording::none;
-  const io::IoConfig config = io::make_config(scene, wish);
+  const io_node::IoConfig config = io_node::make_config(scene, "benchmark", io_node::Recording::none);
   const SimDuration H = scene.session.step_duration();
-  io::InputGate gate(config.channels, config.gate, H);
+  io_node::InputGate gate(config.channels, config.gate(), H);
   std::vector<SignalCourse> raw(gate.size());
   coupling::OwnSample m, h;
   static_cast<void>(mechanics.first_sample(m));
@@ -214,7 +210,7 @@ struct Crane {
 
   std::string name;
   scene::Scene scene;
-  mechanics::MechanicsSubsystem mechanics;
+  mechanics_node::MechanicsSubsystem mechanics;
   Tape tape;
   Falling alone;
   double iterations = 0;  // iterations of the ports' laws in the last run

@@ -50,7 +50,8 @@ void check_variables(const scene::Scene& scene, const session::DirectSession& se
   }
   std::vector<std::string> inputs;
   for (const scene::InputDef& input : scene.inputs) inputs.push_back(input.name);
-  for (wire::VariableEntry& own : io::own_variables(inputs, io::required_roles(scene, io::Recording::none))) {
+  for (wire::VariableEntry& own :
+       io_node::own_variables(inputs, io_node::required_roles(scene, io_node::Recording::none))) {
     names.push_back(std::move(own.name));
   }
   for (const scene::PlotDef& plot : scene.plots) {

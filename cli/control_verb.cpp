@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <sstream>
 
 #include "cli/verbs.h"
@@ -10,11 +11,13 @@
 #include "core/json.h"
 #include "core/printable.h"
 #include "io_node/saved_session.h"
+#include "node/checkpoint.h"
 #include "node/driver.h"
 #include "node/identity.h"
+#include "observer/observer.h"
 #include "scene/canonical.h"
 #include "scene/scene.h"
-#include "session/observer.h"
+#include "session/survey.h"
 
 namespace slew::cli {
 namespace {
@@ -44,7 +47,7 @@ constexpr Command kCommands[] = {
 };
 
 // Prints io_node's reply to a command on standard output.
-void report(const Options& options, const std::string& command, const session::Observer& observer,
+void report(const Options& options, const std::string& command, const observer::Observer& observer,
             const wire::ControlReply& reply, const std::string& more = "") {
   if (options.is_json) {
     fmt::print("{}\n", Json({{"session", observer.session_name()},
@@ -80,6 +83,22 @@ constexpr SimDuration kSaveAnswer = milliseconds(10'000);   // io_node waits for
 constexpr SimDuration kStatesArrive = milliseconds(2'000);  // after its reply
 constexpr int kSaveAttempts = 3;
 
+// The states that io_node sends in reply to requests.
+class ReceivedStates final : public observer::Receiver {
+ public:
+  void take_state(const wire::StatePart& part) override {
+    if (part.header.role == wire::Role::io && part.request != 0) states_[{part.request, part.role}].take(part);
+  }
+  // Null: it has not arrived whole.
+  [[nodiscard]] const node::Checkpoint* find(std::uint64_t request, wire::Role role) const {
+    const auto found = states_.find({request, role});
+    return found != states_.end() && found->second.is_whole() ? &found->second.checkpoint() : nullptr;
+  }
+
+ private:
+  std::map<std::pair<std::uint64_t, wire::Role>, node::CheckpointParts> states_;  // by request and role
+};
+
 std::vector<wire::Role> roles_with_state(const wire::SessionDescription& session) {
   std::vector<wire::Role> roles = {wire::Role::io};
   for (const wire::Role role : wire::kPhysicsRoles) {
@@ -96,7 +115,8 @@ ExitCode save(const Options& options) {
                                            ": the file exists already; it was left as it is; choose another name, or "
                                            "replace it with --force");
   }
-  const auto observer = session::find_session(options.session, session::Access::steer);
+  ReceivedStates states;
+  const auto observer = session::find_session(options.session, session::Access::steer, &states);
   const std::vector<wire::Role> roles = roles_with_state(observer->view().session());
   wire::ControlRequest request;
   request.action = ControlAction::save;
@@ -109,7 +129,7 @@ ExitCode save(const Options& options) {
     is_whole = observer->wait_for(
         [&] {
           return std::all_of(roles.begin(), roles.end(),
-                             [&](wire::Role role) { return observer->state(reply.request, role) != nullptr; });
+                             [&](wire::Role role) { return states.find(reply.request, role) != nullptr; });
         },
         kStatesArrive);
   }
@@ -120,7 +140,7 @@ ExitCode save(const Options& options) {
                                         "session");
   }
   const wire::SessionDescription& session = observer->view().session();
-  io::SavedSession saved;
+  io_node::SavedSession saved;
   saved.build = session.build;
   saved.session_name = session.name;
   saved.scene_name = session.scene_name;
@@ -128,15 +148,16 @@ ExitCode save(const Options& options) {
   saved.assets = session.assets;
   saved.communication_step = {session.step_ns};
   saved.step = reply.header.step;
-  for (const wire::Role role : roles) saved.states.push_back({role, *observer->state(reply.request, role)});
-  require(io::write_saved(options.file, saved, options.may_replace ? io::Replace::existing : io::Replace::never));
+  for (const wire::Role role : roles) saved.states.push_back({role, *states.find(reply.request, role)});
+  require(io_node::write_saved(options.file, saved,
+                               options.may_replace ? io_node::Replace::existing : io_node::Replace::never));
   report(options, "save", *observer, reply, fmt::format(", t = {:.6g} s: {}", saved.time(), options.file));
   return ExitCode::ok;
 }
 
 // Empty when both have the same machine; else the first difference. Duration, pace, how deadlines are kept, script,
 // controllers of the inputs, and the recorded and plotted variables are not part of the machine.
-std::string difference_of(const io::SavedSession& saved, const wire::SessionDescription& running) {
+std::string difference_of(const io_node::SavedSession& saved, const wire::SessionDescription& running) {
   scene::Scene a = scene::load_text(saved.scene_text, saved.scene_name);
   scene::Scene b = scene::load_text(running.scene_text, running.scene_name);
   b.session.duration = a.session.duration;
@@ -177,8 +198,8 @@ std::string difference_of(const io::SavedSession& saved, const wire::SessionDesc
 
 ExitCode load(const Options& options) {
   node::install_signal_handlers();
-  io::SavedSession saved;
-  require(io::read_saved(options.file, saved));
+  io_node::SavedSession saved;
+  require(io_node::read_saved(options.file, saved));
   const auto observer = session::find_session(options.session, session::Access::steer);
   const wire::SessionDescription& session = observer->view().session();
   const auto refuse = [&](const std::string& why) {
@@ -194,13 +215,22 @@ ExitCode load(const Options& options) {
   }
   wire::ControlRequest request;
   request.action = ControlAction::load;
-  request.request = session::Observer::draw_number();
+  request.request = observer::Observer::draw_number();
   const std::vector<wire::Role> roles = roles_with_state(session);
   for (const wire::Role role : roles) {
     if (saved.find(role) == nullptr) refuse("the file has no state of " + std::string(node::to_text(role)));
   }
   const auto give_states = [&] {
-    for (const wire::Role role : roles) observer->give_state(request.request, role, *saved.find(role));
+    wire::Header header;
+    header.session = session.header.session;
+    header.role = wire::Role::observer;
+    header.phase = wire::Phase::running;
+    for (const wire::Role role : roles) {
+      const node::Checkpoint& state = *saved.find(role);
+      header.step = state.step;
+      for (const wire::StatePart& part : node::parts_of(state, header, role, request.request))
+        require(observer->send(part));
+    }
   };
   report(options, "load", *observer, observer->request_reply(request, kSaveAnswer, give_states),
          fmt::format(", t = {:.6g} s", saved.time()));

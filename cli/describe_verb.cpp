@@ -173,7 +173,7 @@ Description describe(const scene::Scene& scene) {
   d.text = scene.description;
   d.step = scene.session.step;
   d.duration = scene.session.duration;
-  d.pace = scene.session.pace == scene::Pace::free ? "free" : "real";
+  d.pace = scene.session.pace == Pace::free ? "free" : "real";
   describe_bodies(scene, d);
   describe_mechanics(scene, d);
   describe_hydraulics(scene, d);

@@ -108,7 +108,7 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
 
 std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const scene::Scene& scene) {
   using wire::Role;
-  const FlagCounter& flags = outcome.view.flags();
+  const FlagCounter& flags = outcome.tally.flags();
   std::vector<std::string> sentences = explain_flags(flags, scene);
   const bool has_steps = outcome.view.has_session() && outcome.steps > 0 &&
                          (outcome.view.session().required_roles & (bit(Role::mechanics) | bit(Role::hydraulics))) != 0;

@@ -91,7 +91,7 @@ Keyboard::~Keyboard() {
   tcsetattr(STDIN_FILENO, TCSANOW, &saved_);
 }
 
-void Keyboard::publish(session::Observer& observer, std::size_t lever, wire::ControllerAction action) {
+void Keyboard::publish(observer::Observer& observer, std::size_t lever, wire::ControllerAction action) {
   wire::ControllerInput input;
   input.session = observer.session_name();
   input.controller = kName;
@@ -99,18 +99,19 @@ void Keyboard::publish(session::Observer& observer, std::size_t lever, wire::Con
   input.action = action;
   input.value = levers_.value(lever);
   input.sequence = ++sequence_;
-  observer.send(input);
+  // a lost lever position needs no reaction: the next one follows within 50 ms
+  static_cast<void>(observer.send(input));
 }
 
 // a second request for a channel that is held would put it to neutral
-void Keyboard::acquire_missing(session::Observer& observer) {
+void Keyboard::acquire_missing(observer::Observer& observer) {
   for (std::size_t i = 0; i < levers_.size(); ++i) {
     const wire::ControllerLease* lease = observer.view().lease(kName, levers_.channel(i));
     if (lease == nullptr || !lease->is_granted) publish(observer, i, wire::ControllerAction::acquire);
   }
 }
 
-void Keyboard::poll(session::Observer& observer, std::int64_t now_ns) {
+void Keyboard::poll(observer::Observer& observer, std::int64_t now_ns) {
   pollfd request{STDIN_FILENO, POLLIN, 0};
   std::array<char, 64> keys{};
   if (::poll(&request, 1, 0) == 1) {

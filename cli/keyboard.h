@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "observer/observer.h"
 #include "scene/scene.h"
-#include "session/observer.h"
 
 namespace slew::cli {
 
@@ -53,11 +53,11 @@ class Keyboard {
 
   [[nodiscard]] const Levers& levers() const noexcept { return levers_; }
   // Reads the typed keys and publishes the levers every 50 ms.
-  void poll(session::Observer& observer, std::int64_t now_ns);
+  void poll(observer::Observer& observer, std::int64_t now_ns);
 
  private:
-  void publish(session::Observer& observer, std::size_t lever, wire::ControllerAction action);
-  void acquire_missing(session::Observer& observer);
+  void publish(observer::Observer& observer, std::size_t lever, wire::ControllerAction action);
+  void acquire_missing(observer::Observer& observer);
 
   Levers levers_;
   termios saved_{};

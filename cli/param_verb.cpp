@@ -14,10 +14,11 @@
 #include "core/report_table.h"
 #include "core/suggestion.h"
 #include "node/driver.h"
+#include "observer/observer.h"
 #include "scene/field_reader.h"
 #include "scene/names.h"
 #include "scene/parameters.h"
-#include "session/observer.h"
+#include "session/survey.h"
 
 namespace slew::cli {
 namespace {
@@ -67,7 +68,7 @@ class Source {
   }
 
  private:
-  std::unique_ptr<session::Observer> observer_;
+  std::unique_ptr<observer::Observer> observer_;
   scene::ParameterDirectory directory_;
 };
 

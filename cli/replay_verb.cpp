@@ -100,8 +100,8 @@ ExitCode run_until(const Options& options) {
     std::fflush(stdout);
   }
   if (!options.saved.empty()) {
-    require(
-        io::write_saved(options.saved, end.saved, options.may_replace ? io::Replace::existing : io::Replace::never));
+    require(io_node::write_saved(options.saved, end.saved,
+                                 options.may_replace ? io_node::Replace::existing : io_node::Replace::never));
     if (!options.is_json) fmt::print("saved: {}\n", options.saved);
   }
   if (!options.goes_on) return ExitCode::ok;
@@ -110,8 +110,8 @@ ExitCode run_until(const Options& options) {
   run.scene.from = options.saved.empty() ? scratch.path() : options.saved;
   run.scene.assets = assets;
   run.is_json = options.is_json;
-  if (options.saved.empty()) require(io::write_saved(run.scene.from, end.saved, io::Replace::existing));
-  const io::SessionScene session = io::load_session_scene(run.scene);
+  if (options.saved.empty()) require(io_node::write_saved(run.scene.from, end.saved, io_node::Replace::existing));
+  const io_node::SessionScene session = io_node::load_session_scene(run.scene);
   return run_session(std::move(run), session);
 }
 

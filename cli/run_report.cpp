@@ -31,30 +31,30 @@ using wire::Role;
 
 constexpr double kShortestPause = 0.01;  // s; a shorter one is no pause
 
-void report_nodes(const session::SessionView& view, RunReport& report) {
+void report_nodes(const observer::SessionView& view, RunReport& report) {
   for (const Role role : wire::kNodeRoles) {
     if (!view.has_session() || (view.session().required_roles & bit(role)) == 0) continue;
-    const session::NodeView& node = view.node(role);
+    const observer::NodeView& node = view.node(role);
     report.nodes.push_back({std::string(node::to_text(role)), node.times, node.health.resends_asked,
                             node.health.resends_answered, node.health.refused_messages, node.health});
   }
   report.slip = static_cast<double>(view.node(Role::io).health.slip_ns) * 1e-9;
 }
 
-void report_ranges(const session::SessionView& view, const scene::Scene& scene, RunReport& report) {
+void report_ranges(const observer::SessionView& view, const scene::Scene& scene, RunReport& report) {
   for (std::size_t i = 0; i < scene.ports.size(); ++i) {
     const scene::PortDef& port = scene.ports[i];
-    const session::VariableView* eta = view.find(port.name + ".coupling_eta");
-    const session::VariableView* net = view.find(port.name + ".coupling_net");
+    const observer::VariableView* eta = view.find(port.name + ".coupling_eta");
+    const observer::VariableView* net = view.find(port.name + ".coupling_net");
     if (eta == nullptr || eta->step < 0) continue;
     const double lowest = net != nullptr && net->step >= 0 ? net->min : 0;
     report.ports.push_back({port.name, eta->max, lowest, std::string(analysis::lamp_text(analysis::lamp_of(eta->max))),
                             analysis::explain_lamp(eta->max, i, scene)});
   }
-  if (const session::VariableView* omega = view.find("hydraulics.omega_H"); omega != nullptr && omega->step >= 0) {
+  if (const observer::VariableView* omega = view.find("hydraulics.omega_H"); omega != nullptr && omega->step >= 0) {
     report.omega_H = omega->max;
   }
-  for (const session::VariableView* variable : view.variables()) {
+  for (const observer::VariableView* variable : view.variables()) {
     const bool is_plotted = std::any_of(scene.plots.begin(), scene.plots.end(), [&](const scene::PlotDef& plot) {
       return std::any_of(plot.variables.begin(), plot.variables.end(),
                          [&](const std::string& pattern) { return scene::fits_pattern(variable->name, pattern); });
@@ -66,9 +66,9 @@ void report_ranges(const session::SessionView& view, const scene::Scene& scene, 
 }
 
 // what was left out under load
-void report_left_out(const session::SessionView& view, RunReport& report) {
+void report_left_out(const observer::SessionView& view, RunReport& report) {
   for (const Role role : wire::kPhysicsRoles) {
-    const session::NodeView& node = view.node(role);
+    const observer::NodeView& node = view.node(role);
     if (node.blocks_left_out == 0) continue;
     report.notes.push_back(
         fmt::format("{}: {} of {} of its variables left out (session.shed){}; ranges and values at "
@@ -187,13 +187,12 @@ Json session_json(const RunReport& report) {
 }
 
 // Sentences beside the numbers, and the scene's plots and files beside the recording.
-void explain(const recording::Reader& reader, const session::SessionView& view,
+void explain(const recording::Reader& reader, const observer::SessionView& view, const session::Curves& curves,
              const std::optional<session::ClosingCounts>& closing, const scene::Scene& scene, const std::string& assets,
              const session::RunOutcome& outcome, RunReport& report) {
-  for (std::string& stalled : analysis::explain_stalls(*view.curves(), scene))
-    report.notes.push_back(std::move(stalled));
+  for (std::string& stalled : analysis::explain_stalls(curves, scene)) report.notes.push_back(std::move(stalled));
   report_left_out(view, report);
-  const node::FlagCounter& flags = outcome.view.flags();
+  const node::FlagCounter& flags = outcome.tally.flags();
   const bool are_seen = flags.has_samples() && flags.missed(outcome.begin) == 0;
   for (std::string& flagged : are_seen  ? explain_flags(outcome, scene)
                               : closing ? explain_flags(closing->flags, scene)
@@ -201,14 +200,14 @@ void explain(const recording::Reader& reader, const session::SessionView& view,
     report.notes.push_back(std::move(flagged));
   }
   session::keep_assets(scene, assets, report.recording);
-  analysis::ScenePlots drawn = analysis::draw_plots(scene, *view.curves(), reader);
+  analysis::ScenePlots drawn = analysis::draw_plots(scene, curves, reader);
   for (std::string& left_out : drawn.left_out) report.notes.push_back(std::move(left_out));
   report.plots = analysis::write_plots(drawn.plots, reader);
 }
 
 // Steps of the session that the recording has not got, and ticks that it should not have. A session that was in order
 // then ends with losses.
-void compare_steps(const session::TickSpan& span, const session::NodeView& io, RunReport& report) {
+void compare_steps(const session::TickSpan& span, const observer::NodeView& io, RunReport& report) {
   const bool is_in_order =
       report.code == ExitCode::ok || report.code == ExitCode::interrupted || report.code == ExitCode::terminated;
   if (!is_in_order) return;
@@ -230,9 +229,9 @@ void compare_steps(const session::TickSpan& span, const session::NodeView& io, R
 }
 
 // What was seen of the session is what was recorded of it.
-bool has_seen_all(const session::SessionView& view, const std::optional<session::ClosingCounts>& closing) {
-  return closing && view.curves() != nullptr && view.curves()->is_sound() && view.has_whole_directory() &&
-         view.variables_digest() == closing->variables;
+bool has_seen_all(const session::RunOutcome& outcome, const std::optional<session::ClosingCounts>& closing) {
+  return closing && outcome.tally.curves().is_sound() && outcome.view.has_whole_directory() &&
+         outcome.tally.variables_digest() == closing->variables;
 }
 
 // The recording has every message; an observer may have missed some.
@@ -240,10 +239,10 @@ void report_recorded(const scene::Scene& scene, const std::string& assets, const
                      RunReport& report) {
   const auto reader = session::open_recording(report.recording);
   const std::optional<session::ClosingCounts> closing = session::closing_counts(*reader);
-  report.is_read_back = !has_seen_all(outcome.view, closing);
-  std::optional<session::SessionView> recorded;
-  if (report.is_read_back) recorded = session::view_recording(*reader, session::Values::all, report_variables(scene));
-  const session::SessionView& view = recorded ? *recorded : outcome.view;
+  report.is_read_back = !has_seen_all(outcome, closing);
+  std::optional<session::RecordedView> recorded;
+  if (report.is_read_back) recorded = session::view_recording(*reader, report_variables(scene));
+  const observer::SessionView& view = recorded ? recorded->view : outcome.view;
   report_ranges(view, scene, report);
   report.lost = losses(*reader);
   const session::TickSpan span = closing ? closing->ticks : session::tick_span(*reader);
@@ -263,7 +262,8 @@ void report_recorded(const scene::Scene& scene, const std::string& assets, const
         fmt::format("the recording ends after {}, and the variables and losses above are those of the recording alone",
                     duration_text(static_cast<double>(span.steps) * report.step)));
   }
-  explain(*reader, view, closing, scene, assets, outcome, report);
+  explain(*reader, view, (recorded ? recorded->tally : outcome.tally).curves(), closing, scene, assets, outcome,
+          report);
 }
 
 }  // namespace
@@ -281,14 +281,14 @@ RunReport make_report(const session::RunOutcome& outcome, const scene::Scene& sc
   report.recording = outcome.recording;
   report.scene = scene.name;
   report.step = scene.session.step_duration().seconds();
-  report.pace = scene.session.pace == scene::Pace::free ? "free" : "real";
+  report.pace = scene.session.pace == Pace::free ? "free" : "real";
   report.steps = outcome.steps;
   report.wall_time = outcome.wall_time;
   report.paused_time = outcome.paused_time;
   if (outcome.view.has_session()) report.session = outcome.view.session().name;
   report_nodes(outcome.view, report);
   if (report.pace == "real" && outcome.view.is_over() && !report.nodes.empty()) {
-    report.books = io::problem_of_books(report.nodes.front().health, scene.session.step_duration());
+    report.books = io_node::problem_of_books(report.nodes.front().health, scene.session.step_duration());
   }
   if (outcome.recording.empty()) {
     report_ranges(outcome.view, scene, report);

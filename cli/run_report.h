@@ -11,7 +11,7 @@ namespace slew::cli {
 
 struct NodeReport {
   std::string role;
-  session::StepTimes times;
+  observer::StepTimes times;
   std::uint64_t resends_asked = 0;
   std::uint64_t resends_answered = 0;
   std::uint64_t refused_messages = 0;

@@ -9,7 +9,7 @@
 namespace slew::cli {
 
 // Runs the session, records it, and prints its summary.
-[[nodiscard]] ExitCode run_session(session::RunOptions options, const io::SessionScene& session);
+[[nodiscard]] ExitCode run_session(session::RunOptions options, const io_node::SessionScene& session);
 
 // --out, --keep-free, --join-timeout, --rt, --cpu, --quiet.
 void add_running_options(options::Command& verb, session::RunOptions& options);

@@ -12,9 +12,9 @@
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/printable.h"
+#include "observer/observer.h"
 #include "session/distributed_run.h"
 #include "session/in_process_run.h"
-#include "session/observer.h"
 #include "session/unrecorded.h"
 
 namespace slew::cli {
@@ -35,7 +35,7 @@ class TerminalWatcher final : public session::RunWatcher {
     if (keyboard_) status_.print_line(keyboard_->levers().help());
   }
   void report(const std::string& message) override { status_.print_line(message); }
-  bool update(session::Observer& observer, std::int64_t now_ns, bool is_ending) override {
+  bool update(observer::Observer& observer, std::int64_t now_ns, bool is_ending) override {
     if (keyboard_) keyboard_->poll(observer, now_ns);
     text_.measure(observer.view(), now_ns);
     if (status_.is_due(now_ns) && !is_ending) status_.show(text_.text(observer.view()), now_ns);
@@ -82,7 +82,7 @@ ExitCode run(session::RunOptions options, const options::Command& verb) {
                   "--from and --monolithic exclude each other: CVODE's history is not saved; nothing was "
                   "started; leave one out");
   }
-  const io::SessionScene session = io::load_session_scene(options.scene);
+  const io_node::SessionScene session = io_node::load_session_scene(options.scene);
   if (session.scene.session.solution == scene::Solution::monolithic) {
     check_monolithic(verb);
     options.is_in_process = true;
@@ -92,7 +92,7 @@ ExitCode run(session::RunOptions options, const options::Command& verb) {
 
 }  // namespace
 
-ExitCode run_session(session::RunOptions options, const io::SessionScene& session) {
+ExitCode run_session(session::RunOptions options, const io_node::SessionScene& session) {
   const scene::Scene& scene = session.scene;
   for (const std::string& warning : scene.warnings)
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());

@@ -7,9 +7,8 @@
 #include "core/json.h"
 #include "core/report_table.h"
 #include "node/identity.h"
-#include "node/tick_counter.h"
-#include "session/session_view.h"
 #include "session/survey.h"
+#include "transport/session_state.h"
 
 namespace slew::cli {
 namespace {
@@ -32,7 +31,7 @@ std::string nodes_text(const session::FoundSession& session) {
     const bool is_required = (session.description.required_roles & (1u << role)) != 0;
     if (!is_required) continue;
     const wire::NodeStatus& status = session.nodes[role];
-    const bool is_paused = static_cast<Role>(role) == Role::io && node::is_pause(status);
+    const bool is_paused = static_cast<Role>(role) == Role::io && transport::is_pause(status);
     const std::string state = is_paused ? "paused" : std::string(node::to_text(status.state));
     text += (text.empty() ? "" : ", ") + std::string(node::to_text(static_cast<Role>(role))) + ' ' +
             (session.has_status[role] ? state : "no status");
@@ -58,7 +57,7 @@ Json to_json(const session::FoundSession& session) {
           {"pid", description.pid},
           {"started_ns", description.started_ns},
           {"step_ns", description.step_ns},
-          {"pace", description.pace == wire::Pace::free ? "free" : "real"},
+          {"pace", description.pace == Pace::free ? "free" : "real"},
           {"step", session.step},
           {"nodes", nodes}};
 }
@@ -81,7 +80,7 @@ ExitCode show(const Options& options) {
     const wire::SessionDescription& description = session.description;
     const double time = static_cast<double>(std::max<StepIndex>(0, session.step) * description.step_ns) * 1e-9;
     table.add({description.name, description.scene_name, fmt::format("{:.2f} s", time),
-               description.pace == wire::Pace::free ? "free" : "real",
+               description.pace == Pace::free ? "free" : "real",
                fmt::format("process {} on {}", description.pid, host_of(description.host)),
                node::time_text(description.started_ns), nodes_text(session)});
   }

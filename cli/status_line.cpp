@@ -30,8 +30,8 @@ std::size_t terminal_width() {
 }
 
 // "mechanics running", or the role that a node waits for
-std::string node_text(const session::SessionView& view, Role role) {
-  const session::NodeView& node = view.node(role);
+std::string node_text(const observer::SessionView& view, Role role) {
+  const observer::NodeView& node = view.node(role);
   const std::string name(node::to_text(role));
   if (!node.is_known) return name + ": no status";
   if (role == Role::io && view.is_paused()) return "paused";
@@ -85,7 +85,7 @@ StatusText::StatusText(const scene::Scene& scene) : duration_(scene.session.dura
   for (const scene::PortDef& port : scene.ports) ports_.push_back(port.name);
 }
 
-void StatusText::measure(const session::SessionView& view, std::int64_t now_ns) {
+void StatusText::measure(const observer::SessionView& view, std::int64_t now_ns) {
   if (!view.has_session()) return;
   const StepIndex step = std::max<StepIndex>(0, view.step());
   if (last_ns_ == 0 || step < last_step_) {
@@ -99,7 +99,7 @@ void StatusText::measure(const session::SessionView& view, std::int64_t now_ns) 
   }
 }
 
-std::string StatusText::nodes_text(const session::SessionView& view) {
+std::string StatusText::nodes_text(const observer::SessionView& view) {
   std::string nodes;
   for (const Role role : wire::kNodeRoles) {
     if ((view.session().required_roles & bit(role)) == 0) continue;
@@ -111,11 +111,11 @@ std::string StatusText::nodes_text(const session::SessionView& view) {
   return nodes.empty() ? "running" : nodes;
 }
 
-std::string StatusText::coupling_text(const session::SessionView& view) const {
+std::string StatusText::coupling_text(const observer::SessionView& view) const {
   std::string lamps;
   double worst = 0;
   for (const std::string& port : ports_) {
-    const session::VariableView* eta = view.find(port + ".coupling_eta");
+    const observer::VariableView* eta = view.find(port + ".coupling_eta");
     if (eta == nullptr || eta->step < 0) continue;
     worst = std::max(worst, eta->value);
     lamps += fmt::format("{}{}", lamps.empty() ? "" : "/", analysis::lamp_text(analysis::lamp_of(eta->value)));
@@ -125,10 +125,10 @@ std::string StatusText::coupling_text(const session::SessionView& view) const {
   return "  coupling " + lamps + (error.empty() ? "" : ", force off by about " + error);
 }
 
-std::string StatusText::variables_text(const session::SessionView& view) const {
+std::string StatusText::variables_text(const observer::SessionView& view) const {
   std::string text;
   std::size_t shown = 0;
-  for (const session::VariableView* variable : view.variables()) {
+  for (const observer::VariableView* variable : view.variables()) {
     if (shown == kMostVariables) break;
     const bool is_plotted =
         variable->step >= 0 && std::any_of(plotted_.begin(), plotted_.end(), [&](const std::string& pattern) {
@@ -141,7 +141,7 @@ std::string StatusText::variables_text(const session::SessionView& view) const {
   return text;
 }
 
-std::string StatusText::text(const session::SessionView& view) const {
+std::string StatusText::text(const observer::SessionView& view) const {
   if (!view.has_session()) return "waiting for the session";
   const double H = static_cast<double>(view.session().step_ns) * 1e-9;
   std::string text = view.step() < 0 ? "starting" : fmt::format("{:7.2f} s", static_cast<double>(view.step()) * H);

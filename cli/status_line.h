@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "observer/session_view.h"
 #include "scene/scene.h"
-#include "session/session_view.h"
 
 namespace slew::cli {
 
@@ -39,14 +39,14 @@ class StatusText {
  public:
   explicit StatusText(const scene::Scene& scene);
   // Called in every round: measures the session's speed.
-  void measure(const session::SessionView& view, std::int64_t now_ns);
-  [[nodiscard]] std::string text(const session::SessionView& view) const;
+  void measure(const observer::SessionView& view, std::int64_t now_ns);
+  [[nodiscard]] std::string text(const observer::SessionView& view) const;
 
  private:
   // nodes are named only when their state is not just running
-  [[nodiscard]] static std::string nodes_text(const session::SessionView& view);
-  [[nodiscard]] std::string coupling_text(const session::SessionView& view) const;
-  [[nodiscard]] std::string variables_text(const session::SessionView& view) const;
+  [[nodiscard]] static std::string nodes_text(const observer::SessionView& view);
+  [[nodiscard]] std::string coupling_text(const observer::SessionView& view) const;
+  [[nodiscard]] std::string variables_text(const observer::SessionView& view) const;
 
   std::vector<std::string> plotted_;  // patterns
   std::vector<std::string> ports_;

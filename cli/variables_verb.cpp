@@ -11,7 +11,7 @@
 #include "io_node/input_gate.h"
 #include "scene/names.h"
 #include "session/monolithic_session.h"
-#include "session/observer.h"
+#include "session/survey.h"
 
 namespace slew::cli {
 namespace {
@@ -34,7 +34,7 @@ std::vector<Named> of_scene(const std::string& file) {
   std::vector<Named> all;
   session::SubsystemFamily family;
   for (const scene::InputDef& input : scene.inputs) {
-    for (const io::ChannelVariable& variable : io::kChannelVariables) {
+    for (const io_node::ChannelVariable& variable : io_node::kChannelVariables) {
       all.push_back({input.name + variable.quantity, variable.unit, "io"});
     }
   }
@@ -57,7 +57,7 @@ std::vector<Named> of_session(const node::SessionOptions& options) {
                                         "starting: try again");
   }
   std::vector<Named> all;
-  for (const session::VariableView* variable : observer->view().variables())
+  for (const observer::VariableView* variable : observer->view().variables())
     all.push_back({variable->name, variable->unit, ""});
   return all;
 }

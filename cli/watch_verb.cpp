@@ -9,8 +9,9 @@
 #include "core/json.h"
 #include "core/printable.h"
 #include "node/driver.h"
+#include "observer/observer.h"
 #include "scene/name_pattern.h"
-#include "session/observer.h"
+#include "session/survey.h"
 
 namespace slew::cli {
 namespace {
@@ -25,11 +26,11 @@ struct Options {
 
 constexpr SimDuration kDirectoryTimeout = milliseconds(5000);
 
-std::vector<std::string> chosen_names(session::Observer& observer, const std::vector<std::string>& patterns) {
+std::vector<std::string> chosen_names(observer::Observer& observer, const std::vector<std::string>& patterns) {
   observer.wait_for([&] { return observer.view().has_whole_directory() || observer.view().is_over(); },
                     kDirectoryTimeout);
   std::vector<std::string> names;
-  for (const session::VariableView* variable : observer.view().variables()) names.push_back(variable->name);
+  for (const observer::VariableView* variable : observer.view().variables()) names.push_back(variable->name);
   if (names.empty()) {
     throw Failure(ExitCode::failed, "session '" + observer.session_name() +
                                         "' has not named its variables within 5 s; it may still be "
@@ -38,7 +39,7 @@ std::vector<std::string> chosen_names(session::Observer& observer, const std::ve
   return scene::choose(patterns, names);
 }
 
-void print_line(const session::SessionView& view, const std::vector<std::string>& names, bool is_json) {
+void print_line(const observer::SessionView& view, const std::vector<std::string>& names, bool is_json) {
   StepIndex step = kJoinStep;
   for (const std::string& name : names) step = std::max(step, view.find(name)->step);
   if (step < 0) step = view.step();
@@ -46,7 +47,7 @@ void print_line(const session::SessionView& view, const std::vector<std::string>
   if (is_json) {
     Json line = {{"step", step}, {"time", time}};
     for (const std::string& name : names) {
-      const session::VariableView& variable = *view.find(name);
+      const observer::VariableView& variable = *view.find(name);
       if (view.is_left_out(name)) {
         line["left_out"].push_back(name);
       } else if (variable.step >= 0) {
@@ -58,7 +59,7 @@ void print_line(const session::SessionView& view, const std::vector<std::string>
     std::string line = fmt::format("{:10.3f} s", time);
     const char* const missing = view.is_paused() ? "comes with the next step, after the pause" : "not yet published";
     for (const std::string& name : names) {
-      const session::VariableView& variable = *view.find(name);
+      const observer::VariableView& variable = *view.find(name);
       line += fmt::format("  {} {}", name,
                           view.is_left_out(name) ? "left out (session.shed)"
                           : variable.step >= 0   ? quantity_text(variable.value, variable.unit)

@@ -9,7 +9,7 @@
 #include "coupling/saved_model.h"
 #include "scene/ports.h"
 
-namespace slew::flexible {
+namespace slew::flex_node {
 
 using coupling::ElasticExchange;
 using coupling::ElasticSample;
@@ -242,4 +242,4 @@ std::unique_ptr<coupling::Subsystem> make_flex_subsystem(const scene::Scene& sce
   return std::make_unique<FlexSubsystem>(scene);
 }
 
-}  // namespace slew::flexible
+}  // namespace slew::flex_node

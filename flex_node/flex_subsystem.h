@@ -21,7 +21,7 @@
 #include "flex/reduction.h"
 #include "scene/scene.h"
 
-namespace slew::flexible {
+namespace slew::flex_node {
 
 class FlexSubsystem final : public coupling::Subsystem {
  public:
@@ -73,4 +73,4 @@ class FlexSubsystem final : public coupling::Subsystem {
 
 [[nodiscard]] std::unique_ptr<coupling::Subsystem> make_flex_subsystem(const scene::Scene& scene);
 
-}  // namespace slew::flexible
+}  // namespace slew::flex_node

@@ -9,6 +9,6 @@ int main(int argc, char** argv) {
        "Flexible bodies of a Slewring session: elastic forces, deflection of every node, stress, strain energy; their "
        "files from --assets.",
        "--session truck_crane_flexible --assets scenes --interface eth0 --peer 192.168.1.20 --keys for_crane2",
-       flexible::make_flex_subsystem},
+       flex_node::make_flex_subsystem},
       argc, argv);
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 namespace {
 
 double signal(const hydraulics::Circuit& circuit, int control) noexcept {
@@ -49,4 +49,4 @@ void ControlSignals::add_to(const hydraulics::Circuit& circuit, StateHash& hash)
   for (const int control : circuit.flow_controls()) hash.add(signal(circuit, control));
 }
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

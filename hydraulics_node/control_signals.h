@@ -13,7 +13,7 @@
 #include "hydraulics/circuit_integrator.h"
 #include "scene/scene.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 class ControlSignals {
  public:
@@ -32,8 +32,8 @@ class ControlSignals {
 
  private:
   std::vector<int> control_of_channel_;  // -1: the channel drives no control of this circuit
-  coupling::Trends trends_;              // of Circuit::flow_controls(), from tick to tick
+  coupling::Trends trends_;              // trends of Circuit::flow_controls(), from tick to tick
   std::vector<double> present_;          // scratch: the signals while expected ones replace them
 };
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

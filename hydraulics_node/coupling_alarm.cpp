@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 CouplingAlarm::CouplingAlarm(const scene::Scene& scene)
     : scene_(scene),
@@ -53,4 +53,4 @@ void CouplingAlarm::write_text(std::size_t port, coupling::Level level) noexcept
   text_length_ = std::min(written.size, text_.size());
 }
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

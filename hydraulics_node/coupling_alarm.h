@@ -15,7 +15,7 @@
 #include "coupling/samples.h"
 #include "scene/scene.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 class CouplingAlarm {
  public:
@@ -55,4 +55,4 @@ class CouplingAlarm {
   std::size_t text_length_ = 0;
 };
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

@@ -12,7 +12,7 @@
 #include "hydraulics_node/start_checks.h"
 #include "scene/ports.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 namespace {
 
 using coupling::kMaxPorts;
@@ -292,4 +292,4 @@ std::unique_ptr<coupling::Subsystem> make_hydraulics_subsystem(const scene::Scen
   return std::make_unique<HydraulicsSubsystem>(scene);
 }
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

@@ -25,7 +25,7 @@
 #include "hydraulics_node/reduced_mechanics.h"
 #include "scene/scene.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 // The end of a step that another integrator computed: all states of the circuit, pistons included, with the capacities
 // of volumes that cavitate (Circuit::vapour_capacities()); work and impulse of the ports over the step [J, N s].
@@ -98,4 +98,4 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
 
 [[nodiscard]] std::unique_ptr<coupling::Subsystem> make_hydraulics_subsystem(const scene::Scene& scene);
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

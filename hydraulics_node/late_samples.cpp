@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 using coupling::kMaxPorts;
 
@@ -59,4 +59,4 @@ bool LateSamples::own_sample(StepIndex step, const coupling::MechanismSample& me
   return true;
 }
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

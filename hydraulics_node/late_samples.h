@@ -11,7 +11,7 @@
 #include "hydraulics/circuit.h"
 #include "hydraulics/circuit_integrator.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 // The numbers of an actuator sample as bytes.
 template <typename Sample, typename Bytes>
@@ -68,7 +68,7 @@ class LateSamples {
 
   std::size_t ports_;
   coupling::OwnPast past_;        // position and speed of the pistons
-  std::vector<SentSample> sent_;  // of the last steps
+  std::vector<SentSample> sent_;  // samples of the last steps
 };
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

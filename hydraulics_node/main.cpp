@@ -7,6 +7,6 @@ int main(int argc, char** argv) {
   return node::run_physics_program(
       {wire::Role::hydraulics, "Hydraulics of a Slewring session: valves, pump, cylinders, hoses.",
        "--session truck_crane --interface eth0 --peer 192.168.1.20 --keys for_crane2",
-       hydraulic_node::make_hydraulics_subsystem},
+       hydraulics_node::make_hydraulics_subsystem},
       argc, argv);
 }

@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 using coupling::kMaxPorts;
 
@@ -48,4 +48,4 @@ void ReducedMechanics::slopes(const double* F, const double* x, const double* v,
   }
 }
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

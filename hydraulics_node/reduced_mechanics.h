@@ -18,7 +18,7 @@
 #include "coupling/samples.h"
 #include "hydraulics/circuit_integrator.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 class ReducedMechanics final : public hydraulics::PistonMotion {
  public:
@@ -35,7 +35,7 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
   void save(StateWriter& bytes) const { visit(*this, bytes); }
   void load(StateReader& bytes) noexcept { visit(*this, bytes); }
   void set_level(std::size_t port, coupling::Level level) noexcept { ports_[port].level = level; }
-  // Of a port of level tlm, for the coming step [N].
+  // Force of a port of level tlm, for the coming step [N].
   void set_thrust(std::size_t port, double F) noexcept { ports_[port].thrust = F; }
   void accelerations(const double* F, const double* x, const double* v, double* a) const noexcept override;
   void slopes(const double* F, const double* x, const double* v, double* da_dF, double* da_dx,
@@ -65,4 +65,4 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
   coupling::PortArray a_free_;
 };
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

@@ -1,7 +1,7 @@
 // The hydraulics' state as bytes: the circuit's integration, the copy of the partner's model, the coupling's indicator.
 #include "hydraulics_node/hydraulics_subsystem.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 namespace {
 
 constexpr std::uint32_t kLayout = 1;
@@ -64,4 +64,4 @@ Status HydraulicsSubsystem::load(std::span<const std::byte> state, coupling::Own
   return Status::ok();
 }
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

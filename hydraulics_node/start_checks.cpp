@@ -9,7 +9,7 @@
 #include "coupling/own_past.h"
 #include "scene/deep_starts.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 Status check_pressures(const scene::Scene& scene, const hydraulics::Circuit& circuit, std::span<const double> F) {
   const std::optional<hydraulics::StartDemand> demand = circuit.demand_beyond_limits(F);
@@ -66,4 +66,4 @@ Status check_coupling(const scene::Scene& scene, const coupling::PortMatrix& W, 
           1e3 * H * limit / omega_H, is_free_running ? ", or session.mode: lockstep" : ""));
 }
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

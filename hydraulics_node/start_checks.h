@@ -12,7 +12,7 @@
 #include "hydraulics/circuit_integrator.h"
 #include "scene/scene.h"
 
-namespace slew::hydraulic_node {
+namespace slew::hydraulics_node {
 
 // The pressures that hold the actuators at rest with the forces F [N]: the circuit must be able to have them.
 [[nodiscard]] Status check_pressures(const scene::Scene& scene, const hydraulics::Circuit& circuit,
@@ -26,4 +26,4 @@ namespace slew::hydraulic_node {
 [[nodiscard]] Status check_coupling(const scene::Scene& scene, const coupling::PortMatrix& W,
                                     const coupling::PortArray& K, const coupling::PortLevels& levels);
 
-}  // namespace slew::hydraulic_node
+}  // namespace slew::hydraulics_node

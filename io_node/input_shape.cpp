@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace slew::io {
+namespace slew::io_node {
 namespace {
 
 // (1), and the mean over the step
@@ -75,4 +75,4 @@ ShapedStep shape_step(std::span<const SignalPiece> raw, double dead_zone, double
   return {std::clamp(raw_mean.value(), -1.0, 1.0), ramp.mean(), ramp.value()};
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

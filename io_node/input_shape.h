@@ -1,4 +1,4 @@
-// What dead zone and ramp make of an input's raw signal over one step.
+// Effect of dead zone and ramp on an input's raw signal over one step.
 //
 // w(t): the raw value, 0 where |raw| is less than the dead zone
 // r(t): follows w, |r'| <= most / H                                                                    (1)
@@ -10,13 +10,13 @@
 
 #include "core/signal.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 inline constexpr double kAnyChange = std::numeric_limits<double>::infinity();
 
 struct ShapedStep {
-  double raw_mean = 0;  // of the raw value, -1..1
-  double mean = 0;      // of r, -1..1
+  double raw_mean = 0;  // mean of the raw value, -1..1
+  double mean = 0;      // mean of r, -1..1
   double end = 0;       // r at the end of the step
 };
 
@@ -24,4 +24,4 @@ struct ShapedStep {
 [[nodiscard]] ShapedStep shape_step(std::span<const SignalPiece> raw, double dead_zone, double most,
                                     double start) noexcept;
 
-}  // namespace slew::io
+}  // namespace slew::io_node

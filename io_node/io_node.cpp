@@ -1,17 +1,16 @@
 #include "io_node/io_node.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "core/check.h"
-#include "node/sample_exchange.h"
 #include "transport/roles.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace {
 
 using node::to_text;
+using scene::OverrunPolicy;
+using scene::ShedLoad;
 using wire::NodeState;
 using wire::Phase;
 using wire::Role;
@@ -19,12 +18,38 @@ using wire::Topic;
 
 constexpr Topic kOwnTopics[] = {Topic::tick, Topic::variables};
 
-// A gate that can look for the processes behind controllers.
-GateConfig seeing(GateConfig gate, transport::Transport& transport) {
-  gate.see_writer = [&transport](std::uint64_t writer) {
-    return transport.see_writer(Topic::controller_input, writer);
-  };
-  return gate;
+// The end of a session with this code is no fault.
+bool is_orderly(ExitCode code) noexcept {
+  return code == ExitCode::ok || code == ExitCode::interrupted || code == ExitCode::terminated;
+}
+
+std::uint32_t flags_of(ShedLoad level) noexcept {
+  std::uint32_t flags = 0;
+  if (level >= ShedLoad::view) flags |= static_cast<std::uint32_t>(wire::TickFlag::shed_view);
+  if (level >= ShedLoad::variables) flags |= static_cast<std::uint32_t>(wire::TickFlag::shed_variables);
+  return flags;
+}
+
+wire::SessionDescription describe(const IoConfig& config, const node::SessionMember& member) {
+  wire::SessionDescription session;
+  session.name = config.session_name;
+  session.scene_name = config.scene_name;
+  session.scene_text = config.scene_text;
+  session.assets = config.assets;
+  session.build = member.identity().build;
+  session.self_test = member.identity().self_test;
+  session.step_ns = config.session.step_duration().ns;
+  session.pace = config.session.pace;
+  session.window = static_cast<std::uint32_t>(config.session.window_steps());
+  session.required_roles = config.required_roles;
+  session.host = member.identity().host;
+  session.pid = member.identity().pid;
+  session.started_ns = member.identity().started_ns;
+  session.rejoin_ns = duration_of_seconds(config.session.rejoin).ns;
+  session.give_up_ns = duration_of_seconds(config.session.give_up_after).ns;
+  session.header = member.header(Phase::join, config.resume ? config.resume->step : kJoinStep);
+  session.header.session = node::random_session_id();
+  return session;
 }
 
 }  // namespace
@@ -32,43 +57,26 @@ GateConfig seeing(GateConfig gate, transport::Transport& transport) {
 IoNode::IoNode(transport::Transport& transport, IoConfig config)
     : member_(Role::io, transport, kOwnTopics),
       config_(std::move(config)),
-      gate_(config_.channels, seeing(config_.gate, transport), config_.step),
-      parameters_(config_.parameters, config_.step),
-      is_paused_(config_.starts_paused),
-      clock_(config_.step, config_.overrun, timing()),
-      shedding_(config_.shed, (config_.required_roles & bit(Role::flex)) != 0 ? View::flex : View::none),
-      input_ns_(config_.channels.size()),
-      tick_ns_(static_cast<std::size_t>(kLoopMemory)),
-      script_(config_.channels.size()) {
-  newest_.fill(kJoinStep);
-  tick_.controls.resize(gate_.size());
-  tick_.age.resize(gate_.size());
-  if (config_.source) {
-    const std::size_t pieces = config_.source->most_pieces(config_.step);
-    gate_.reserve(pieces);
-    for (SignalCourse& raw : script_) raw.reserve(pieces);
-  }
-  sent_.set_depth(node::sent_depth(config_.give_up_after, config_.step));
-  if (transport::encode(tick_, buffer_)) sent_.reserve(buffer_.size());
-  description_.name = config_.session_name;
-  description_.scene_name = config_.scene_name;
-  description_.scene_text = config_.scene_text;
-  description_.assets = config_.assets;
-  description_.build = member_.identity().build;
-  description_.self_test = member_.identity().self_test;
-  description_.step_ns = config_.step.ns;
-  description_.pace = config_.pace;
-  description_.window = static_cast<std::uint32_t>(config_.window);
-  description_.required_roles = config_.required_roles;
-  description_.host = member_.identity().host;
-  description_.pid = member_.identity().pid;
-  description_.started_ns = member_.identity().started_ns;
-  description_.rejoin_ns = config_.rejoin.ns;
-  description_.give_up_ns = config_.give_up_after.ns;
-  description_.header = member_.header(Phase::join, config_.beginning ? config_.beginning->step : kJoinStep);
-  description_.header.session = node::random_session_id();
-  static_cast<void>(member_.adopt(description_, 0));
-  if (config_.beginning) begin_with(*config_.beginning);
+      inputs_(config_, std::move(config_.sources),
+              [&transport](std::uint64_t writer) { return transport.see_writer(Topic::controller_input, writer); }),
+      requests_(config_, member_, inputs_),
+      keeper_(config_, member_, inputs_),
+      samples_(config_.session, config_.flexible_every, config_.required_roles),
+      pause_(config_.starts_paused),
+      clock_(config_.session, timing()),
+      shedding_(config_.session.shed, (config_.required_roles & bit(Role::flex)) != 0 ? View::flex : View::none),
+      times_(config_.channels.size(), config_.session.step_duration()),
+      ticks_(member_, config_.channels.size(),
+             node::sent_depth(duration_of_seconds(config_.session.give_up_after), config_.session.step_duration())),
+      variables_(member_, inputs_.gate(), clock_, times_, timing()) {
+  static_cast<void>(member_.adopt(describe(config_, member_), 0));
+  if (!config_.resume) return;
+  n_ = config_.resume->step;
+  samples_.restart(n_);
+  const Status resumed = keeper_.resume(*config_.resume);
+  if (resumed.is_ok()) return;
+  member_.step_aside(resumed.code, resumed.text);
+  stage_ = Stage::finished;
 }
 
 bool IoNode::poll(std::int64_t now_ns) {
@@ -84,7 +92,7 @@ bool IoNode::poll(std::int64_t now_ns) {
     begin_ending(failure.code, failure.text, now_ns);
   watch(now_ns);
   if (stage_ != Stage::checking_name) member_.publish_status_if_changed();
-  keep_books(now_ns);
+  update_statistics(now_ns);
   update_health();
   return any;
 }
@@ -92,16 +100,15 @@ bool IoNode::poll(std::int64_t now_ns) {
 std::int64_t IoNode::next_deadline(std::int64_t now_ns) const {
   if (stage_ == Stage::joining) return now_ns + node::kProbeInterval.ns / 2;
   if (stage_ != Stage::ticking) return now_ns + node::kProbeInterval.ns;
-  if (is_saving_now()) return std::max(now_ns, saving_->resend.due_ns());
-  if (is_withheld()) return now_ns + node::kProbeInterval.ns;
-  if (controllers_due_ns_ != 0) return now_ns + node::kProbeInterval.ns;
-  if (controllers_wait_ns_ != 0) return std::max(now_ns, controllers_wait_ns_ + gate_.awaited(n_).ns);
-  if (partners_allow(n_)) return std::max(now_ns, due_ns(n_));
-  return std::max(now_ns, resend_.due_ns());
+  if (keeper_.holds_tick(n_)) return std::max(now_ns, keeper_.request_due_ns());
+  if (pause_.withholds_tick() || controllers_.is_for_holders()) return now_ns + node::kProbeInterval.ns;
+  if (controllers_.values_since_ns() != 0) {
+    return std::max(now_ns, controllers_.values_since_ns() + inputs_.gate().awaited(n_).ns);
+  }
+  return std::max(now_ns, partners_allow_tick() ? due_ns() : samples_.request_due_ns());
 }
 
 void IoNode::request_stop(ExitCode code) {
-  if (stage_ == Stage::ending || stage_ == Stage::finished) return;
   begin_ending(code, "", 0);
 }
 
@@ -112,10 +119,10 @@ void IoNode::update_health() noexcept {
   h.epoch = member_.epoch();
   h.slip_ns = clock_.slip_ns();
   h.refused = member_.refusals().refused();
-  const bool waits_for_controller = controllers_due_ns_ != 0 || controllers_wait_ns_ != 0;
-  h.is_waiting = stage_ == Stage::ticking && (waits_for_controller || !partners_allow(n_));
-  h.waiting_for =
-      static_cast<std::uint8_t>(waits_for_controller ? Role::controller : holds_back(n_).value_or(Role::recorder));
+  const bool waits_for_controller = controllers_.is_waiting();
+  h.is_waiting = stage_ == Stage::ticking && (waits_for_controller || !partners_allow_tick());
+  h.waiting_for = static_cast<std::uint8_t>(waits_for_controller ? Role::controller
+                                                                 : samples_.missing(n_).value_or(Role::recorder));
   h.waiting_step = n_;
   h.has_session.store(stage_ != Stage::checking_name, std::memory_order_release);
 }
@@ -123,36 +130,34 @@ void IoNode::update_health() noexcept {
 // ---- receiving ------------------------------------------------------------------------------------------------
 
 void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
-  source_ns_ = message.source_ns;
-  writer_ = message.writer;
   switch (message.topic) {
     case Topic::session:
       return receive_session(message.bytes);
     case Topic::node_status: {
       const Status refusal = member_.on_node_status(message.bytes, now_ns);
-      if (!refusal.is_ok()) {
-        member_.step_aside(refusal.code, refusal.text);
-        stage_ = Stage::finished;
-      }
+      if (refusal.is_ok()) return;
+      member_.step_aside(refusal.code, refusal.text);
+      stage_ = Stage::finished;
       return;
     }
     case Topic::health:
-      keep_health(message.bytes);
+      variables_.receive_health(message.bytes);
       return member_.on_health(message.bytes, now_ns);
     case Topic::mechanism:
     case Topic::actuators:
     case Topic::elastic:
       return receive_sample(message.bytes, message.topic, now_ns);
     case Topic::controller_input:
-      return receive_controller(message.bytes, now_ns);
+      return requests_.receive_controller(message, n_, now_ns, times_);
     case Topic::control_request:
       return receive_control(message.bytes, now_ns);
     case Topic::resend:
       return receive_resend(message.bytes, now_ns);
     case Topic::checkpoint:
-      return receive_checkpoint(message.bytes);
+      if (const auto answer = keeper_.receive_checkpoint(message.bytes, n_)) requests_.answer(*answer);
+      return;
     case Topic::state:
-      return receive_upload(message.bytes, now_ns);
+      return keeper_.receive_upload(message.bytes);
     default:
       return;
   }
@@ -163,26 +168,20 @@ void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
 void IoNode::receive_session(std::span<const std::byte> bytes) {
   wire::SessionDescription other;
   if (!transport::decode(bytes, other) || other.name != config_.session_name) return;
-  if (other.header.session == description_.header.session) return;
+  const wire::SessionId& own = member_.session().header.session;
+  if (other.header.session == own) return;
   if (stage_ != Stage::checking_name && stage_ != Stage::joining) return;
   const bool other_holds = other.header.phase == Phase::running;
   const bool this_holds = stage_ == Stage::joining;
   if (this_holds && !other_holds) return;
-  if (this_holds == other_holds && description_.header.session < other.header.session) return;
+  if (this_holds == other_holds && own < other.header.session) return;
   // nodes that have followed this description look for another one
-  if (this_holds) withdraw_session();
+  if (this_holds) publish_session(Phase::ended);
   member_.step_aside(ExitCode::bad_input,
                      "session '" + config_.session_name + "' is held by process " + std::to_string(other.pid) + " on " +
                          node::machine_of(other.host) + ", started " + node::time_text(other.started_ns) +
                          "; this second one ends; stop the first, or choose another --session name");
   stage_ = Stage::finished;
-}
-
-void IoNode::withdraw_session() {
-  description_.header.phase = Phase::ended;
-  description_.scene_text.clear();
-  description_.assets.clear();
-  member_.publish(Topic::session, description_);
 }
 
 void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::int64_t now_ns) {
@@ -192,35 +191,103 @@ void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::
     return;
   }
   if (!member_.fits(header, topic)) return;
-  member_.heard(header, topic, now_ns);
+  member_.acknowledge(header, topic, now_ns);
   if (header.phase != Phase::running) return;
-  // nobody can be further than the ticks that were sent, but a free-running node, which does not wait for them
-  if (header.step > n_ + (config_.is_free_running ? config_.window : 0)) {
+  const SampleProgress::Receipt receipt = samples_.receive(header.role, header.step, n_);
+  if (receipt == SampleProgress::Receipt::too_far_ahead) {
     ++member_.refusals().too_far_ahead;
     return;
   }
-  StepIndex& at = newest_of(header.role);
-  Replaced& replaced = replaced_[static_cast<std::size_t>(header.role)];
-  if (replaced.until != kJoinStep && header.step >= replaced.until) {
-    replaced.until = kJoinStep;
-    if (!is_replacing()) clock_.begin_grace(n_);
+  if (receipt == SampleProgress::Receipt::repeated) ++member_.refusals().duplicate;
+  if (receipt == SampleProgress::Receipt::next) samples_.expect(std::max(now_ns, due_ns()));
+  if (keeper_.catches_up(header.role, header.step) && !keeper_.is_replacing()) clock_.begin_grace(n_);
+}
+
+void IoNode::receive_resend(std::span<const std::byte> bytes, std::int64_t now_ns) {
+  wire::ResendRequest request;
+  if (!transport::decode(bytes, request)) {
+    ++member_.refusals().undecodable;
+    return;
   }
-  // samples come in order from one writer; one that was lost and asked for again may close a gap
-  if (header.step == at + 1) {
-    at = header.step;
-    resend_.restart(std::max(now_ns, due_ns(n_)));
-  } else if (header.step > at) {
-    // a later sample proves the earlier ones: its writer needed every tick up to it
-    at = header.step;
-  } else {
-    ++member_.refusals().duplicate;
+  if (request.topic == static_cast<std::uint8_t>(Topic::state)) return receive_state_request(request, now_ns);
+  if (request.role != Role::io || !member_.is_of_session(request.header, Topic::resend)) return;
+  if (request.topic != static_cast<std::uint8_t>(Topic::tick)) return;
+  // a node that missed a reset requests with the old epoch: it receives the tick that started the new one
+  const bool is_late_epoch = request.header.epoch < member_.epoch();
+  const StepIndex first = is_late_epoch ? kJoinStep : request.header.step;
+  const StepIndex last = is_late_epoch ? kJoinStep : std::min(request.last_step, first + node::kMostAnswers - 1);
+  health().resends_answered += ticks_.resend(first, last);
+}
+
+void IoNode::receive_state_request(const wire::ResendRequest& request, std::int64_t now_ns) {
+  if (!member_.fits(request.header, Topic::resend) || static_cast<std::size_t>(request.role) >= wire::kRoles) return;
+  // a recorder that joined late names no step: it receives the states of the next one
+  if (request.header.role == Role::recorder && request.header.step < 0) {
+    if (stage_ == Stage::ticking && !keeper_.is_saving()) begin_saving({}, now_ns);
+    return;
+  }
+  if (keeper_.publish_state(request)) ++health().resends_answered;
+}
+
+void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_ns) {
+  wire::ControlRequest request;
+  if (!transport::decode(bytes, request)) {
+    ++member_.refusals().undecodable;
+    return;
+  }
+  if (request.session != config_.session_name) return;
+  if (request.action == wire::ControlAction::get_parameter) {
+    return requests_.answer(requests_.get_parameter(request, n_));
+  }
+  const bool is_numbered = request.request != 0;
+  if (is_numbered && (keeper_.is_under_way(request) || requests_.repeat_answer(request))) return;
+  if (stage_ != Stage::ticking) return requests_.answer({request, false, "the session is not running yet", n_});
+  apply_control(request, now_ns);
+}
+
+void IoNode::apply_control(const wire::ControlRequest& request, std::int64_t now_ns) {
+  const auto accept = [&](StepIndex step) { requests_.answer({request, true, "", step}); };
+  const auto refuse = [&](const std::string& why) { requests_.answer({request, false, why, n_}); };
+  switch (request.action) {
+    case wire::ControlAction::get_parameter:
+      return;  // answered in every stage
+    case wire::ControlAction::set_parameter:
+      return requests_.answer(requests_.set_parameter(request, n_));
+    case wire::ControlAction::pause:
+      pause_.begin();
+      show_running();
+      return accept(n_);
+    case wire::ControlAction::resume:
+      // a pause is no slip
+      if (pause_.is_paused()) clock_.excuse(n_, now_ns);
+      pause_.end();
+      show_running();
+      return accept(n_);
+    case wire::ControlAction::step:
+      if (!pause_.is_paused()) return refuse("pause the session first");
+      if (!(request.value >= 1 && request.value <= 1e9)) return refuse("the number of steps must be 1 to 1e9");
+      pause_.add_steps(static_cast<StepIndex>(request.value));
+      show_running();
+      return accept(n_);
+    case wire::ControlAction::reset:
+      if (keeper_.is_holding()) return refuse(keeper_.held_text() + kRepeatLater);
+      accept(0);
+      return start_epoch(now_ns, kJoinStep);
+    case wire::ControlAction::stop:
+      accept(n_);
+      return begin_ending(ExitCode::ok, "", now_ns);
+    case wire::ControlAction::save:
+      return begin_saving(request, now_ns);
+    case wire::ControlAction::load:
+      if (const std::string why = keeper_.begin_loading(request, now_ns); !why.empty()) return refuse(why);
+      return advance_loading(now_ns);
   }
 }
 
-// ---- doing ----------------------------------------------------------------------------------------------------
+// ---- stages ---------------------------------------------------------------------------------------------------
 
 bool IoNode::advance(std::int64_t now_ns) {
-  if (upload_.asked) advance_loading(now_ns);
+  if (keeper_.is_loading()) advance_loading(now_ns);
   switch (stage_) {
     case Stage::checking_name:
       return advance_name_check(now_ns);
@@ -241,16 +308,38 @@ bool IoNode::advance(std::int64_t now_ns) {
 bool IoNode::advance_name_check(std::int64_t now_ns) {
   if (deadline_ns_ == 0) {
     deadline_ns_ = now_ns + config_.name_check.ns;
-    // of two that start together each must see the other
-    if (config_.name_check.ns > 0) member_.publish(Topic::session, description_);
+    // two that start together must receive each other's claim
+    if (config_.name_check.ns > 0) publish_session(Phase::join);
   }
   if (now_ns < deadline_ns_) return false;
-  description_.header.phase = Phase::running;
-  member_.publish(Topic::session, description_);
+  publish_session(Phase::running);
   member_.set_state(NodeState::joining);
   stage_ = Stage::joining;
   deadline_ns_ = now_ns + config_.join_timeout.ns;
   return true;
+}
+
+bool IoNode::advance_join(std::int64_t now_ns) {
+  if (member_.is_acknowledged_by_all()) {
+    member_.set_state(NodeState::ready);
+    stage_ = Stage::initialising;
+    deadline_ns_ = now_ns + config_.join_timeout.ns;
+    return true;
+  }
+  if (now_ns > deadline_ns_) {
+    begin_ending(ExitCode::failed,
+                 "JOIN did not come about within " + node::seconds_text(config_.join_timeout) + ": " +
+                     member_.missing_join_text(),
+                 now_ns);
+    return true;
+  }
+  if (member_.probe_is_due(now_ns)) {
+    wire::Tick probe;
+    probe.header = member_.header(Phase::join, kJoinStep);
+    member_.publish(Topic::tick, probe);
+    if (!member_.is_acknowledged_on(Topic::variables)) variables_.publish_probe();
+  }
+  return false;
 }
 
 bool IoNode::advance_initialising(std::int64_t now_ns) {
@@ -263,14 +352,15 @@ bool IoNode::advance_initialising(std::int64_t now_ns) {
     }
     return false;
   }
-  publish_directory();
+  variables_.publish_directory();
   member_.set_step(n_);
   show_running();
   stage_ = Stage::ticking;
   clock_.begin(n_, now_ns);
-  last_tick_ns_ = now_ns - config_.step.ns;
-  resend_.restart(now_ns);
-  keep_first_states(now_ns);
+  times_.begin(now_ns);
+  samples_.expect(now_ns);
+  // where roles are held, no tick goes out before every node can be replaced
+  if (config_.session.rejoin > 0) keeper_.begin_collecting(n_, now_ns);
   return true;
 }
 
@@ -285,322 +375,303 @@ std::string IoNode::not_ready_text() const {
   return text;
 }
 
-bool IoNode::advance_join(std::int64_t now_ns) {
-  if (member_.is_heard_by_all()) {
-    member_.set_state(NodeState::ready);
-    stage_ = Stage::initialising;
-    deadline_ns_ = now_ns + config_.join_timeout.ns;
-    return true;
-  }
-  if (now_ns > deadline_ns_) {
-    begin_ending(ExitCode::failed,
-                 "JOIN did not come about within " + node::seconds_text(config_.join_timeout) + ": " +
-                     member_.missing_join_text(),
-                 now_ns);
-    return true;
-  }
-  if (member_.probe_is_due(now_ns)) {
-    tick_ = wire::Tick{};
-    tick_.header = block_.header = member_.header(Phase::join, kJoinStep);
-    member_.publish(Topic::tick, tick_);
-    if (!member_.is_heard_on(Topic::variables)) member_.publish(Topic::variables, block_);
-  }
-  return false;
-}
-
-// the last sample that a physics node must have published before tick n
-StepIndex IoNode::needed_of(Role role, StepIndex n) const noexcept {
-  if (!transport::traits(role).is_follower) return n - config_.window + 1;
-  const StepIndex oldest = n - node::kFollowerWindow;
-  return oldest < 0 ? kJoinStep : oldest - oldest % static_cast<StepIndex>(config_.flexible_every);
-}
-
-// the first role whose samples are missing for tick n
-std::optional<Role> IoNode::holds_back(StepIndex n) const noexcept {
-  for (const Role role : wire::kPhysicsRoles) {
-    if (member_.requires_role(role) && newest_of(role) < needed_of(role, n)) return role;
-  }
-  return std::nullopt;
-}
-
-bool IoNode::partners_allow(StepIndex n) const noexcept {
-  if (holds_back(n)) return false;
-  if (config_.pace == wire::Pace::free && member_.requires_role(Role::recorder)) {
-    const node::Peer& recorder = member_.peer(Role::recorder);
-    if (recorder.status.header.epoch == member_.epoch() && recorder.status.recorded_step < n - kRecorderWindow) {
-      return false;
-    }
-  }
-  return true;
-}
-
-std::int64_t IoNode::due_ns(StepIndex n) const noexcept {
-  if (config_.pace == wire::Pace::free) return 0;
-  // catching up at no more than twice real time
-  return std::max(clock_.due_ns(n), last_tick_ns_ + config_.step.ns / 2);
-}
-
-// What the status says of a session that ticks: it runs, it waits for somebody, or ticks are withheld on request.
-void IoNode::show_running() {
-  if (!vacancies_.empty()) {
-    member_.hold(vacancy_text(vacancies_.front()));
-  } else if (const std::optional<Role> silent = member_.silent_peer()) {
-    member_.hold(member_.silence_text(*silent));
-  } else if (stall_.is_named()) {
-    member_.hold(stall_.text(member_, health().resends_asked));
-  } else if (is_withheld()) {
-    member_.hold("");
-  } else if (controllers_due_ns_ != 0) {
-    member_.hold("step " + std::to_string(n_) + " waits for a controller on channel " +
-                 gate_.config(static_cast<std::size_t>(gate_.vacant())).name);
-  } else {
-    member_.set_state(NodeState::running);
-  }
-}
-
-// All samples that io needs up to this step have come.
-StepIndex IoNode::complete_up_to() const noexcept {
-  StepIndex complete = n_;
-  for (const Role role : wire::kPhysicsRoles) {
-    if (member_.requires_role(role) && !transport::traits(role).is_follower) {
-      complete = std::min(complete, newest_of(role));
-    }
-  }
-  return complete;
-}
-
 bool IoNode::advance_ticks(std::int64_t now_ns) {
   bool any = false;
-  if (config_.pace == wire::Pace::real) {
-    obey(clock_.completed(complete_up_to(), n_, now_ns), now_ns);
-    if (config_.shed != Shed::none) shed_load();
+  if (is_paced()) {
+    apply_overrun_action(clock_.completed(samples_.complete_up_to(n_), n_, now_ns), now_ns);
+    if (config_.session.shed != ShedLoad::none) shed_load();
   }
   while (stage_ == Stage::ticking && member_.send_failure().is_ok()) {
-    if (is_saving_now()) {
+    if (keeper_.holds_tick(n_)) {
       if (!advance_saving(now_ns)) return any;
       clock_.excuse(n_, now_ns);
     }
-    if (config_.steps >= 0 && n_ >= config_.steps) {
+    if (is_over()) {
       begin_ending(ExitCode::ok, "", now_ns);
       return true;
     }
-    if (is_withheld()) {
-      controllers_wait_ns_ = 0;
-      waits_for_.reset();
+    if (pause_.withholds_tick()) {
+      controllers_.end_values(now_ns);
+      times_.end_wait();
       end_stall(now_ns);
       return any;
     }
-    if (!has_its_controllers(now_ns)) return any;
-    measure_wait(now_ns);
-    if (!partners_allow(n_)) {
-      ask_for_missing(now_ns);
-      look_for_stall(now_ns);
+    if (!has_holders(now_ns)) return any;
+    count_wait(now_ns);
+    if (!partners_allow_tick()) {
+      health().resends_asked += samples_.request_missing(n_, now_ns, member_);
+      watch_stall(now_ns);
       return any;
     }
     end_stall(now_ns);
-    if (config_.pace == wire::Pace::real) {
-      if (is_paused_) {
-        clock_.excuse(n_, now_ns);  // a single step is due when it is asked for
-      } else if (const std::optional<Verdict> verdict = clock_.keep_time(n_, now_ns)) {
-        obey(verdict, now_ns);
-        if (verdict->what != Overrun::slip) return true;
-      }
-      if (now_ns < due_ns(n_)) return any;
+    if (is_paced()) {
+      if (!keep_time(now_ns)) return true;
+      if (now_ns < due_ns()) return any;
     }
-    if (may_wait_for_controllers(now_ns)) return any;
+    if (controllers_.look_for_values(inputs_.gate().awaited(n_), now_ns)) return any;
     issue_tick(now_ns);
     any = true;
   }
   return any;
 }
 
-// Step 0 of a session, and again after a reset, is not done before every lockstep channel has a holder.
-bool IoNode::has_its_controllers(std::int64_t now_ns) {
-  const int vacant = n_ == begin_step_ ? gate_.vacant() : -1;
-  if (vacant < 0) {
-    if (controllers_due_ns_ == 0) return true;
-    // the wait for them is no slip
-    clock_.excuse(n_, now_ns);
-    controllers_due_ns_ = 0;
-    show_running();
-    return true;
-  }
-  if (controllers_due_ns_ == 0) {
-    controllers_due_ns_ = now_ns + config_.join_timeout.ns;
-    show_running();
-  } else if (now_ns > controllers_due_ns_) {
-    const std::string& name = gate_.config(static_cast<std::size_t>(vacant)).name;
-    controllers_due_ns_ = 0;
+// ---- ticks ----------------------------------------------------------------------------------------------------
+
+bool IoNode::is_over() const noexcept {
+  return config_.session.duration > 0 && n_ >= config_.session.steps();
+}
+
+bool IoNode::recorder_allows_tick() const noexcept {
+  if (is_paced() || !member_.requires_role(Role::recorder)) return true;
+  const wire::NodeStatus& recorder = member_.peer(Role::recorder).status;
+  return recorder.header.epoch != member_.epoch() || recorder.recorded_step >= n_ - kRecorderWindow;
+}
+
+// Time of the next tick; a session that is late catches up at no more than twice real time.
+std::int64_t IoNode::due_ns() const noexcept {
+  if (!is_paced()) return 0;
+  return std::max(clock_.due_ns(n_), times_.last_tick_ns() + config_.session.step_duration().ns / 2);
+}
+
+// False: the first step of an epoch waits for a holder of each lockstep channel.
+bool IoNode::has_holders(std::int64_t now_ns) {
+  const int vacant = n_ == keeper_.begin_step() ? inputs_.gate().vacant() : -1;
+  const ControllerWait::Event event = controllers_.look_for_holders(vacant >= 0, now_ns, config_.join_timeout);
+  if (event == ControllerWait::Event::times_out) {
+    const std::string& name = inputs_.gate().config(static_cast<std::size_t>(vacant)).name;
     begin_ending(ExitCode::failed,
                  "no controller took channel " + name + " within " + node::seconds_text(config_.join_timeout) +
                      ", and the scene has it as controller: lockstep; nothing was computed; start the controller with "
                      "the session (--join-timeout waits longer), or run with --set " +
                      name + ".controller=sampled",
                  now_ns);
+    return false;
   }
-  return false;
+  // this wait is no slip
+  if (event == ControllerWait::Event::ends) clock_.excuse(n_, now_ns);
+  if (event != ControllerWait::Event::none) show_running();
+  return vacant < 0;
 }
 
-// The tick could go out but for values of lockstep controllers, and the time for them is not over.
-bool IoNode::may_wait_for_controllers(std::int64_t now_ns) noexcept {
-  const SimDuration longest = gate_.awaited(n_);
-  if (longest.ns == 0) return false;
-  if (controllers_wait_ns_ == 0) controllers_wait_ns_ = now_ns;
-  return now_ns - controllers_wait_ns_ < longest.ns;
+// False: the overrun policy holds or ends the session.
+bool IoNode::keep_time(std::int64_t now_ns) {
+  if (pause_.is_paused()) {
+    clock_.excuse(n_, now_ns);  // a single step is due on its request
+    return true;
+  }
+  const std::optional<OverrunAction> action = clock_.keep_time(n_, now_ns);
+  apply_overrun_action(action, now_ns);
+  return !action || action->what == OverrunPolicy::slip;
 }
 
 // A tick that is due waits for the role whose sample is missing; io's own place counts for the values of lockstep
 // controllers.
-void IoNode::measure_wait(std::int64_t now_ns) noexcept {
-  const std::int64_t from_ns = std::max(waits_since_ns_, due_ns(n_));
-  if (waits_for_ && clock_.is_judged(n_) && now_ns > from_ns) {
-    std::atomic<std::int64_t>& waited_ns = timing().waited_ns[static_cast<std::size_t>(*waits_for_)];
-    waited_ns.store(waited_ns.load(std::memory_order_relaxed) + now_ns - from_ns, std::memory_order_relaxed);
-  }
-  waits_for_ = holds_back(n_);
-  if (!waits_for_ && gate_.awaited(n_).ns > 0) waits_for_ = Role::io;
-  waits_since_ns_ = now_ns;
-}
-
-void IoNode::ask_for_missing(std::int64_t now_ns) {
-  if (!resend_.is_due(now_ns)) return;
-  resend_.asked(now_ns);
-  for (const Role role : wire::kPhysicsRoles) {
-    const StepIndex needed = needed_of(role, n_);
-    if (!member_.requires_role(role) || newest_of(role) >= needed) continue;
-    wire::ResendRequest request;
-    request.header = member_.header(Phase::running, newest_of(role) + 1);
-    request.role = role;
-    request.topic = static_cast<std::uint8_t>(transport::traits(role).sample);
-    request.last_step = needed;
-    member_.publish(Topic::resend, request);
-    ++health().resends_asked;
-  }
+void IoNode::count_wait(std::int64_t now_ns) noexcept {
+  std::optional<Role> role = samples_.missing(n_);
+  if (!role && inputs_.gate().awaited(n_).ns > 0) role = Role::io;
+  times_.count_wait(role, clock_.is_judged(n_) ? due_ns() : now_ns, now_ns, timing());
 }
 
 void IoNode::issue_tick(std::int64_t now_ns) {
-  // inputs of this step
-  const SimTime t = start_of(n_, config_.step);
-  for (SignalCourse& raw : script_) raw.clear();
-  tick_.commands.clear();
-  if (config_.source != nullptr) {
-    config_.source->courses(t, t + config_.step, script_);
-    script_changes_.clear();
-    config_.source->changes(t, t + config_.step, script_changes_);
-    waiting_commands_.insert(waiting_commands_.end(), script_changes_.begin(), script_changes_.end());
+  // time in which the session stood still is no silence of a controller
+  const std::int64_t waited_ns = controllers_.end_values(now_ns);
+  const SimDuration standstill{now_ns - times_.last_tick_ns() - waited_ns};
+  if (standstill > kStandstill) inputs_.gate().excuse(standstill, now_ns);
+  wire::Tick& tick = ticks_.tick();
+  inputs_.advance(n_, now_ns, tick.commands);
+  requests_.publish_notices(n_);
+  tick.header = member_.header(Phase::running, n_);
+  tick.flags = flags_of(shedding_.level());
+  const InputGate& gate = inputs_.gate();
+  tick.controls.resize(gate.size());
+  tick.age.resize(gate.size());
+  for (std::size_t i = 0; i < gate.size(); ++i) {
+    tick.controls[i] = gate.control(i);
+    tick.age[i] = gate.age(i);
   }
-  const std::int64_t waited_ns = controllers_wait_ns_ == 0 ? 0 : now_ns - controllers_wait_ns_;
-  const SimDuration standstill{now_ns - last_tick_ns_ - waited_ns};
-  if (standstill > kStandstill) gate_.excuse(standstill, now_ns);
-  controllers_wait_ns_ = 0;
-  gate_.advance(n_, script_, now_ns);
-  tell_notices();
-  // commands of this step; what does not fit waits for the next tick
-  while (!waiting_commands_.empty() && tick_.commands.size() < wire::kMaxCommandsPerTick) {
-    parameters_.begin(waiting_commands_.front(), n_);
-    tick_.commands.push_back(waiting_commands_.front());
-    waiting_commands_.erase(waiting_commands_.begin());
-  }
-  parameters_.advance(n_);
-  // the tick
-  tick_.header = member_.header(Phase::running, n_);
-  tick_.flags = shedding_.level() == Shed::none   ? 0
-                : shedding_.level() == Shed::view ? static_cast<std::uint32_t>(wire::TickFlag::shed_view)
-                                                  : static_cast<std::uint32_t>(wire::TickFlag::shed_view) |
-                                                        static_cast<std::uint32_t>(wire::TickFlag::shed_variables);
-  tick_.controls.resize(gate_.size());
-  tick_.age.resize(gate_.size());
-  for (std::size_t i = 0; i < gate_.size(); ++i) {
-    tick_.controls[i] = gate_.control(i);
-    tick_.age[i] = gate_.age(i);
-  }
-  StateHash hash;
-  hash.add(n_);
-  gate_.add_to(hash);
-  tick_.state_hash = hash.digest();
-  tick_ns_[static_cast<std::size_t>(n_ % kLoopMemory)] = now_ns;
-  send_tick(n_);
-  if (config_.pace == wire::Pace::real) {
+  tick.state_hash = inputs_.state_hash(n_);
+  ticks_.send(n_);
+  times_.count_tick(n_, now_ns);
+  if (is_paced()) {
     clock_.ran(n_, now_ns);
-    clock_.used_input(n_, oldest_unused_input());
+    clock_.used_input(n_, times_.use_values());
   }
-  if (n_ % config_.variables_every == 0) publish_variables(now_ns);
+  if (n_ % config_.variables_every == 0) variables_.publish(n_, now_ns);
 
   ++n_;
   ++health().steps_done;
   member_.set_step(n_);
-  last_tick_ns_ = now_ns;
-  resend_.restart(std::max(now_ns, due_ns(n_)));
-  if (is_paused_ && --single_steps_ == 0) show_running();
+  samples_.expect(std::max(now_ns, due_ns()));
+  if (pause_.count_tick()) show_running();
 }
 
-// when the oldest of the values came that this tick is the first to use; 0: it uses none
-std::int64_t IoNode::oldest_unused_input() noexcept {
-  std::int64_t oldest_ns = 0;
-  for (std::int64_t& came_ns : input_ns_) {
-    if (came_ns != 0 && (oldest_ns == 0 || came_ns < oldest_ns)) oldest_ns = came_ns;
-    came_ns = 0;
+void IoNode::send_end(std::uint32_t flags) {
+  wire::Tick& tick = ticks_.tick();
+  tick.commands.clear();
+  tick.header = member_.header(Phase::running, n_);
+  tick.flags = static_cast<std::uint32_t>(wire::TickFlag::end) | flags;
+  ticks_.send(n_);
+}
+
+// ---- statistics, status ---------------------------------------------------------------------------------------
+
+// A change by the overrun policy is an event in the recording; standard error receives a hold and the first slip.
+void IoNode::apply_overrun_action(const std::optional<OverrunAction>& action, std::int64_t now_ns) {
+  if (!action || action->why.empty()) return;
+  const char* then = "";
+  if (action->what == OverrunPolicy::hold) then = "; it is paused; 'slewring control resume' lets it go on";
+  if (action->what == OverrunPolicy::stop) {
+    then = "; it was ended, what was recorded is valid; take a larger session.step, --rt, or session.overrun: slip";
   }
-  return oldest_ns;
+  const std::string text = action->why + then;
+  requests_.publish_event(text, n_);
+  if (action->is_for_recording_alone) return;
+  switch (action->what) {
+    case OverrunPolicy::slip:
+      if (!std::exchange(warned_.slip, true)) member_.warn(text);
+      return;
+    case OverrunPolicy::hold:
+      member_.warn(text);
+      pause_.begin();
+      return show_running();
+    case OverrunPolicy::stop:
+      return begin_ending(ExitCode::losses, text, now_ns);
+  }
 }
 
-void IoNode::send_tick(StepIndex step) {
-  const bool is_encoded = transport::encode(tick_, buffer_);
-  SLEW_CHECK(is_encoded);
-  sent_.keep(step, buffer_);
-  member_.send(Topic::tick, buffer_);
+void IoNode::shed_load() {
+  const InputGate& gate = inputs_.gate();
+  bool has_controllers = false;
+  for (std::size_t i = 0; i < gate.size(); ++i) {
+    has_controllers |= gate.is_held(i) || gate.config(i).controller == scene::ControllerMode::lockstep;
+  }
+  const std::string event = shedding_.look(n_, timing().response.count(), timing().overruns,
+                                           has_controllers ? Steering::controllers : Steering::none);
+  if (event.empty()) return;
+  requests_.publish_event(event, n_);
+  ++timing().transitions;
+  const std::uint32_t level = 1u << static_cast<unsigned>(shedding_.level());
+  if ((warned_.levels & level) == 0) member_.warn(event + "; the next time this is in the recording alone");
+  warned_.levels |= level;
 }
 
+void IoNode::update_statistics(std::int64_t now_ns) noexcept {
+  if (!is_paced() || stage_ >= Stage::ending) return;
+  const bool is_held = pause_.is_paused() || controllers_.is_for_holders() || keeper_.holds_tick(n_) ||
+                       keeper_.is_replacing() || stage_ != Stage::ticking;
+  if (is_held) {
+    clock_.excuse(n_, now_ns);
+    times_.restart_values(now_ns);
+  }
+  clock_.close(n_, now_ns);
+}
+
+// Status of a session that ticks: it runs, it waits for a node or a controller, or ticks are withheld on request.
+void IoNode::show_running() {
+  if (keeper_.is_holding()) {
+    member_.hold(keeper_.held_text());
+  } else if (const std::optional<Role> silent = member_.silent_peer()) {
+    member_.hold(member_.silence_text(*silent));
+  } else if (stall_.is_named()) {
+    member_.hold(stall_.text(member_, health().resends_asked));
+  } else if (pause_.withholds_tick()) {
+    member_.hold("");
+  } else if (controllers_.is_for_holders()) {
+    const int vacant = inputs_.gate().vacant();
+    member_.hold("step " + std::to_string(n_) + " waits for a controller on channel " +
+                 inputs_.gate().config(static_cast<std::size_t>(vacant)).name);
+  } else {
+    member_.set_state(NodeState::running);
+  }
+}
+
+// ---- states ---------------------------------------------------------------------------------------------------
+
+void IoNode::begin_saving(const wire::ControlRequest& request, std::int64_t now_ns) {
+  const std::string why = keeper_.begin_saving(request, n_, pause_.stops_at(n_), now_ns);
+  if (why.empty()) {
+    advance_saving(now_ns);
+  } else if (request.request != 0) {
+    requests_.answer({request, false, why, n_});
+  }
+}
+
+// False: the tick of the saved step must wait.
+bool IoNode::advance_saving(std::int64_t now_ns) {
+  const StateKeeper::Progress progress = keeper_.advance_saving(n_, now_ns);
+  if (progress.answer) requests_.answer(*progress.answer);
+  return progress.is_over;
+}
+
+void IoNode::advance_loading(std::int64_t now_ns) {
+  const std::optional<ControlAnswer> answer = keeper_.advance_loading(stage_ == Stage::ticking, n_, now_ns);
+  if (!answer) return;
+  requests_.answer(*answer);
+  if (!answer->is_accepted) return;
+  const StateKeeper::Upload upload = keeper_.take_upload();
+  start_epoch(now_ns, answer->step);
+  keeper_.load(upload);
+}
+
+// Holds the role of a process that is gone. False: it cannot be replaced, and the session ends.
+bool IoNode::hold_role(Role role, std::int64_t now_ns) {
+  if (stage_ != Stage::ticking || !keeper_.hold_role(role, n_, samples_, now_ns)) return false;
+  clock_.forget_under_way();
+  renew_session(n_, now_ns, role);
+  show_running();
+  return true;
+}
+
+// ---- session --------------------------------------------------------------------------------------------------
+
+// from: step whose states io has; kJoinStep: the epoch begins with INIT.
 void IoNode::start_epoch(std::int64_t now_ns, StepIndex from) {
   member_.set_epoch(member_.epoch() + 1);
-  gate_.reset();
-  parameters_.reset();
-  waiting_commands_.clear();
-  single_steps_ = 0;
-  sent_.clear();
-  n_ = begin_step_ = std::max<StepIndex>(0, from);
-  controllers_due_ns_ = controllers_wait_ns_ = 0;
-  std::ranges::fill(input_ns_, 0);
-  newest_.fill(n_ - 1);
-  for (node::KeptCheckpoints& states : states_) states.clear();
-  replaced_.fill({n_, kJoinStep});
-  saving_.reset();
-  tick_ = wire::Tick{};
-  tick_.header = member_.header(Phase::init, from);
-  send_tick(kJoinStep);
-  tell_notices();
+  n_ = std::max<StepIndex>(0, from);
+  inputs_.reset();
+  pause_.drop_steps();
+  controllers_.reset();
+  times_.drop_values();
+  samples_.restart(n_);
+  keeper_.begin_epoch(n_);
+  ticks_.restart();
+  ticks_.tick().header = member_.header(Phase::init, from);
+  ticks_.send(kJoinStep);
+  requests_.publish_notices(n_);
   member_.set_step(kJoinStep);
   member_.set_state(NodeState::initialising);
   member_.mark_status_changed();
   stage_ = Stage::initialising;
   deadline_ns_ = now_ns + config_.join_timeout.ns;
-  // for who comes late
-  tell_session(from, now_ns);
+  // for nodes that join later
+  renew_session(from, now_ns);
 }
 
-// The session's description anew, with the step that it is at; -1: it begins with INIT.
-void IoNode::tell_session(StepIndex step, std::int64_t now_ns) {
-  description_.header = member_.header(Phase::running, step);
-  member_.renew(description_, now_ns);
-  member_.publish(Topic::session, description_);
+void IoNode::publish_session(Phase phase) {
+  wire::SessionDescription session = member_.session();
+  session.header.phase = phase;
+  if (phase == Phase::ended) {
+    session.scene_text.clear();
+    session.assets.clear();
+  }
+  member_.publish(Topic::session, session);
 }
 
-// ---- ending ---------------------------------------------------------------------------------------------------
-
-void IoNode::send_end(std::uint32_t flags) {
-  tick_.commands.clear();
-  tick_.header = member_.header(Phase::running, n_);
-  tick_.flags = static_cast<std::uint32_t>(wire::TickFlag::end) | flags;
-  send_tick(n_);
+// Publishes the session at this step, kJoinStep: at INIT; given_up: a role whose process is ignored from now on.
+void IoNode::renew_session(StepIndex step, std::int64_t now_ns, std::optional<Role> given_up) {
+  wire::SessionDescription session = member_.session();
+  session.header = member_.header(Phase::running, step);
+  if (given_up) session.given_up.push_back({*given_up, member_.peer(*given_up).incarnation});
+  member_.renew(session, now_ns);
+  member_.publish(Topic::session, session);
 }
 
 void IoNode::begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns) {
   if (stage_ == Stage::ending || stage_ == Stage::finished) return;
   const bool was_ticking = stage_ == Stage::ticking;
-  if (now_ns != 0) keep_books(now_ns);
-  const bool is_orderly = code == ExitCode::ok || code == ExitCode::interrupted || code == ExitCode::terminated;
-  if (was_ticking) send_end(is_orderly ? 0 : static_cast<std::uint32_t>(wire::TickFlag::fault));
-  if (is_orderly && was_ticking) {
+  if (now_ns != 0) update_statistics(now_ns);
+  if (was_ticking) send_end(is_orderly(code) ? 0 : static_cast<std::uint32_t>(wire::TickFlag::fault));
+  if (is_orderly(code) && was_ticking) {
     member_.end(code, reason);
   } else {
     member_.fail(code, reason.empty() ? "ended before the first step" : reason);
@@ -615,34 +686,43 @@ bool IoNode::advance_ending(std::int64_t now_ns) {
   return false;
 }
 
+// The node that ended first: by its step, then in the order of roles.
+const node::Peer* IoNode::first_ended() const noexcept {
+  const node::Peer* first = nullptr;
+  for (const Role role : wire::kNodeRoles) {
+    if (role == Role::io || !member_.requires_role(role) || keeper_.is_held(role)) continue;
+    const node::Peer& peer = member_.peer(role);
+    if (!peer.is_known || peer.status.state < NodeState::ended) continue;
+    if (first == nullptr || peer.status.header.step < first->status.header.step) first = &peer;
+  }
+  return first;
+}
+
 void IoNode::watch(std::int64_t now_ns) {
   if (stage_ == Stage::checking_name || stage_ == Stage::finished) return;
   Role about = Role::io;
   const node::PeerEvent event = member_.watch_peers(now_ns, about);
   if (stage_ == Stage::ending) return;
-  watch_vacancies(now_ns);
-  // of several that went wrong in the same moment the one of the earliest step is named, then by the order of roles
-  const node::Peer* first = nullptr;
-  for (const Role role : wire::kNodeRoles) {
-    if (role == Role::io) continue;
-    const node::Peer& peer = member_.peer(role);
-    if (!member_.requires_role(role) || !peer.is_known || peer.status.state < NodeState::ended) continue;
-    if (vacancy(role) != nullptr) continue;
-    if (first == nullptr || peer.status.header.step < first->status.header.step) first = &peer;
+  for (const StateKeeper::HeldChange& change : keeper_.watch_held(n_, now_ns)) {
+    using Kind = StateKeeper::HeldChange::Kind;
+    if (change.kind == Kind::rejected) renew_session(n_, now_ns, change.role);
+    if (change.kind == Kind::filled) show_running();
+    if (change.kind == Kind::expired) return begin_ending(ExitCode::node_lost, change.reason, now_ns);
   }
-  // the others may have told of a loss a moment before it is seen here
-  const bool tells_of_loss = first != nullptr && static_cast<ExitCode>(first->status.exit_code) == ExitCode::node_lost;
+  const node::Peer* first = first_ended();
+  // a node may have reported a loss a moment before io detects it
+  const bool reports_loss = first != nullptr && static_cast<ExitCode>(first->status.exit_code) == ExitCode::node_lost;
   const bool sees_loss = event == node::PeerEvent::gone || event == node::PeerEvent::lost;
-  if (first != nullptr && !(tells_of_loss && sees_loss)) {
+  if (first != nullptr && !(reports_loss && sees_loss)) {
     if (fault_seen_ns_ == 0) fault_seen_ns_ = now_ns;
-    if (now_ns - fault_seen_ns_ < (tells_of_loss ? kLossGathering : kFaultGathering).ns) return;
+    if (now_ns - fault_seen_ns_ < (reports_loss ? kLossGathering : kFaultGathering).ns) return;
     const Role role = first->status.header.role;
     return begin_ending(static_cast<ExitCode>(first->status.exit_code),
                         member_.end_text(role, member_.describe_peer(role) + ": " + first->status.reason), now_ns);
   }
   switch (event) {
     case node::PeerEvent::gone:
-      if (hold_place(about, now_ns)) return;
+      if (hold_role(about, now_ns)) return;
       [[fallthrough]];
     case node::PeerEvent::lost:
       return begin_ending(
@@ -661,4 +741,42 @@ void IoNode::watch(std::int64_t now_ns) {
   }
 }
 
-}  // namespace slew::io
+// The next tick lacks a message. Its writer is named after 0.3 s; after session.stall_timeout its role is held for a
+// replacement, or the session ends. The recorder may wait for its disk for any time.
+void IoNode::watch_stall(std::int64_t now_ns) {
+  std::optional<node::Awaited> awaited;
+  if (const std::optional<Role> role = samples_.missing(n_)) {
+    awaited = {*role, transport::traits(*role).sample, samples_.newest(*role) + 1};
+  } else {
+    awaited = {Role::recorder, Topic::node_status, n_};
+  }
+  if (keeper_.is_holding()) awaited.reset();  // the status names the held role
+  const std::uint64_t requests = health().resends_asked;
+  stall_.look(awaited, requests, now_ns);
+  if (stall_.begins(member_, now_ns)) {
+    if (stall_.may_warn()) member_.warn(stall_.text(member_, requests));
+    show_running();
+  }
+  const SimDuration longest = duration_of_seconds(config_.session.stall_timeout);
+  if (!stall_.is_named() || stall_.waited() < longest || stall_.awaited().role == Role::recorder) return;
+  const std::string text = stall_.text(member_, requests);
+  if (config_.session.rejoin > 0 && hold_role(stall_.awaited().role, now_ns)) {
+    member_.warn(text + " for " + node::seconds_text(longest) + "; its place was given away");
+    return;
+  }
+  begin_ending(ExitCode::node_lost,
+               text + ", nothing came within " + node::seconds_text(longest) +
+                   " (session.stall_timeout); the session was held after step " + std::to_string(n_) +
+                   " and ended, what was recorded up to there is valid; look for a filter or tunnel that drops some "
+                   "datagrams",
+               now_ns);
+}
+
+// The next tick lacks no message, or is held for another reason.
+void IoNode::end_stall(std::int64_t now_ns) {
+  const bool was_named = stall_.is_named();
+  stall_.look(std::nullopt, health().resends_asked, now_ns);
+  if (was_named) show_running();
+}
+
+}  // namespace slew::io_node

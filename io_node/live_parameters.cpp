@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-namespace slew::io {
+namespace slew::io_node {
 
 LiveParameters::LiveParameters(const std::vector<LiveParameter>& parameters, SimDuration step)
-    : ramps_(parameters.size()), step_(step) {
-  for (const LiveParameter& parameter : parameters) {
-    index_.emplace(parameter.path, static_cast<int>(scene_values_.size()));
-    scene_values_.push_back(parameter.value);
+    : scene_(parameters), ramps_(parameters.size()), step_(step) {
+  for (const LiveParameter& parameter : scene_) {
+    index_.emplace(parameter.path, static_cast<int>(values_.size()));
+    values_.push_back(parameter.value);
   }
-  values_ = scene_values_;
 }
 
 int LiveParameters::find(std::string_view path) const noexcept {
@@ -42,7 +41,7 @@ void LiveParameters::load(StateReader& bytes) noexcept {
 
 void LiveParameters::reset() noexcept {
   ramps_.clear();
-  values_ = scene_values_;
+  std::ranges::transform(scene_, values_.begin(), &LiveParameter::value);
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

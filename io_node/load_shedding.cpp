@@ -2,16 +2,19 @@
 
 #include <algorithm>
 
-namespace slew::io {
+namespace slew::io_node {
+
+using scene::ShedLoad;
+
 namespace {
 
-const char* left_out(Shed level) {
+const char* left_out(ShedLoad level) {
   switch (level) {
-    case Shed::none:
+    case ShedLoad::none:
       return "nothing is left out";
-    case Shed::view:
+    case ShedLoad::view:
       return "the values of the flex node's variables are left out";
-    case Shed::variables:
+    case ShedLoad::variables:
       return "the values of the variables of all physics nodes are left out";
   }
   return "";
@@ -19,13 +22,14 @@ const char* left_out(Shed level) {
 
 }  // namespace
 
-// the next level (way 1) or the one before (-1)
-Shed LoadShedding::beside(Shed level, int way) const noexcept {
-  const auto next = static_cast<Shed>(static_cast<int>(level) + way);
-  return next == Shed::view && view_ == View::none ? static_cast<Shed>(static_cast<int>(next) + way) : next;
+// the next level (direction 1) or the one before (-1)
+ShedLoad LoadShedding::beside(ShedLoad level, int direction) const noexcept {
+  const auto next = static_cast<ShedLoad>(static_cast<int>(level) + direction);
+  return next == ShedLoad::view && view_ == View::none ? static_cast<ShedLoad>(static_cast<int>(next) + direction)
+                                                       : next;
 }
 
-std::string LoadShedding::change_to(Shed level, StepIndex n, const std::string& why) {
+std::string LoadShedding::change_to(ShedLoad level, StepIndex n, const std::string& why) {
   level_ = level;
   return "session.shed: at step " + std::to_string(n) + " " + why + ": from now on " + left_out(level);
 }
@@ -35,9 +39,9 @@ std::string LoadShedding::look(StepIndex n, std::uint64_t judged, std::uint64_t 
     calm_overruns_ = overruns;
     calm_from_ = judged;
   }
-  // a controller needs its variables, whatever was left out before it came
-  const Shed of_controllers = view_ == View::none ? Shed::none : Shed::view;
-  const Shed most = steering == Steering::controllers ? std::min(most_, of_controllers) : most_;
+  // a controller needs its variables
+  const ShedLoad of_controllers = view_ == View::none ? ShedLoad::none : ShedLoad::view;
+  const ShedLoad most = steering == Steering::controllers ? std::min(most_, of_controllers) : most_;
   if (level_ > most) return change_to(most, n, "a controller steers");
   if (judged - window_from_ >= kWindow) {
     const std::uint64_t late = overruns - overruns_from_;
@@ -48,11 +52,11 @@ std::string LoadShedding::look(StepIndex n, std::uint64_t judged, std::uint64_t 
                        std::to_string(late) + " of the last " + std::to_string(kWindow) + " steps overran");
     }
   }
-  if (level_ != Shed::none && judged - calm_from_ >= kCalm) {
+  if (level_ != ShedLoad::none && judged - calm_from_ >= kCalm) {
     calm_from_ = judged;
     return change_to(beside(level_, -1), n, "none of the last " + std::to_string(kCalm) + " steps overran");
   }
   return "";
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

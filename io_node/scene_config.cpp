@@ -1,34 +1,19 @@
 #include "io_node/scene_config.h"
 
+#include <algorithm>
+#include <memory>
+#include <utility>
+
 #include "scene/parameters.h"
+#include "scene/script.h"
 #include "transport/roles.h"
 
-namespace slew::io {
+namespace slew::io_node {
 
 // a scene that was loaded fits the wire
 static_assert(scene::kMaxSceneNameLength <= wire::kMaxNameLength);
 static_assert(scene::kMaxAssetNameLength <= wire::kMaxReasonLength);
 static_assert(scene::kMaxExpandedBytes <= wire::kMaxSceneBytes);
-static_assert(static_cast<int>(Shed::view) == static_cast<int>(scene::ShedLoad::view));
-static_assert(static_cast<int>(Shed::variables) == static_cast<int>(scene::ShedLoad::variables));
-
-void ScriptSource::courses(SimTime from, SimTime to, std::span<SignalCourse> raw) {
-  for (std::size_t i = 0; i < raw.size(); ++i) player_.read_course(i, from, to, raw[i]);
-}
-
-std::size_t ScriptSource::most_pieces(SimDuration length) const noexcept {
-  return player_.most_pieces(length);
-}
-
-void ScriptSource::changes(SimTime from, SimTime to, std::vector<wire::Command>& due) {
-  for (const scene::ScriptChange& change : player_.changes(from, to)) {
-    wire::Command command;
-    command.path = change.set;
-    command.value = change.value;
-    command.over_ns = duration_of_seconds(change.over).ns;
-    due.push_back(std::move(command));
-  }
-}
 
 std::uint32_t required_roles(const scene::Scene& scene, Recording recording) noexcept {
   using transport::Needed;
@@ -47,6 +32,30 @@ std::uint32_t required_roles(const scene::Scene& scene, Recording recording) noe
 
 namespace {
 
+// The scene's script drives the inputs for which it has a track.
+class ScriptSource final : public InputSource {
+ public:
+  explicit ScriptSource(const scene::Scene& scene) : player_(scene) {
+    for (const scene::ScriptTrack& track : scene.script.tracks) {
+      names_.push_back(track.input);
+      const auto input = std::ranges::find(scene.inputs, track.input, &scene::InputDef::name);
+      inputs_.push_back(static_cast<std::size_t>(input - scene.inputs.begin()));
+    }
+  }
+  [[nodiscard]] std::span<const std::string> channels() const noexcept override { return names_; }
+  void read(std::size_t channel, SimTime from, SimTime to, SignalCourse& raw) const override {
+    player_.read_course(inputs_[channel], from, to, raw);
+  }
+  [[nodiscard]] std::size_t most_pieces(SimDuration length) const noexcept override {
+    return player_.most_pieces(length);
+  }
+
+ private:
+  scene::ScriptPlayer player_;
+  std::vector<std::string> names_;
+  std::vector<std::size_t> inputs_;  // by place in names_: of the scene
+};
+
 std::string obstacle_to_saving(const scene::Scene& scene) {
   const std::string_view of_session = scene::obstacle_to_saving(scene.session);
   if (!of_session.empty()) return std::string(of_session);
@@ -58,23 +67,16 @@ std::string obstacle_to_saving(const scene::Scene& scene) {
 
 }  // namespace
 
-IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
+IoConfig make_config(const scene::Scene& scene, std::string session_name, Recording recording) {
   IoConfig config;
-  config.session_name = wish.session_name;
+  config.session_name = std::move(session_name);
+  config.session = scene.session;
   config.scene_name = scene.name;
   config.scene_text = scene.expanded_text;
   for (const scene::Asset& asset : scene.assets) config.assets.push_back({asset.name, asset.size, asset.sha256});
-  config.step = scene.session.step_duration();
-  config.pace = scene.session.pace == scene::Pace::free ? wire::Pace::free : wire::Pace::real;
-  config.window = scene.session.window_steps();
-  config.is_free_running = scene.session.mode == scene::ExchangeMode::free_running;
   config.save_obstacle = obstacle_to_saving(scene);
-  config.save_unit = scene.exchange_unit();
-  config.rejoin = duration_of_seconds(scene.session.rejoin);
-  config.stall_timeout = duration_of_seconds(scene.session.stall_timeout);
-  config.give_up_after = duration_of_seconds(scene.session.give_up_after);
-  config.required_roles = required_roles(scene, wish.recording);
-  config.steps = scene.session.duration > 0 ? scene.session.steps() : -1;
+  config.exchange_unit = scene.exchange_unit();
+  config.required_roles = required_roles(scene, recording);
   for (const scene::InputDef& input : scene.inputs) {
     ChannelConfig channel;
     channel.name = input.name;
@@ -83,38 +85,30 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
     channel.dead_zone = input.dead_zone;
     channel.ramp = input.ramp;
     channel.rate_limit = input.rate_limit;
-    const bool is_lockstep = input.controller == scene::ControllerMode::lockstep;
-    channel.exchange = is_lockstep ? Exchange::lockstep : Exchange::sampled;
+    channel.controller = input.controller;
     channel.delay = input.controller_delay;
     channel.wait = duration_of_seconds(input.controller_wait);
     channel.supervisor = input.supervisor;
     config.channels.push_back(std::move(channel));
   }
-  config.gate.neutral_after = duration_of_seconds(scene.session.controller_timeout);
-  config.gate.variables_every = scene.recording.every;
-  if (wish.operating == Operator::script && !scene.script.is_empty()) {
-    config.source = std::make_unique<ScriptSource>(scene);
+  if (!scene.script.tracks.empty()) config.sources.push_back(std::make_unique<ScriptSource>(scene));
+  for (const scene::ScriptChange& change : scene.script.changes) {
+    config.changes.push_back({SimTime{duration_of_seconds(change.at).ns},
+                              {0, change.set, change.value, duration_of_seconds(change.over).ns}});
   }
   // std::function needs a copyable owner; the directory itself is built once
   const auto directory = std::make_shared<const scene::ParameterDirectory>(scene);
   for (const scene::ParameterInfo& parameter : directory->all()) {
     if (parameter.change == Change::live) config.parameters.push_back({parameter.path, parameter.value});
   }
-  config.judge_parameter = [directory](const std::string& path, double value, std::int64_t over_ns) {
+  config.check_parameter = [directory](const std::string& path, double value, std::int64_t over_ns) {
     const auto over = over_ns >= 0 ? std::optional(SimDuration{over_ns}) : std::nullopt;
     const scene::Assignment assignment = directory->check(path, value, over);
-    return ParameterVerdict{assignment.status.is_ok(), assignment.status.text, assignment.over.ns};
+    return ParameterCheck{assignment.status.is_ok(), assignment.status.text, assignment.over.ns};
   };
-  config.variables_every = static_cast<std::uint32_t>(scene.recording.every);
+  config.variables_every = scene.recording.every;
   config.flexible_every = scene.flexible_every();
-  config.overrun.policy = scene.session.overrun == scene::OverrunPolicy::hold   ? Overrun::hold
-                          : scene.session.overrun == scene::OverrunPolicy::stop ? Overrun::stop
-                                                                                : Overrun::slip;
-  config.shed = static_cast<Shed>(scene.session.shed);
-  config.overrun.after = scene.session.overrun_after;
-  config.overrun.lag = duration_of_seconds(scene.session.overrun_lag);
-  config.overrun.grace = duration_of_seconds(scene.session.start_grace);
   return config;
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <utility>
 
-namespace slew::io {
+namespace slew::io_node {
+
+using scene::OverrunPolicy;
+
 namespace {
 
 constexpr auto kRelaxed = std::memory_order_relaxed;
-// so long without giving up time: the machine keeps up again
+// time without a slip after which the machine keeps up again
 constexpr std::int64_t kCalmNs = 1'000'000'000;
 
 std::string milliseconds_text(std::int64_t ns) {
@@ -45,45 +48,46 @@ void SessionClock::excuse(StepIndex n, std::int64_t now_ns) noexcept {
   excused_ns_ += late_ns;
   base_ns_ += late_ns;
   if (slipped_ns_ != 0) slipped_ns_ += late_ns;
-  cpu_ns_ = 0;  // what was done meanwhile is of no step
+  cpu_ns_ = 0;  // the CPU time in between belongs to no step
 }
 
 std::string SessionClock::in_words(const char* what, StepIndex n) const {
   return std::string("session.overrun: ") + what + ": at step " + std::to_string(n) + " ";
 }
 
-std::optional<Verdict> SessionClock::keep_time(StepIndex n, std::int64_t now_ns) {
+std::optional<OverrunAction> SessionClock::keep_time(StepIndex n, std::int64_t now_ns) {
   if (grace_slips_ > 0 && is_judged(n)) {
     add(timing_.transitions, 1);
-    return Verdict{Overrun::slip,
-                   in_words("slip", n) + "the start-up grace (session.start_grace) is over, in which " +
-                       std::to_string(std::exchange(grace_slips_, 0)) + " steps of wall time were given up",
-                   true};
+    return OverrunAction{OverrunPolicy::slip,
+                         in_words("slip", n) + "the start-up grace (session.start_grace) is over, in which " +
+                             std::to_string(std::exchange(grace_slips_, 0)) + " steps of wall time were given up",
+                         true};
   }
   const std::int64_t lag_ns = now_ns - due_ns(n);
-  if (lag_ns <= rules_.lag.ns) {
+  if (lag_ns <= longest_lag_ns_) {
     if (slipped_ns_ == 0 || now_ns - slipped_ns_ < kCalmNs) return std::nullopt;
     slipped_ns_ = 0;
     add(timing_.transitions, 1);
-    return Verdict{Overrun::slip, in_words("slip", n) + "the session has kept up with the wall clock for 1 s again, " +
-                                      std::to_string(skipped_) + " steps were given up so far"};
+    return OverrunAction{OverrunPolicy::slip, in_words("slip", n) +
+                                                  "the session has kept up with the wall clock for 1 s again, " +
+                                                  std::to_string(skipped_) + " steps were given up so far"};
   }
-  const StepIndex steps = rules_.policy == Overrun::stop && is_judged(n) ? 0 : give_up(n, lag_ns);
+  const StepIndex steps = policy_ == OverrunPolicy::stop && is_judged(n) ? 0 : give_up(n, lag_ns);
   if (!is_judged(n)) {
     grace_slips_ += steps;
-    return Verdict{Overrun::slip, ""};
+    return OverrunAction{OverrunPolicy::slip, ""};
   }
-  if (rules_.policy != Overrun::slip) {
+  if (policy_ != OverrunPolicy::slip) {
     return overrun(n, "the session was " + milliseconds_text(lag_ns) + " behind the wall clock (session.overrun_lag " +
-                          milliseconds_text(rules_.lag.ns) + ")");
+                          milliseconds_text(longest_lag_ns_) + ")");
   }
   const bool is_new = slipped_ns_ == 0;
   slipped_ns_ = now_ns;
-  if (!is_new) return Verdict{Overrun::slip, ""};
+  if (!is_new) return OverrunAction{OverrunPolicy::slip, ""};
   add(timing_.transitions, 1);
-  return Verdict{Overrun::slip, in_words("slip", n) + "the session was " + milliseconds_text(lag_ns) +
-                                    " behind the wall clock; " + std::to_string(steps) +
-                                    " steps of wall time were given up"};
+  return OverrunAction{OverrunPolicy::slip, in_words("slip", n) + "the session was " + milliseconds_text(lag_ns) +
+                                                " behind the wall clock; " + std::to_string(steps) +
+                                                " steps of wall time were given up"};
 }
 
 // In whole steps, of which the first has been due for the whole lag.
@@ -96,10 +100,10 @@ StepIndex SessionClock::give_up(StepIndex n, std::int64_t lag_ns) noexcept {
   return steps;
 }
 
-Verdict SessionClock::overrun(StepIndex n, const std::string& why) {
+OverrunAction SessionClock::overrun(StepIndex n, const std::string& why) {
   add(timing_.transitions, 1);
-  timing_.overrun_run.store(0, kRelaxed);  // of a session that is resumed they are counted anew
-  return {rules_.policy, in_words(rules_.policy == Overrun::hold ? "hold" : "stop", n) + why};
+  timing_.overrun_run.store(0, kRelaxed);  // a session that is resumed counts them from 0
+  return {policy_, in_words(policy_ == OverrunPolicy::hold ? "hold" : "stop", n) + why};
 }
 
 void SessionClock::ran(StepIndex n, std::int64_t now_ns) noexcept {
@@ -117,8 +121,8 @@ void SessionClock::used_input(StepIndex n, std::int64_t came_ns) noexcept {
   if (issued(n).step == n) issued(n).input_ns = came_ns;
 }
 
-std::optional<Verdict> SessionClock::completed(StepIndex step, StepIndex n, std::int64_t now_ns) {
-  std::optional<Verdict> verdict;
+std::optional<OverrunAction> SessionClock::completed(StepIndex step, StepIndex n, std::int64_t now_ns) {
+  std::optional<OverrunAction> action;
   while (complete_ < step) {
     const Issued& tick = issued(complete_++);
     if (tick.step != complete_ - 1) continue;
@@ -128,11 +132,11 @@ std::optional<Verdict> SessionClock::completed(StepIndex step, StepIndex n, std:
     timing_.add_response(response_ns, response_ns > H_);
     timing_.release_jitter.record(tick.sent_ns - tick.due_ns);
     const auto run = static_cast<std::int64_t>(timing_.overrun_run.load(kRelaxed));
-    if (rules_.policy == Overrun::slip || rules_.after == 0 || run != rules_.after) continue;
-    verdict = overrun(n, "the last " + std::to_string(run) + " steps were longer than " + milliseconds_text(H_) +
-                             " (session.overrun_after), the newest of them " + milliseconds_text(response_ns));
+    if (policy_ == OverrunPolicy::slip || after_ == 0 || run != after_) continue;
+    action = overrun(n, "the last " + std::to_string(run) + " steps were longer than " + milliseconds_text(H_) +
+                            " (session.overrun_after), the newest of them " + milliseconds_text(response_ns));
   }
-  return verdict;
+  return action;
 }
 
 void SessionClock::close(StepIndex n, std::int64_t now_ns) noexcept {
@@ -165,4 +169,4 @@ std::uint64_t judged_steps_given_up(const wire::Health& io) noexcept {
   return io.response.count - std::min(io.response.count, io.release_jitter.count);
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

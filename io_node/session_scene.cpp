@@ -1,11 +1,12 @@
 #include "io_node/session_scene.h"
 
 #include <cstdio>
+#include <utility>
 
 #include "core/failure.h"
 #include "node/identity.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace {
 
 // t in seconds, as people write it
@@ -22,12 +23,12 @@ SessionScene load_session_scene(const scene::SceneOptions& options) {
   SavedSession saved;
   require(read_saved(options.from, saved));
   scene::ContinuedScene continued = scene::continue_scene(options, saved.scene_text, saved.scene_name);
-  SessionScene session{std::move(continued.scene), Beginning{}, std::move(saved.assets)};
+  SessionScene session{std::move(continued.scene), ResumeState{}, std::move(saved.assets)};
   scene::Scene& scene = session.scene;
   if (scene.session.duration > 0 && saved.step >= scene.session.steps()) {
     throw Failure(ExitCode::bad_input, options.from + ": the session was saved at " + time_text(saved.time()) +
                                            " and its duration is " + time_text(scene.session.duration) +
-                                           "; nothing was started; say a longer --duration, or 0");
+                                           "; nothing was started; choose a longer --duration, or 0");
   }
   for (const wire::Role role : wire::kStateRoles) {
     const bool is_needed = (required_roles(scene, Recording::none) & bit(role)) != 0;
@@ -39,20 +40,20 @@ SessionScene load_session_scene(const scene::SceneOptions& options) {
     scene.warnings.push_back(options.from + " was saved by build '" + saved.build + "', this is '" + node::build_id() +
                              "': bits may differ from those of the session that was saved");
   }
-  session.beginning->step = saved.step;
-  session.beginning->states = std::move(saved.states);
+  session.resume->step = saved.step;
+  session.resume->states = std::move(saved.states);
   for (const scene::Assignment& change : continued.changes) {
-    session.beginning->changes.push_back({0, change.path, change.value, change.over.ns});
+    session.resume->changes.push_back({0, change.path, change.value, change.over.ns});
   }
   return session;
 }
 
-IoConfig make_config(const SessionScene& session, const SessionWish& wish) {
-  IoConfig config = make_config(session.scene, wish);
-  if (!session.beginning) return config;
-  config.beginning = session.beginning;
+IoConfig make_config(const SessionScene& session, std::string session_name, Recording recording) {
+  IoConfig config = make_config(session.scene, std::move(session_name), recording);
+  if (!session.resume) return config;
+  config.resume = session.resume;
   config.assets = session.assets;
   return config;
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

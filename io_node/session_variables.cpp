@@ -1,11 +1,6 @@
-// io_node's part that publishes variables: its own, and those of the nodes' health.
 #include "io_node/session_variables.h"
 
-#include <utility>
-
-#include "io_node/io_node.h"
-
-namespace slew::io {
+namespace slew::io_node {
 
 using node::to_text;
 using wire::Phase;
@@ -18,7 +13,7 @@ struct SessionVariable {
   const char* name;
   const char* unit;
 };
-// of the session as io sees it, and of each physics node as its last health message says
+// variables of the session, and of each physics node from its last health message
 constexpr SessionVariable kSessionVariables[] = {{"session.slip", "s"},
                                                  {"session.rejected_inputs", "1"},
                                                  {"session.clamped_inputs", "1"},
@@ -39,11 +34,11 @@ double seconds(std::int64_t ns) noexcept {
   return static_cast<double>(ns) * 1e-9;
 }
 
-constexpr double kNoLoop = -1;  // loop delay of a channel that no controller moves
+constexpr double kNoLoop = -1;  // loop delay of a channel without a controller
 
 }  // namespace
 
-void IoNode::keep_health(std::span<const std::byte> bytes) {
+void SessionVariables::receive_health(std::span<const std::byte> bytes) {
   wire::Health health;
   if (!transport::decode(bytes, health)) return;
   const auto role = static_cast<std::size_t>(health.header.role);
@@ -68,56 +63,54 @@ std::vector<wire::VariableEntry> own_variables(std::span<const std::string> inpu
   return entries;
 }
 
-void IoNode::publish_directory() {
+void SessionVariables::publish_directory() {
   wire::VariableDirectory directory;
   directory.header = member_.header(Phase::running, 0);
   std::vector<std::string> inputs;
   for (std::size_t i = 0; i < gate_.size(); ++i) inputs.push_back(gate_.config(i).name);
-  directory.entries = own_variables(inputs, config_.required_roles);
+  directory.entries = own_variables(inputs, member_.session().required_roles);
   directory.total = static_cast<std::uint32_t>(directory.entries.size());
   member_.publish(Topic::variable_directory, directory);
 }
 
-// From the tick of the step that a channel's value was computed from to this one.
-double IoNode::loop_time_ms(std::size_t channel, std::int64_t now_ns) const noexcept {
-  const StepIndex based_on = gate_.based_on(channel);
-  if (based_on < 0) return kNoLoop;
-  const StepIndex delay = n_ - based_on;
-  const std::int64_t spent_ns = delay < kLoopMemory
-                                    ? now_ns - tick_ns_[static_cast<std::size_t>(based_on % kLoopMemory)]
-                                    : delay * config_.step.ns;
-  return static_cast<double>(spent_ns) * 1e-6;
+void SessionVariables::publish_probe() {
+  block_.header = member_.header(Phase::join, kJoinStep);
+  member_.publish(Topic::variables, block_);
 }
 
-void IoNode::publish_variables(std::int64_t now_ns) {
-  block_.header = member_.header(Phase::running, n_);
+void SessionVariables::publish(StepIndex n, std::int64_t now_ns) {
+  block_.header = member_.header(Phase::running, n);
   block_.values.clear();
-  for (std::size_t i = 0; i < gate_.size(); ++i) {
-    block_.values.push_back(gate_.raw(i));
-    block_.values.push_back(gate_.control(i));
-    block_.values.push_back(gate_.age(i));
-    const StepIndex based_on = gate_.based_on(i);
-    block_.values.push_back(based_on < 0 ? kNoLoop : static_cast<double>(n_ - based_on));
-    block_.values.push_back(loop_time_ms(i, now_ns));
-  }
+  for (std::size_t i = 0; i < gate_.size(); ++i) add_channel(i, n, now_ns);
   block_.values.push_back(seconds(clock_.slip_ns()));
   block_.values.push_back(
       static_cast<double>(gate_.rejected_not_finite() + gate_.rejected_no_lease() + gate_.rejected_late()));
   block_.values.push_back(static_cast<double>(gate_.clamped()));
   block_.values.push_back(static_cast<double>(gate_.went_neutral()));
   block_.values.push_back(static_cast<double>(gate_.fell_out_of_step()));
-  add_timing_values(now_ns);
+  add_timing(n, now_ns);
   member_.publish(Topic::variables, block_);
 }
 
+// in the order of kChannelVariables; the loop goes from the tick of the step that the value was computed from to now
+void SessionVariables::add_channel(std::size_t channel, StepIndex n, std::int64_t now_ns) {
+  const StepIndex based_on = gate_.based_on(channel);
+  const bool has_loop = based_on >= 0;
+  const double loop_ms = has_loop ? static_cast<double>(times_.since_tick_ns(based_on, n, now_ns)) * 1e-6 : kNoLoop;
+  for (const double value : {gate_.raw(channel), gate_.control(channel), static_cast<double>(gate_.age(channel)),
+                             has_loop ? static_cast<double>(n - based_on) : kNoLoop, loop_ms}) {
+    block_.values.push_back(value);
+  }
+}
+
 // in the order of kSessionVariables from the release jitter on, then of kNodeVariables by role
-void IoNode::add_timing_values(std::int64_t now_ns) {
-  const node::NodeTiming& own = timing();
-  const bool is_paced = config_.pace == wire::Pace::real;
-  const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
-  for (const double value : {seconds(own.last_release_jitter_ns), seconds(own.last_response_ns),
-                             is_paced ? seconds(now_ns - clock_.due_ns(n_)) : 0.0, count(own.overruns),
-                             count(clock_.skipped()), count(own.transitions), seconds(own.input_latency.max())}) {
+void SessionVariables::add_timing(StepIndex n, std::int64_t now_ns) {
+  const bool is_paced = member_.session().pace == Pace::real;
+  const auto count = [](std::uint64_t number) { return static_cast<double>(number); };
+  for (const double value :
+       {seconds(timing_.last_release_jitter_ns), seconds(timing_.last_response_ns),
+        is_paced ? seconds(now_ns - clock_.due_ns(n)) : 0.0, count(timing_.overruns), count(clock_.skipped()),
+        count(timing_.transitions), seconds(timing_.input_latency.max())}) {
     block_.values.push_back(value);
   }
   for (const Role role : wire::kPhysicsRoles) {
@@ -131,4 +124,4 @@ void IoNode::add_timing_values(std::int64_t now_ns) {
   }
 }
 
-}  // namespace slew::io
+}  // namespace slew::io_node

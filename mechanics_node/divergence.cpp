@@ -10,7 +10,7 @@
 #include "multibody/flexible/deflection.h"
 #include "multibody/model/observe.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;  // rad a sub-step: beyond, the direction of the turn is unknown
@@ -22,7 +22,7 @@ constexpr const char* kRemedy =
 
 struct BentBody {
   std::string_view name;
-  double share = 0;  // of its length
+  double share = 0;  // deflection over its length
 };
 
 BentBody most_bent(const multibody::Model& model, const multibody::State& state,
@@ -110,4 +110,4 @@ bool DivergenceWatch::ends_run(const multibody::Model& model, const multibody::S
   return name_suspect(model, state, ws, h);
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

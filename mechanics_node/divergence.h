@@ -20,7 +20,7 @@
 #include "multibody/model/model.h"
 #include "multibody/model/state.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 // More than a hit, a stop or a whip takes in a sound run: no step of the repository's scenes fails to converge at steps
 // of 0.5 to 5 ms.
@@ -65,4 +65,4 @@ class DivergenceWatch {
   std::size_t text_length_ = 0;
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

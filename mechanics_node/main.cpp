@@ -6,6 +6,6 @@ int main(int argc, char** argv) {
   using namespace slew;
   return node::run_physics_program({wire::Role::mechanics, "Mechanics of a Slewring session: bodies, joints, forces.",
                                     "--session truck_crane --interface eth0 --peer 192.168.1.20 --keys for_crane2",
-                                    mechanics::make_mechanics_subsystem},
+                                    mechanics_node::make_mechanics_subsystem},
                                    argc, argv);
 }

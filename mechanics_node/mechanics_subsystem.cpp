@@ -4,13 +4,12 @@
 
 #include "core/failure.h"
 #include "coupling/saved_model.h"
-#include "mechanics_node/parameter_handle.h"
 #include "multibody/joints/joint_law.h"
 #include "multibody/model/observe.h"
 #include "multibody/model/parameters.h"
 #include "scene/ports.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace {
 
 multibody::MechanicsDef as_moved(multibody::MechanicsDef mechanics, Motion motion) {
@@ -227,7 +226,7 @@ StepReport MechanicsSubsystem::end_with(const StepReport& report, coupling::OwnS
   return report;
 }
 
-// Of the published instant: joint limits, deflections beyond the theory.
+// Flags of the published instant: joint limits, deflections beyond the theory.
 void MechanicsSubsystem::raise_flags(StepReport& report) const noexcept {
   const multibody::Workspace& workspace = mechanism_.workspace();
   for (std::size_t row = port_problem_.ports().size(); row < model().rows.size(); ++row) {
@@ -291,4 +290,4 @@ std::unique_ptr<coupling::Subsystem> make_mechanics_subsystem(const scene::Scene
   return std::make_unique<MechanicsSubsystem>(scene);
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

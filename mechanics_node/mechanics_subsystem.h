@@ -20,9 +20,10 @@
 #include "mechanics_node/port_problem.h"
 #include "mechanics_node/published_mobility.h"
 #include "mechanics_node/row_mobility.h"
+#include "multibody/model/parameters.h"
 #include "scene/scene.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 // What integrates the motion: step() of this subsystem, or another integrator whose states follow() takes. A followed
 // motion is shown in joint coordinates, whatever the scene's formulation.
@@ -65,6 +66,13 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] multibody::State& mutable_state() noexcept { return mechanism_.state_as_evaluated(); }
 
  private:
+  // A multibody parameter as one number, the handle of the ramps.
+  [[nodiscard]] static int handle_of(multibody::Parameter parameter) noexcept {
+    return (static_cast<int>(parameter.kind) << 24) | (parameter.element << 8) | parameter.member;
+  }
+  [[nodiscard]] static multibody::Parameter parameter_of(int handle) noexcept {
+    return {static_cast<multibody::ParameterKind>(handle >> 24), (handle >> 8) & 0xffff, handle & 0xff};
+  }
   template <typename Self, typename Bytes>
   static void visit(Self& self, Bytes& bytes);
   void show_loaded() noexcept;
@@ -106,4 +114,4 @@ class MechanicsSubsystem final : public coupling::Subsystem {
 
 [[nodiscard]] std::unique_ptr<coupling::Subsystem> make_mechanics_subsystem(const scene::Scene& scene);
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -6,7 +6,7 @@
 #include "coupling/static_forces.h"
 #include "multibody/model/observe.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace {
 
 // Line forces that would hold the ports at rest: W F = -a_free; zero where there are none.
@@ -66,4 +66,4 @@ void MechanicsVariables::read(const Instant& instant, PayloadSensitivity& payloa
   if (payload_ > 0) values[k++] = mass;
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

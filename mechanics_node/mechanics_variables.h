@@ -14,7 +14,7 @@
 #include "mechanics_node/payload.h"
 #include "mechanics_node/row_force_laws.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 class MechanicsVariables {
  public:
@@ -43,4 +43,4 @@ class MechanicsVariables {
   std::vector<multibody::JointReaction> reactions_;  // scratch, by joint of the scene
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -6,7 +6,7 @@
 #include "multibody/model/observe.h"
 #include "scene/ports.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace {
 
 // format of a snapshot's bytes, which stay in this process
@@ -125,4 +125,4 @@ void Mechanism::load(StateReader& bytes) {
   dynamics_.load(bytes);
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

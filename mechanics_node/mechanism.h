@@ -16,7 +16,7 @@
 #include "multibody/formulations/formulation.h"
 #include "scene/scene.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 class Mechanism {
  public:
@@ -119,4 +119,4 @@ class Mechanism {
   bool is_evaluated_ = false;  // workspace_ belongs to state_ and model_
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -6,7 +6,7 @@
 
 #include "multibody/model/observe.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 using coupling::ElasticSample;
 using multibody::FlexiblePart;
@@ -117,4 +117,4 @@ void ModalExchange::add_to(const Model& model, StateHash& hash) const noexcept {
   }
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

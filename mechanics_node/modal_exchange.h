@@ -12,7 +12,7 @@
 #include "multibody/formulations/dynamics.h"
 #include "scene/scene.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 class ModalExchange {
  public:
@@ -53,4 +53,4 @@ class ModalExchange {
   std::size_t modes_ = 0, pairs_ = 0;
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

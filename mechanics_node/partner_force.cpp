@@ -3,7 +3,7 @@
 #include "coupling/indicator.h"
 #include "scene/ports.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 PartnerForce::PartnerForce(const scene::Scene& scene)
     : levels_(scene::port_levels(scene)),
@@ -53,4 +53,4 @@ void PartnerForce::remember(StepIndex n, std::span<const double> x, std::span<co
   if (is_free_running_) past_.keep(n, x, z);
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -12,7 +12,7 @@
 #include "coupling/samples.h"
 #include "scene/scene.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 class PartnerForce {
  public:
@@ -67,4 +67,4 @@ class PartnerForce {
   bool has_new_sample_ = false;  // the sample arrived in this step
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

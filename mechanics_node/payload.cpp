@@ -10,7 +10,7 @@
 #include "coupling/static_forces.h"
 #include "multibody/model/parameters.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 namespace {
 
@@ -119,4 +119,4 @@ void PayloadSensitivity::read(const multibody::State& state, double mass, multib
   payload_slopes(model_, state, ws, ratio_, payload_, mass, slopes);
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

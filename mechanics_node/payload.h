@@ -11,7 +11,7 @@
 #include "coupling/samples.h"
 #include "multibody/formulations/dynamics.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 // The scene's `payload`. By default the rigid body with a single joint and the most moving joints between it and
 // Ground, the last one in the file where several have as many; in a machine without such a body the last one that
@@ -55,4 +55,4 @@ class PayloadSensitivity {
   std::vector<double> ratio_;
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -6,7 +6,7 @@
 #include "multibody/constraints/rows.h"
 #include "multibody/joints/joint_law.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace {
 
 // a limit takes part in the port problem when it could be reached within so many sub-steps
@@ -236,4 +236,4 @@ void PortProblem::add_to(StateHash& hash, bool with_partner_copy) const noexcept
   }
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -21,7 +21,7 @@
 #include "mechanics_node/row_mobility.h"
 #include "mechanics_node/timed_loads.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 class PortProblem {
  public:
@@ -121,4 +121,4 @@ class PortProblem {
   std::vector<double> v_begin_, z_begin_;         // by row of the port problem
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -6,7 +6,7 @@
 #include "multibody/constraints/rows.h"
 #include "multibody/joints/joint_law.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 PublishedMobility::PublishedMobility(const Mechanism& mechanism, RowMobility& rows, std::size_t ports,
                                      double exchange_interval)
@@ -98,4 +98,4 @@ void PublishedMobility::add_joints(const Rows& rows, const std::vector<Port>& po
   }
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -17,7 +17,7 @@
 #include "mechanics_node/row_force_laws.h"
 #include "mechanics_node/row_mobility.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 class PublishedMobility {
  public:
@@ -42,4 +42,4 @@ class PublishedMobility {
   std::vector<double> matrix_, right_;  // of (1); right_: free part, then one column per port
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -1,6 +1,6 @@
 #include "mechanics_node/row_force_laws.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace {
 
 bool has_memory(const Mechanism& mechanism) noexcept {
@@ -62,4 +62,4 @@ void RowForceLaws::evaluate_all(std::size_t rows, const double* z, const double*
   for (std::size_t i = 0; i < rows; ++i) force[i] = RowForceLaws::evaluate(i, z[i], x[i], v[i]);
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

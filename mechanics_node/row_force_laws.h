@@ -12,7 +12,7 @@
 #include "multibody/constraints/rows.h"
 #include "multibody/joints/joint_law.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 // An actuator as the mechanics compute it.
 struct Port {
@@ -50,9 +50,9 @@ class RowForceLaws final : public coupling::RowLaws {
   const std::vector<Port>& ports_;
   const std::vector<std::size_t>& active_;
   bool has_memory_;                  // a row of the mechanism has one
-  double interval_ = 0;              // of the stage under way [s]
+  double interval_ = 0;              // length of the present stage [s]
   std::vector<double> stage_speed_;  // by row, in the stage before
-  double held_speed_ = 0;            // of the ball whose parts are carried [rad/s]
+  double held_speed_ = 0;            // speed of the ball whose parts are carried [rad/s]
   std::vector<double> kept_bristles_, kept_speed_;
 };
 
@@ -76,4 +76,4 @@ inline coupling::RowForce RowForceLaws::evaluate(std::size_t index, double z, do
   return {joint.force, 0, joint.d_x, joint.d_v, joint.limit};
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace {
 
 using multibody::Integrator;
@@ -89,4 +89,4 @@ Rows RowMobility::over_substep(double h) noexcept {
   return takes_interval ? over(h, substep_shares_) : at_instant();
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -14,9 +14,9 @@
 #include "mechanics_node/mechanism.h"
 #include "multibody/constraints/step_rows.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
-// Of all rows, on their own coordinates; W is row-major.
+// Free acceleration and mobility of all rows, on their own coordinates; W is row-major.
 struct Rows {
   std::span<const double> a_free, W;
   coupling::MobilityKind kind = coupling::MobilityKind::instant;
@@ -45,4 +45,4 @@ class RowMobility {
   bool varies_over_substep_ = false;                // the same for long sub-steps and all rows
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -1,9 +1,8 @@
 // The mechanics' state as bytes: what is integrated, and what a step takes over from the step before.
 #include "coupling/saved_model.h"
 #include "mechanics_node/mechanics_subsystem.h"
-#include "mechanics_node/parameter_handle.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace {
 
 constexpr std::uint32_t kLayout = 2;
@@ -83,4 +82,4 @@ void MechanicsSubsystem::show_loaded() noexcept {
   multibody::copy_state(last_good_, mechanism_.state_as_evaluated());
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -11,7 +11,7 @@
 #include "math/stop.h"
 #include "mechanics_node/port_problem.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace {
 
 // parts of one division
@@ -97,4 +97,4 @@ void PortProblem::take_substep(const Step& step, double h, bool is_first, std::s
   finish_substep(step);
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

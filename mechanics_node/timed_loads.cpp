@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace {
 
 // Drives change coordinates by time alone as well: then the motion at the start does not hold later.
@@ -42,4 +42,4 @@ TimedLoads::Course TimedLoads::course_of(std::size_t row, double a_free, double 
   return {mean - 0.5 * end, end / h};
 }
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -7,7 +7,7 @@
 
 #include "mechanics_node/mechanism.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 
 class TimedLoads {
  public:
@@ -37,4 +37,4 @@ class TimedLoads {
   std::vector<double> begin_, middle_, end_;  // by row, a_free of the motion at the start under the loads of the time
 };
 
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

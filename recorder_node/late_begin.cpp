@@ -1,39 +1,39 @@
-// recorder_node's part that begins in mid-session, with the states that a recording can be computed again from.
+// RecorderNode's part that begins in mid-session, with the states from which a recording can be computed again.
 #include <utility>
 
 #include "recorder_node/recorder_node.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 
 using wire::NodeState;
 using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-// io's probe comes before the first tick, and the first tick before every sample but INIT and the first. A recorder
-// that hears a later message first is a second one: it records nothing and waits for the first one's status, which
-// names it.
+// io's probe precedes the first tick, and the first tick precedes every sample except INIT and the first. A recorder
+// that receives a later message first is a second one: it records nothing and waits for the status of the first
+// recorder, to name it.
 bool RecorderNode::has_come_in_time(const wire::Header& header, Topic topic, std::int64_t now_ns) {
-  if (header.phase == Phase::join && topic == Topic::tick) has_heard_probe_ = true;
-  if (header.phase == Phase::join || has_heard_probe_) return true;
+  if (header.phase == Phase::join && topic == Topic::tick) has_received_probe_ = true;
+  if (header.phase == Phase::join || has_received_probe_) return true;
   if (topic != Topic::tick && header.step <= streams_.begin) return true;
   ++member_.refusals().early;
   if (late_deadline_ns_ == 0) late_deadline_ns_ = now_ns + node::kJoinTimeout.ns;
   return false;
 }
 
-// io's probe was heard, and io has chosen this recorder: nobody takes its role from it.
+// Ready once io's probe has arrived and io has chosen this recorder: no later process takes its role.
 void RecorderNode::become_ready() noexcept {
-  if (member_.state() != NodeState::joining || !has_heard_probe_ || !member_.holds_role()) return;
+  if (member_.state() != NodeState::joining || !has_received_probe_ || !member_.holds_role()) return;
   member_.set_state(NodeState::ready);
 }
 
-// What the others can say again from the first step on is no reason to begin later. Blocks of variables are not said
-// again: of a session that had begun they are recorded from then on.
+// Begins at the first step if the other nodes can resend all messages since then. Blocks of variables are not resent:
+// those of a session that had begun are recorded from now on.
 bool RecorderNode::is_from_the_begin(const transport::Received& message, const wire::Header& header,
                                      std::int64_t now_ns) {
   if (header.phase == Phase::join) return true;
-  // a block's step says nothing about the session's
+  // the step of a block does not bound the step of the session
   if (message.topic == Topic::variables) {
     keep_until_begin(message);
     return false;
@@ -42,7 +42,7 @@ bool RecorderNode::is_from_the_begin(const transport::Received& message, const w
   if (begin_ == Begin::open && is_near) {
     begin_ = Begin::known;
     streams_.had_begun = true;
-    file_what_came_before(now_ns);
+    file_pending(now_ns);
     return true;
   }
   if (begin_ == Begin::open) late_deadline_ns_ = now_ns + node::kJoinTimeout.ns;
@@ -56,18 +56,18 @@ void RecorderNode::begin_late(StepIndex step, std::int64_t now_ns) {
   streams_.had_begun = true;
   begin_ = Begin::known;
   late_deadline_ns_ = 0;
-  file_what_came_before(now_ns);
+  file_pending(now_ns);
 }
 
 void RecorderNode::keep_until_begin(const transport::Received& message) {
-  if (before_.size() >= kMaxEarly) return;
-  before_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
+  if (before_begin_.size() >= kMaxPending) return;
+  before_begin_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
 }
 
-void RecorderNode::file_what_came_before(std::int64_t now_ns) {
-  for (const Early& before : std::exchange(before_, {})) {
-    const transport::Received message{before.topic, before.bytes, before.source_ns};
-    before.topic == Topic::variables ? receive_stepped(message, now_ns) : file(message);
+void RecorderNode::file_pending(std::int64_t now_ns) {
+  for (const PendingMessage& pending : std::exchange(before_begin_, {})) {
+    const transport::Received message{pending.topic, pending.bytes, pending.source_ns};
+    pending.topic == Topic::variables ? receive_stepped(message, now_ns) : file(message);
   }
 }
 
@@ -80,9 +80,9 @@ void RecorderNode::refuse_late() {
                                  "start the recorder with the session"));
   }
   refuse(Status::error(ExitCode::bad_input, "session '" + member_.session().name +
-                                                "' had begun before this recorder came, and its own recorder was not "
-                                                "heard; nothing was recorded here; start the recorder with the "
-                                                "session"));
+                                                "' had begun before this recorder came, and no status from its own "
+                                                "recorder arrived; nothing was recorded here; start the recorder with "
+                                                "the session"));
 }
 
 void RecorderNode::expect_states(StepIndex step) {
@@ -95,8 +95,8 @@ void RecorderNode::expect_states(StepIndex step) {
   }
 }
 
-// The states that an epoch begins with, or that follow a gap, so that it can be computed again from there. Those that
-// io gives to others later are not recorded.
+// Records the states that an epoch begins with, or that follow a gap, so that it can be computed again from there.
+// States that io sends to other nodes later are not recorded.
 void RecorderNode::receive_state(const transport::Received& message, std::int64_t now_ns) {
   wire::Header header;
   const bool is_wanted = !missing_states_.empty() || begin_ == Begin::late || wants_states_;
@@ -106,7 +106,7 @@ void RecorderNode::receive_state(const transport::Received& message, std::int64_
     ++member_.refusals().undecodable;
     return;
   }
-  // io gives its own state with those of all others alone
+  // io sends its own state only together with those of all other nodes
   if (begin_ == Begin::late && part_.role == Role::io) begin_late(header.step, now_ns);
   if (wants_states_ && part_.role == Role::io && header.step > gap_end_) expect_states(header.step);
   if (header.step != states_step_) return;
@@ -119,14 +119,14 @@ void RecorderNode::receive_state(const transport::Received& message, std::int64_
   if (is_whole) missing_states_.erase(missing);
 }
 
-void RecorderNode::ask_for_states(std::int64_t now_ns) {
-  const bool knows_io = member_.peer(Role::io).is_known && member_.state() != NodeState::joining;
+void RecorderNode::request_states(std::int64_t now_ns) {
+  const bool has_joined = member_.peer(Role::io).is_known && member_.state() != NodeState::joining;
   const bool is_late = begin_ == Begin::late;
-  // a session that cannot be saved gives none
+  // a session that cannot be saved sends none
   if (now_ns > states_deadline_ns_) wants_states_ = false;
-  if ((missing_states_.empty() && !is_late && !wants_states_) || !knows_io || !states_resend_.is_due(now_ns)) return;
-  states_resend_.asked(now_ns);
-  const auto ask = [&](Role role, StepIndex step) {
+  if ((missing_states_.empty() && !is_late && !wants_states_) || !has_joined || !states_resend_.is_due(now_ns)) return;
+  states_resend_.requested(now_ns);
+  const auto request_state = [&](Role role, StepIndex step) {
     wire::ResendRequest request;
     request.header = member_.header(Phase::running, step);
     request.role = role;
@@ -135,8 +135,8 @@ void RecorderNode::ask_for_states(std::int64_t now_ns) {
     member_.publish(Topic::resend, request);
     ++health().resends_asked;
   };
-  if (is_late || wants_states_) return ask(Role::io, kJoinStep);
-  for (const auto& [role, parts] : missing_states_) ask(role, states_step_);
+  if (is_late || wants_states_) return request_state(Role::io, kJoinStep);
+  for (const auto& [role, parts] : missing_states_) request_state(role, states_step_);
 }
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

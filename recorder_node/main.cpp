@@ -1,4 +1,4 @@
-// The program recorder_node: writes everything that is said in a session into one recording.
+// The program recorder_node: writes all messages of a session into one recording.
 #include <cstdio>
 
 #include "node/node_program.h"
@@ -14,18 +14,18 @@ using namespace slew;
 std::optional<ExitCode> run(const node::NodeOptions& options, const std::string& runs, double keep_free_mb) {
   node::apply_real_time(options, "recorder_node");
   const auto transport = node::open_transport(wire::Role::recorder, options.session);
-  recorder::RecorderConfig config;
+  recorder_node::RecorderConfig config;
   config.runs_directory = runs;
   config.keep_free = static_cast<std::uint64_t>(keep_free_mb * 1e6);
   config.join = options.join();
-  recorder::RecorderNode node(*transport, std::move(config));
-  // the path is said last, whatever the end was
-  struct SayPath {
-    const recorder::RecorderNode& node;
-    ~SayPath() {
+  recorder_node::RecorderNode node(*transport, std::move(config));
+  // the path is printed last, whatever the end was
+  struct PrintPath {
+    const recorder_node::RecorderNode& node;
+    ~PrintPath() {
       if (!node.recording().empty()) std::printf("recording: %s\n", node.recording().c_str());
     }
-  } const say_path{node};
+  } const print_path{node};
   return node::run_node(node);
 }
 
@@ -42,8 +42,8 @@ int main(int argc, char** argv) {
   program.option("--out", runs, "folder in which the session gets a folder of its own")
       .value_name("DIR")
       .show_default();
-  double keep_free_mb = static_cast<double>(recorder::kKeepFreeBytes) * 1e-6;
-  program.option("--keep-free", keep_free_mb, "room on the file system that is left to others; 0: none")
+  double keep_free_mb = static_cast<double>(recorder_node::kKeepFreeBytes) * 1e-6;
+  program.option("--keep-free", keep_free_mb, "space on the file system that is left free; 0: none")
       .between(0.0, 1e9)
       .value_name("MB")
       .show_default();

@@ -8,7 +8,7 @@
 #include "transport/roles.h"
 #include "transport/topics.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 namespace {
 
 using node::to_text;
@@ -17,7 +17,7 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-// the recorder reports how far it is at least this often
+// longest distance between two reports of the recorded step
 constexpr StepIndex kReportSteps = 64;
 constexpr std::int64_t kReportNs = 100'000'000;
 
@@ -51,8 +51,8 @@ bool RecorderNode::poll(std::int64_t now_ns) {
   } else if (stage_ != Stage::finished) {
     become_ready();
     give_up_unanswerable();
-    ask_for_gaps(now_ns);
-    ask_for_states(now_ns);
+    request_gaps(now_ns);
+    request_states(now_ns);
     watch(now_ns);
     report_progress(now_ns);
     const node::DiskWait disk(health());
@@ -129,21 +129,21 @@ void RecorderNode::receive(const transport::Received& message, std::int64_t now_
   file(message);
 }
 
-// everything that has no step of its own is filed under the one that is being recorded
+// Files a message without a step of its own under the step that is being recorded.
 void RecorderNode::file(const transport::Received& message) {
   if (writer_ == nullptr || is_of_another_session(message)) return;
   if (begin_ != Begin::known) return keep_until_begin(message);
   write(message, member_.epoch(), std::max(streams_.begin, complete_up_to()), static_cast<std::uint32_t>(++unstepped_));
 }
 
-// Of an earlier session of the name a process may still be there that had stood still.
+// A process of an earlier session of the name may still exist after it stood still.
 bool RecorderNode::is_of_another_session(const transport::Received& message) const {
   if (message.topic == Topic::controller_input || message.topic == Topic::control_request) return false;
   wire::Header header;
   return transport::decode_header(message.bytes, header) && header.session != member_.session().header.session;
 }
 
-// this one leaves nothing behind unless it holds a step of the session
+// Removes the recording unless it holds a step of the session.
 void RecorderNode::discard(const Status& why) {
   if (writer_ == nullptr) return;
   count_all_losses();
@@ -156,7 +156,7 @@ void RecorderNode::discard(const Status& why) {
   path_.clear();
 }
 
-// another process records this session
+// Another process records this session.
 void RecorderNode::refuse(const Status& refusal) {
   discard(refusal);
   member_.step_aside(refusal.code, refusal.text);
@@ -175,13 +175,13 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
     ++member_.refusals().undecodable;
     return;
   }
-  const node::SessionNews news = member_.news(session);
-  if (news == node::SessionNews::withdrawn) return withdraw();
-  if (news == node::SessionNews::renewed) {
+  const node::SessionChange change = member_.change_of(session);
+  if (change == node::SessionChange::withdrawn) return withdraw();
+  if (change == node::SessionChange::renewed) {
     member_.renew(session, now_ns);
     return file(message);
   }
-  if (news != node::SessionNews::begins) return;
+  if (change != node::SessionChange::begins) return;
   if (const Status held = member_.adopt(session, now_ns); !held.is_ok()) return refuse(held);
   Status status = member_.problem_of_protocol();
   if (status.is_ok()) status = create(session);
@@ -215,15 +215,16 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
   if (message.topic == Topic::tick && member_.begins_next_epoch(header)) {
     start_epoch(header);
     receive_stepped(message, now_ns);
-    for (const Early& early : std::exchange(early_, {}))
-      receive_stepped({early.topic, early.bytes, early.source_ns}, now_ns);
+    for (const PendingMessage& pending : std::exchange(next_epoch_, {})) {
+      receive_stepped({pending.topic, pending.bytes, pending.source_ns}, now_ns);
+    }
     return;
   }
   if (header.epoch == member_.epoch() + 1) {
     if (member_.is_of_session(header, message.topic)) keep_for_next_epoch(message);
     return;
   }
-  // of the epoch that a reset has just ended
+  // a message of the epoch that a reset has just ended
   if (header.epoch + 1 == member_.epoch() && header.phase == Phase::running) {
     if (member_.is_of_session(header, message.topic)) record_step(message, header, former_, now_ns);
     return;
@@ -231,7 +232,7 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
   if (!member_.fits(header, message.topic)) return;
   if (begin_ != Begin::known && !is_from_the_begin(message, header, now_ns)) return;
   if (member_.state() == NodeState::joining && !has_come_in_time(header, message.topic, now_ns)) return;
-  member_.heard(header, message.topic, now_ns);
+  member_.acknowledge(header, message.topic, now_ns);
   if (header.phase == Phase::join || writer_ == nullptr) return;
   if (header.phase == Phase::init) {
     return write(message, header.epoch, kJoinStep, static_cast<std::uint32_t>(header.role));
@@ -267,8 +268,8 @@ StepStream RecorderNode::make_stream(StepIndex begin) const {
   return {StreamGaps(stream_depth(member_.give_up_after(), {member_.session().step_ns}), begin), {}};
 }
 
-// what must be complete: the ticks and the samples of every role that takes part, and the states they begin with.
-// from: step of these states; -1: the epoch begins with INIT
+// Streams that must be complete: the ticks and the samples of every role that takes part, and the states they begin
+// with. from: step of these states; -1: the epoch begins with INIT.
 void RecorderNode::begin_streams(StepIndex from) {
   streams_.begin = std::max<StepIndex>(0, from);
   wants_states_ = false;
@@ -281,8 +282,8 @@ void RecorderNode::begin_streams(StepIndex from) {
   }
 }
 
-// Blocks of variables, and the samples of and for flexible bodies, come every k-th step from step 0 on. They are not
-// asked for again: what is missing is counted.
+// Blocks of variables and the samples from and to flexible bodies are published every k-th step from step 0 on. Missing
+// ones are counted, not requested.
 void RecorderNode::record_variables(const transport::Received& message, const wire::Header& header,
                                     EpochStreams& streams) {
   wire::VariableBlock block;
@@ -307,13 +308,13 @@ void RecorderNode::record_block(const transport::Received& message, const wire::
   write(message, header.epoch, header.step, (static_cast<std::uint32_t>(header.role) << 16) | source.first);
 }
 
-// a fast node's first messages after a reset may overtake io's tick that began it
+// After a reset the first messages of a fast node may overtake io's tick that begins the epoch.
 void RecorderNode::keep_for_next_epoch(const transport::Received& message) {
-  if (early_.size() >= kMaxEarly) {
+  if (next_epoch_.size() >= kMaxPending) {
     ++member_.refusals().other_epoch;
     return;
   }
-  early_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
+  next_epoch_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
 }
 
 void RecorderNode::start_epoch(const wire::Header& init) {
@@ -329,7 +330,7 @@ void RecorderNode::start_epoch(const wire::Header& init) {
 
 // ---- progress -------------------------------------------------------------------------------------------------
 
-// every stream is complete up to this step
+// Every stream is complete up to this step.
 StepIndex RecorderNode::complete_up_to() const noexcept {
   StepIndex least = -1;
   bool is_first = true;
@@ -340,15 +341,16 @@ StepIndex RecorderNode::complete_up_to() const noexcept {
   return least;
 }
 
-// last step of a stream as its writer said when it ended; before that, or when it is gone, the newest that came
+// Last step of a stream: the step that its writer reported at its end; before that, or if the writer is gone, the
+// newest step that arrived.
 StepIndex RecorderNode::final_step(Role writer, StepIndex newest) const noexcept {
   const node::Peer& peer = member_.peer(writer);
-  const bool has_said = peer.is_known && !peer.is_lost && peer.status.state >= NodeState::ended &&
-                        peer.status.header.epoch == member_.epoch();
-  return has_said ? peer.status.header.step : newest;
+  const bool has_reported = peer.is_known && !peer.is_lost && peer.status.state >= NodeState::ended &&
+                            peer.status.header.epoch == member_.epoch();
+  return has_reported ? peer.status.header.step : newest;
 }
 
-// step of a writer's last variable block; io's last tick says END and has none
+// Step of a writer's last variable block. io's last tick is END and has none.
 StepIndex RecorderNode::last_block(const BlockSource& source, StepIndex newest) const noexcept {
   const StepIndex every = block_every_[static_cast<std::size_t>(source.topic)];
   if (every == 0) return newest;
@@ -361,7 +363,7 @@ bool RecorderNode::is_ending() const noexcept {
   return member_.peer(Role::io).status.state >= NodeState::ended || lost_node_;
 }
 
-// everybody who is still there has ended, and all that they sent has come
+// Every node that is not lost has ended, and all its messages have arrived.
 bool RecorderNode::has_everything() const noexcept {
   return member_.all_required(NodeState::ended) && missing_states_.empty() &&
          std::all_of(streams_.steps.begin(), streams_.steps.end(),
@@ -386,11 +388,11 @@ void RecorderNode::report_progress(std::int64_t now_ns) {
   }
 }
 
-// Steps that are further behind than every writer keeps them. They are one gap until all streams go on behind it.
+// Gives up steps that no writer keeps any more. They form one gap until all streams continue after it.
 void RecorderNode::give_up_unanswerable() {
   if (writer_ == nullptr || !stopped_.is_ok() || streams_.steps.empty()) return;
   const std::size_t depth = node::sent_depth(member_.give_up_after(), {member_.session().step_ns});
-  // one odd number in one stream is no step of the session
+  // a wrong number in one stream is not a step of the session
   StepIndex newest = wire::kMaxStep;
   for (const auto& [key, stream] : streams_.steps) newest = std::min(newest, stream.gaps.newest());
   for (auto& [key, stream] : streams_.steps) {
@@ -410,7 +412,7 @@ void RecorderNode::give_up_unanswerable() {
   if (is_over) end_lost_steps();
 }
 
-void RecorderNode::ask_for_gaps(std::int64_t now_ns) {
+void RecorderNode::request_gaps(std::int64_t now_ns) {
   for (auto& [key, stream] : streams_.steps) {
     const StreamGaps& gaps = stream.gaps;
     if (!stream.resend.is_due(now_ns)) continue;
@@ -426,7 +428,7 @@ void RecorderNode::ask_for_gaps(std::int64_t now_ns) {
     request.last_step = last;
     member_.publish(Topic::resend, request);
     ++health().resends_asked;
-    stream.resend.asked(now_ns);
+    stream.resend.requested(now_ns);
   }
 }
 
@@ -445,7 +447,7 @@ void RecorderNode::watch(std::int64_t now_ns) {
     deadline_ns_ = 0;
     return;
   }
-  // a moment longer, so that the others' last messages are recorded
+  // the last messages of the other nodes may be in flight
   if (deadline_ns_ == 0) deadline_ns_ = now_ns + member_.linger().ns / 2;
   if (!has_everything() && now_ns < deadline_ns_) return;
   if (lost_node_) {
@@ -454,7 +456,7 @@ void RecorderNode::watch(std::int64_t now_ns) {
                                                           " is gone; the recording was closed after step " +
                                                           std::to_string(complete_up_to())));
   }
-  // asked to end by a signal or not: who saw the END has done all that it had to do
+  // after the END the recording is complete, whether or not a signal was received
   const wire::NodeStatus& io = member_.peer(Role::io).status;
   const auto code = static_cast<ExitCode>(io.exit_code);
   finish({code, io.reason}, io.state == NodeState::fault ? code : ExitCode::ok,
@@ -493,7 +495,7 @@ void RecorderNode::count_all_losses() {
   count_losses(streams_, true);
 }
 
-// counts once: the streams are empty afterwards
+// Counts once: the streams are empty afterwards.
 void RecorderNode::count_losses(EpochStreams& streams, bool is_present) {
   if (is_present) last_step_ = complete_up_to();
   for (auto& [key, stream] : streams.steps) {
@@ -513,4 +515,4 @@ void RecorderNode::count_losses(EpochStreams& streams, bool is_present) {
   streams = {};
 }
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

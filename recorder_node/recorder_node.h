@@ -1,14 +1,15 @@
-// Takes everything that is said in a session and puts it, ordered by step, into one recording.
+// Records all messages of a session, ordered by step, in one file.
 //
-// Ticks and samples must be complete: a gap is asked for by number after 3 ms and answered from the writers' caches;
-// what never comes is counted per topic. The recording is closed after every node's END, after a fault, or on a signal;
-// and when the disk fails or its room gets short: the session goes on without it, and the recorder ends with code 6.
+// Ticks and samples must be complete: the recorder requests the missing steps of a gap after 3 ms, and their writers
+// resend them from their caches; messages that never arrive are counted per topic. The recording is closed after every
+// node's END, after a fault, or on a signal. It is also closed when the disk fails or its space gets short: the session
+// goes on without it, and the recorder ends with code 6.
 //
 // While the disk is slower than the session, up to 64 MiB wait for it. In `free` pace the session then waits too. In
-// `real` pace variables and health are left out from half of that on, and what is step by step when all of it is used;
-// each such gap is marked in the file (Metadata "slewring.gap"), and the messages are counted as lost. So are ticks and
-// samples that no node can send again. Behind a gap in the ticks the recorder requests the states of all nodes, as one
-// that comes late does: the recording replays from them on.
+// `real` pace variables and health are left out when half of that is used, and messages of each step when all of it is
+// used. Each such gap is marked in the file (Metadata "slewring.gap"), and the messages are counted as lost. So are
+// ticks and samples that no node can resend. After a gap in the ticks the recorder requests the states of all nodes, as
+// a late recorder does: the recording replays from them on.
 #pragma once
 
 #include <algorithm>
@@ -29,12 +30,12 @@
 #include "recorder_node/stream_gaps.h"
 #include "recording/writer.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 
 inline constexpr std::uint64_t kKeepFreeBytes = 256'000'000;
 inline constexpr std::size_t kBacklogBytes = 64u << 20;
 
-// Of the recorder: a slow disk holds up a thread, not the session.
+// Limits of the recorder: a slow disk delays a thread, not the session.
 [[nodiscard]] inline recording::WriterLimits recorder_limits() {
   recording::WriterLimits limits;
   limits.backlog_bytes = kBacklogBytes;
@@ -44,17 +45,17 @@ inline constexpr std::size_t kBacklogBytes = 64u << 20;
 struct RecorderConfig {
   std::filesystem::path runs_directory = "runs";
   node::JoinOptions join;
-  std::uint64_t keep_free = kKeepFreeBytes;  // bytes on the recording's file system that are left to others
+  std::uint64_t keep_free = kKeepFreeBytes;  // bytes on the recording's file system that are left free
   recording::WriterLimits limits = recorder_limits();
   recording::FileCalls* file_calls = &recording::system_file_calls();
 };
 
-// A writer's messages that come every k-th step: blocks of variables of one place in its list, samples of or for
-// flexible bodies.
+// A stream of messages that a writer publishes every k-th step: blocks of variables of one place in its list, samples
+// from or to flexible bodies.
 struct BlockSource {
   wire::Topic topic = wire::Topic::variables;
   wire::Role writer = wire::Role::io;
-  std::uint32_t first = 0;  // of a block, its first variable
+  std::uint32_t first = 0;  // first variable of a block
   auto operator<=>(const BlockSource&) const = default;
 };
 
@@ -63,24 +64,24 @@ struct BlockStream {
   std::uint64_t arrived = 0;
 };
 
-// Ticks or samples of one writer, and when to ask it for the first gap: a stream in order must not put off another's.
+// Ticks or samples of one writer, and the time to request its first gap: a stream in order must not delay another's.
 struct StepStream {
   StreamGaps gaps;
   node::ResendClock resend;
 };
 
-// Steps ahead of a gap that are remembered: more than any node can send again.
+// Steps ahead of a gap that are remembered: more than any node can resend.
 [[nodiscard]] constexpr std::size_t stream_depth(SimDuration give_up_after, SimDuration step) noexcept {
   constexpr std::size_t kLeast = 4096;
   return std::max(kLeast, 2 * node::sent_depth(give_up_after, step));
 }
-// messages of an epoch that has not begun yet: INIT, sample 0 and a few variable blocks of every node
-inline constexpr std::size_t kMaxEarly = 256;
+// Messages kept for an epoch that has not begun yet: INIT, sample 0 and a few variable blocks of every node.
+inline constexpr std::size_t kMaxPending = 256;
 
-// What has come of one epoch, by writer.
+// Messages of one epoch that have arrived, by writer.
 struct EpochStreams {
   StepIndex begin = 0;     // its first step
-  bool had_begun = false;  // before the recorder came: a block before the first one that it heard is not missing
+  bool had_begun = false;  // before the recorder joined: blocks before the first one received are not missing
   std::map<std::pair<wire::Topic, wire::Role>, StepStream> steps;  // ticks and samples
   std::map<BlockSource, BlockStream> blocks;
 };
@@ -88,7 +89,7 @@ struct EpochStreams {
 // How the session ended, for the recording's summary.
 struct SessionEnd {
   ExitCode code = ExitCode::ok;
-  std::string reason;  // empty: the code says it all
+  std::string reason;  // empty: the code suffices
 };
 
 struct TopicCounts {
@@ -108,7 +109,7 @@ class RecorderNode final : public node::Node {
   void request_stop(ExitCode code) override;
   [[nodiscard]] node::SessionMember& member() override { return member_; }
 
-  // Empty before the session is known.
+  // Empty before the node has a session.
   [[nodiscard]] const std::filesystem::path& recording() const noexcept { return path_; }
   // Messages that are missing in it so far.
   [[nodiscard]] std::uint64_t lost() const noexcept;
@@ -130,18 +131,18 @@ class RecorderNode final : public node::Node {
   [[nodiscard]] bool has_come_in_time(const wire::Header& header, wire::Topic topic, std::int64_t now_ns);
   void record_step(const transport::Received& message, const wire::Header& header, EpochStreams& streams,
                    std::int64_t now_ns);
-  // A recorder that a session does not need may come when it has begun: then the recording begins with the states of
-  // the next step that io gives.
+  // A recorder that a session does not require may join after its begin: the recording then begins with the states of
+  // the next step that io sends.
   enum class Begin : std::uint8_t { known, open, late };
   [[nodiscard]] bool is_from_the_begin(const transport::Received& message, const wire::Header& header,
                                        std::int64_t now_ns);
   void keep_until_begin(const transport::Received& message);
   void begin_late(StepIndex step, std::int64_t now_ns);
-  void file_what_came_before(std::int64_t now_ns);
+  void file_pending(std::int64_t now_ns);
   void file(const transport::Received& message);
   void receive_state(const transport::Received& message, std::int64_t now_ns);
   void expect_states(StepIndex step);
-  void ask_for_states(std::int64_t now_ns);
+  void request_states(std::int64_t now_ns);
   void record_variables(const transport::Received& message, const wire::Header& header, EpochStreams& streams);
   void record_block(const transport::Received& message, const wire::Header& header, const BlockSource& source,
                     EpochStreams& streams);
@@ -160,7 +161,7 @@ class RecorderNode final : public node::Node {
   [[nodiscard]] bool is_ending() const noexcept;
   [[nodiscard]] bool has_everything() const noexcept;
   void report_progress(std::int64_t now_ns);
-  void ask_for_gaps(std::int64_t now_ns);
+  void request_gaps(std::int64_t now_ns);
   void watch(std::int64_t now_ns);
   void begin_ending(ExitCode code, const std::string& reason);
   void finish(const SessionEnd& session, ExitCode own_code, const std::string& own_reason);
@@ -182,7 +183,7 @@ class RecorderNode final : public node::Node {
   Stage stage_ = Stage::waiting_for_session;
   std::filesystem::path path_;
   std::unique_ptr<recording::Writer> writer_;
-  Status stopped_;  // why nothing is written any more, while the session goes on; ok: it is being recorded
+  Status stopped_;  // reason for which the recording was closed while the session goes on; ok: it is being recorded
   std::int64_t room_checked_ns_ = 0;
   struct Gap {
     std::uint32_t epoch = 0;
@@ -192,13 +193,13 @@ class RecorderNode final : public node::Node {
   void mark(const Gap& gap, const char* cause);
   std::optional<Gap> gap_;   // messages left out while the disk is slower than the session
   std::optional<Gap> lost_;  // ticks and samples that no node has any more
-  // Behind a gap in the ticks the session's states are recorded, so that it can be computed again from there.
+  // After a gap in the ticks the session's states are recorded, so that it can be computed again from there.
   bool wants_states_ = false;
   StepIndex gap_end_ = kJoinStep;        // last step of that gap
-  std::int64_t states_deadline_ns_ = 0;  // of the request for them
-  StepIndex states_step_ = 0;            // of the states that are being recorded, or were last
-  std::int64_t now_ns_ = 0;              // of the poll that goes on
-  // What is in the file, for who wants to know it without reading all of it.
+  std::int64_t states_deadline_ns_ = 0;  // deadline of the request for them
+  StepIndex states_step_ = 0;            // step of the states that are being recorded, or were last
+  std::int64_t now_ns_ = 0;              // time of the present poll
+  // Contents of the file, for the summary at its end, which readers use without reading the whole file.
   std::optional<node::TickCounter> ticks_;
   node::FlagCounter flags_;
   std::uint64_t variables_digest_ = 0;
@@ -206,33 +207,33 @@ class RecorderNode final : public node::Node {
   wire::NodeStatus status_;
   wire::MechanismMessage mechanism_;
   wire::ActuatorMessage actuators_;
-  bool has_told_of_waiting_ = false;
+  bool has_warned_of_waiting_ = false;
   std::array<recording::ChannelId, wire::kTopics> channels_{};
   std::array<TopicCounts, wire::kTopics> counts_{};
   EpochStreams streams_;
-  // of the states that an epoch begins with, or goes on from behind a gap: those that have not come whole
+  // incomplete ones of the states with which an epoch begins or continues after a gap
   std::map<wire::Role, node::CheckpointParts> missing_states_;
   node::ResendClock states_resend_;
   wire::StatePart part_;
-  EpochStreams former_;  // of the epoch before: its last messages may come after the tick that ended it
-  // steps between two blocks of a topic, as those that came say; 0: unknown yet
+  EpochStreams former_;  // the epoch before: its last messages may arrive after the tick that ended it
+  // steps between two blocks of a topic, from the blocks that have arrived; 0: unknown yet
   std::array<StepIndex, wire::kTopics> block_every_{};
   StepIndex reported_step_ = kJoinStep;
-  StepIndex last_step_ = kJoinStep;  // up to which every stream was complete at the end
+  StepIndex last_step_ = kJoinStep;  // step up to which every stream was complete at the end
   std::int64_t reported_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
   Begin begin_ = Begin::known;
-  bool has_heard_probe_ = false;         // of io, which comes before the first tick
-  std::int64_t late_deadline_ns_ = 0;    // of one that came after the session's begin; 0: it did not
-  std::optional<wire::Role> lost_node_;  // who is gone, while the others are still saying so
-  struct Early {
+  bool has_received_probe_ = false;      // io's probe, which precedes the first tick
+  std::int64_t late_deadline_ns_ = 0;    // deadline of a recorder that joined after the session's begin; 0: in time
+  std::optional<wire::Role> lost_node_;  // node that is gone, while the other nodes publish their end
+  struct PendingMessage {
     wire::Topic topic = wire::Topic::session;
     std::int64_t source_ns = 0;
     std::vector<std::byte> bytes;
   };
-  std::vector<Early> before_;    // without a step of its own, until the first step is known
-  std::vector<Early> early_;     // of the next epoch, heard before the tick that begins it
-  std::uint64_t unstepped_ = 0;  // running number of messages without a step of their own
+  std::vector<PendingMessage> before_begin_;  // messages without a step of their own, until the first step is known
+  std::vector<PendingMessage> next_epoch_;    // messages that arrived before the tick that begins their epoch
+  std::uint64_t unstepped_ = 0;               // running number of messages without a step of their own
 };
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

@@ -1,4 +1,4 @@
-// recorder_node's part that writes the file: its front, what comes, what a slow or full disk leaves out, its end.
+// RecorderNode's part that writes the file: its front, its messages, the gaps of a slow or full disk, its end.
 #include <algorithm>
 #include <cstdio>
 #include <optional>
@@ -10,7 +10,7 @@
 #include "recording/run_directory.h"
 #include "transport/topics.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 
 using node::to_text;
 using wire::Topic;
@@ -68,7 +68,7 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
   identity.build = session.build;
   identity.communication_step = {session.step_ns};
   identity.started_ns = session.started_ns;
-  identity.more["pace"] = session.pace == wire::Pace::free ? "free" : "real";
+  identity.more["pace"] = session.pace == Pace::free ? "free" : "real";
   identity.more["protocol"] = std::to_string(session.protocol);
   status = recording::Writer::create(path, identity, config_.limits, writer_, *config_.file_calls);
   if (!status.is_ok()) {
@@ -85,7 +85,7 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
         std::string(to_text(static_cast<Topic>(i))), transport::traits(static_cast<Topic>(i)).type_name, kIdlText, {}};
     status = writer_->add_channel(channel, channels_[i]);
   }
-  // a session whose front cannot be written does not begin
+  // if the front cannot be written, the session does not begin
   return status.is_ok() ? writer_->settle() : status;
 }
 
@@ -115,7 +115,7 @@ void RecorderNode::write(const transport::Received& message, std::uint32_t epoch
     ++counts_[topic].recorded;
     count(message);
   } else if (status.code == ExitCode::failed) {
-    // a message that no recording can hold; the session is not at fault
+    // no recording can hold this message; the session goes on
     ++counts_[topic].lost;
   } else {
     ++counts_[topic].lost;
@@ -146,14 +146,15 @@ void RecorderNode::count(const transport::Received& message) {
   }
 }
 
-// In real pace nothing waits for the recorder: what the disk cannot take is left out, variables and health first.
+// In real pace no node waits for the recorder: messages beyond the disk's rate are left out, variables and health
+// first.
 bool RecorderNode::is_left_out(Topic topic, StepIndex step, std::uint32_t epoch) {
   const std::size_t most = config_.limits.backlog_bytes;
   if (most == 0) return false;
   const std::size_t waiting = writer_->backlog_bytes();
   const bool is_full = waiting + config_.limits.chunk_bytes > most;
-  if (member_.session().pace == wire::Pace::free) {
-    if (is_full && !std::exchange(has_told_of_waiting_, true)) {
+  if (member_.session().pace == Pace::free) {
+    if (is_full && !std::exchange(has_warned_of_waiting_, true)) {
       std::fprintf(stderr,
                    "recorder: warning: the disk is slower than the session, which waits for it from step %lld on; "
                    "nothing is lost; record elsewhere with --out DIR, or less with recording.every\n",
@@ -189,7 +190,7 @@ void RecorderNode::end_lost_steps() {
   if (const auto lost = std::exchange(lost_, std::nullopt)) mark(*lost, "no node could send them again");
 }
 
-// A session whose ticks have a gap is computed again from the next states on.
+// After a gap in the ticks the session can be computed again from the next states on.
 void RecorderNode::mark(const Gap& gap, const char* cause) {
   recording::TextMap entries;
   entries["cause"] = cause;
@@ -200,7 +201,7 @@ void RecorderNode::mark(const Gap& gap, const char* cause) {
     if (gap.messages[i] > 0)
       entries["left_out." + std::string(to_text(static_cast<Topic>(i)))] = std::to_string(gap.messages[i]);
   }
-  // a failure is told by the next write
+  // the next write returns the error
   std::ignore = writer_->add_metadata(recording::kGapName, entries);
   const bool lacks_ticks = gap.messages[static_cast<std::size_t>(Topic::tick)] > 0;
   if (!lacks_ticks || gap.epoch != member_.epoch() || gap.to < states_step_) return;
@@ -209,7 +210,7 @@ void RecorderNode::mark(const Gap& gap, const char* cause) {
   states_deadline_ns_ = now_ns_ + node::kJoinTimeout.ns;
 }
 
-// The session goes on without its recording; what comes from now on is counted as lost.
+// The session goes on without its recording; messages from now on are counted as lost.
 void RecorderNode::stop_recording(const Status& why) {
   last_step_ = complete_up_to();
   stopped_ = why;
@@ -233,7 +234,7 @@ Status RecorderNode::problem_of_room(const std::filesystem::path& place) const {
                            "--keep-free MB");
 }
 
-// what is held is still written: there is room for it
+// Messages held in memory are still written: there is space for them.
 void RecorderNode::stop_when_room_is_short(std::int64_t now_ns) {
   if (writer_ == nullptr || !stopped_.is_ok() || now_ns - room_checked_ns_ < config_.limits.flush_period.ns) return;
   room_checked_ns_ = now_ns;
@@ -252,7 +253,7 @@ void RecorderNode::close_file(SessionEnd session) {
   const node::DiskWait disk(health());
   end_gap();
   end_lost_steps();
-  // what fails only now is told in the summary too
+  // an error of this flush is in the summary too
   const Status flushed = writer_->flush();
   if (stopped_.is_ok()) stopped_ = flushed;
   if (!stopped_.is_ok() && session.code == ExitCode::ok) session = {stopped_.code, stopped_.text};
@@ -264,7 +265,7 @@ void RecorderNode::close_file(SessionEnd session) {
   for (std::size_t i = 0; i < wire::kTopics; ++i) {
     if (counts_[i].recorded == 0 && counts_[i].lost == 0) continue;
     const std::string name(to_text(static_cast<Topic>(i)));
-    // of what a failed writer took some never came into the file
+    // a failed writer took messages that are not in the file
     const std::uint64_t in_file = first_lost ? writer_->messages_in_file(channels_[i]) : counts_[i].recorded;
     summary[name + ".recorded"] = std::to_string(in_file);
     summary[name + ".lost"] = std::to_string(counts_[i].lost + counts_[i].recorded - in_file);
@@ -282,4 +283,4 @@ void RecorderNode::close_file(SessionEnd session) {
   if (!status.is_ok() && stopped_.is_ok()) stopped_ = status;
 }
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

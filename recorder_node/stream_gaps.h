@@ -1,4 +1,4 @@
-// Which steps of one writer's topic have come: the contiguous part, and what lies ahead of a gap.
+// The steps of one writer's topic that have arrived: the contiguous part, and the steps ahead of a gap.
 #pragma once
 
 #include <algorithm>
@@ -9,19 +9,19 @@
 
 #include "core/time.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 
 class StreamGaps {
  public:
-  // depth: how far ahead of a gap steps are remembered; a gap that is left further behind counts as lost.
+  // depth: number of steps ahead of a gap that are remembered; a gap further behind counts as lost.
   // first: step with which the stream begins.
   explicit StreamGaps(std::size_t depth = 4096, StepIndex first = 0)
       : ahead_(depth, false), next_(first), newest_(first - 1) {}
 
   enum class Arrival : std::uint8_t { new_step, duplicate, too_far };
 
-  // A step two depths ahead or more is not believed before a second one near it: one odd number must not give up all
-  // that is to come, but a reader that stood still for long must find its stream again.
+  // A step two depths ahead or more is accepted only after a second one near it: one wrong number must not give up all
+  // steps before it, but a reader that stood still for long must find its stream again.
   Arrival arrived(StepIndex step) {
     const auto depth = static_cast<StepIndex>(ahead_.size());
     if (step < next_) return Arrival::duplicate;
@@ -38,7 +38,7 @@ class StreamGaps {
     return Arrival::new_step;
   }
 
-  // All steps below this one have come (or are counted as lost).
+  // All steps below this one have arrived or are counted as lost.
   [[nodiscard]] StepIndex next() const noexcept { return next_; }
   [[nodiscard]] StepIndex newest() const noexcept { return newest_; }
   [[nodiscard]] bool has_gap() const noexcept { return newest_ >= next_; }
@@ -50,11 +50,11 @@ class StreamGaps {
   }
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
 
-  // Counts every step up to and including `last` that has not come as lost.
+  // Counts every missing step up to and including `last` as lost.
   void close_at(StepIndex last) { give_up_below(last + 1); }
-  // Counts every step before `end` that has not come as lost.
+  // Counts every missing step before `end` as lost.
   void give_up_before(StepIndex end) { give_up_below(end); }
-  // Steps that were counted as lost since this was called last.
+  // Steps counted as lost since the last call.
   struct Lost {
     StepIndex first = 0, last = 0;
     std::uint64_t steps = 0;
@@ -69,7 +69,7 @@ class StreamGaps {
     }
   }
   void give_up_below(StepIndex end) {
-    // no more than a depth is remembered; what lies behind it was never there
+    // steps beyond a depth are not remembered: none of them has arrived
     const StepIndex remembered = std::min(end, next_ + static_cast<StepIndex>(ahead_.size()));
     for (; next_ < remembered; ++next_) {
       if (!ahead_[slot(next_)]) lose(next_, next_);
@@ -93,9 +93,9 @@ class StreamGaps {
   std::vector<bool> ahead_;
   StepIndex next_;
   StepIndex newest_;
-  StepIndex doubted_ = -1;  // last step that was not believed
+  StepIndex doubted_ = -1;  // last step that was not accepted
   std::uint64_t lost_ = 0;
   Lost newly_lost_;
 };
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

@@ -22,7 +22,7 @@ std::vector<std::string> plotted(const scene::Scene& scene) {
 }
 
 ScenePlots read_plots(const scene::Scene& scene, const recording::Reader& reader) {
-  return draw_plots(scene, *session::view_recording(reader, session::Values::all, plotted(scene)).curves(), reader);
+  return draw_plots(scene, session::view_recording(reader, plotted(scene)).tally.curves(), reader);
 }
 
 ScenePlots draw_plots(const scene::Scene& scene, const session::Curves& curves, const recording::Reader& reader) {

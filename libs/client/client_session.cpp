@@ -7,31 +7,18 @@
 #include <utility>
 
 #include "core/printable.h"
-#include "transport/cdr/codec.h"
-#include "transport/given_up.h"
 #include "transport/protection.h"
 
 namespace slew::client {
 namespace {
 
-using wire::Phase;
+using observer::seconds_text;
 using wire::Role;
 using wire::Topic;
 
 constexpr std::size_t kNewBlocks = 4096;
-constexpr std::size_t kBeforeSession = 4096;
 constexpr std::size_t kWaitingSteps = 4096;
 constexpr std::int64_t kRequestIntervalNs = 200'000'000;
-constexpr std::int64_t kLongestSleepNs = 50'000'000;
-// a wait that is later than this is not load: the process was stopped, or its machine slept
-constexpr std::int64_t kStandstillNs = 200'000'000;
-
-std::string in_seconds(SimDuration time) {
-  std::string text = std::to_string(time.seconds());
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text + " s";
-}
 
 // environment variables of a program whose command line is its own
 transport::Protection protection_of_environment() {
@@ -60,6 +47,7 @@ Answer ClientSession::join(const JoinOptions& options, SimDuration timeout, std:
                                     std::to_string(wire::kMaxNameLength) + " characters"};
   }
   std::unique_ptr<ClientSession> opened(new ClientSession(options));
+  std::unique_ptr<transport::Transport> transport;
   transport::Network network = options.network;
   Status status = transport::protect(network, protection_of_environment());
   if (status.is_ok()) {
@@ -70,18 +58,23 @@ Answer ClientSession::join(const JoinOptions& options, SimDuration timeout, std:
     endpoint.reads = {Topic::session, Topic::node_status, Topic::variable_directory, Topic::variables,
                       Topic::controller_lease};
     endpoint.is_controller = true;
-    status = transport::open_transport(network, endpoint, opened->transport_);
+    status = transport::open_transport(network, endpoint, transport);
   }
   if (!status.is_ok()) return {status.code == ExitCode::bad_input ? Code::bad_argument : Code::failed, status.text};
-  if (!opened->wait_for([&] { return opened->has_session_; }, timeout)) {
+  opened->observer_ = std::make_unique<observer::Observer>(
+      std::move(transport),
+      observer::ObserverOptions{
+          .session = options.session, .choice = observer::Choice::first, .receiver = opened.get()});
+  const observer::SessionView& view = opened->view();
+  if (!opened->observer_->wait_for([&] { return view.has_session(); }, timeout)) {
     return {Code::timeout, "no session '" + options.session + "' was found in domain " +
                                std::to_string(options.network.domain) + " on " + options.network.interface +
-                               " within " + in_seconds(timeout) +
+                               " within " + seconds_text(timeout) +
                                "; start it first, and compare its name, domain, interface, peers and keys"};
   }
-  if (opened->description_.protocol != wire::kProtocolVersion) {
+  if (view.session().protocol != wire::kProtocolVersion) {
     return {Code::refused, "session '" + options.session + "' has protocol version " +
-                               std::to_string(opened->description_.protocol) + ", this client library " +
+                               std::to_string(view.session().protocol) + ", this client library " +
                                std::to_string(wire::kProtocolVersion) + "; use one version on both sides"};
   }
   session = std::move(opened);
@@ -89,119 +82,15 @@ Answer ClientSession::join(const JoinOptions& options, SimDuration timeout, std:
 }
 
 ClientSession::~ClientSession() {
-  if (transport_ == nullptr) return;
+  if (observer_ == nullptr) return;
   for (const Channel& channel : channels_) {
-    if (channel.lease == Lease::held && !is_over_) {
+    if (channel.lease == Lease::held && !is_over()) {
       static_cast<void>(send(channel.name, wire::ControllerAction::release, 0, channel.answered));
     }
   }
 }
 
 // ---- receiving ------------------------------------------------------------------------------------------------
-
-// Time in which this process itself stood still does not count as waiting.
-template <typename Done>
-bool ClientSession::wait_for(Done done, SimDuration timeout) {
-  std::int64_t seen_ns = monotonic_ns();  // when it was awake last, or is to be
-  std::int64_t deadline_ns = seen_ns + timeout.ns;
-  while (true) {
-    drain();
-    if (done()) return true;
-    const std::int64_t now_ns = monotonic_ns();
-    if (now_ns - seen_ns > kStandstillNs) deadline_ns += now_ns - seen_ns;
-    if (now_ns >= deadline_ns) {
-      drain();
-      return done();
-    }
-    seen_ns = std::min(deadline_ns, now_ns + kLongestSleepNs);
-    transport_->wait_until(seen_ns);
-  }
-}
-
-void ClientSession::drain() {
-  transport::Received message;
-  while (transport_->take(message)) take(message.topic, message.bytes);
-}
-
-void ClientSession::take(Topic topic, std::span<const std::byte> bytes) {
-  if (!has_session_ && topic != Topic::session) {
-    if (before_session_.size() < kBeforeSession) before_session_.push_back({topic, {bytes.begin(), bytes.end()}});
-    return;
-  }
-  switch (topic) {
-    case Topic::session:
-      return take_session(bytes);
-    case Topic::node_status:
-      return take_status(bytes);
-    case Topic::variable_directory:
-      return take_directory(bytes);
-    case Topic::controller_lease:
-      return take_lease(bytes);
-    case Topic::variables:
-      return take_block(bytes);
-    default:
-      return;
-  }
-}
-
-void ClientSession::take_session(std::span<const std::byte> bytes) {
-  wire::SessionDescription description;
-  if (!transport::decode(bytes, description) || description.name != options_.session) return;
-  const bool is_this_one = has_session_ && description.header.session == description_.header.session;
-  if (is_this_one && description.header.phase == Phase::ended) is_over_ = true;
-  if (is_this_one) description_.given_up = description.given_up;
-  if (has_session_ || description.header.phase != Phase::running) return;
-  description.scene_text.clear();
-  description_ = std::move(description);
-  has_session_ = true;
-  for (const PendingMessage& message : std::exchange(before_session_, {})) take(message.topic, message.bytes);
-}
-
-// io reports the end and its cause. If io itself is lost, the other nodes' status counts. Where lost nodes are
-// replaced, a node that ends for another reason than the loss of a node is replaced too, or io reports the end.
-void ClientSession::take_status(std::span<const std::byte> bytes) {
-  wire::NodeStatus status;
-  if (!transport::decode(bytes, status) || !is_ours(status.header)) return;
-  if (status.state < wire::NodeState::ended || status.header.role == Role::recorder) return;
-  const bool is_of_io = status.header.role == Role::io;
-  const bool has_lost_node = status.exit_code == static_cast<std::int32_t>(ExitCode::node_lost);
-  if (!is_of_io && description_.rejoin_ns > 0 && !has_lost_node) return;
-  is_over_ = true;
-  if (end_reason_.empty()) end_reason_ = status.reason;
-}
-
-bool ClientSession::is_ours(const wire::Header& header) const noexcept {
-  return has_session_ && header.session == description_.header.session && !transport::is_given_up(description_, header);
-}
-
-const ClientSession::Named* ClientSession::named(const std::string& name) const noexcept {
-  const auto found =
-      std::find_if(directory_.begin(), directory_.end(), [&](const Named& entry) { return entry.name == name; });
-  return found == directory_.end() ? nullptr : &*found;
-}
-
-void ClientSession::take_directory(std::span<const std::byte> bytes) {
-  wire::VariableDirectory message;
-  if (!transport::decode(bytes, message) || !is_ours(message.header)) return;
-  const auto role = static_cast<std::size_t>(message.header.role);
-  if (role >= unnamed_.size()) return;
-  if (!unnamed_[role]) unnamed_[role] = message.total;
-  // repeated after a reset
-  if (message.entries.empty() || named(message.entries.front().name) != nullptr) return;
-  *unnamed_[role] -= std::min(*unnamed_[role], static_cast<std::uint32_t>(message.entries.size()));
-  for (std::size_t i = 0; i < message.entries.size(); ++i) {
-    directory_.push_back({message.entries[i].name, message.entries[i].unit, message.header.role,
-                          message.first + static_cast<std::uint32_t>(i)});
-  }
-}
-
-// Each node's names arrive independently, however long after another's.
-bool ClientSession::has_whole_directory() const noexcept {
-  return std::all_of(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles), [this](Role role) {
-    const bool has_variables = role != Role::recorder && (description_.required_roles & wire::bit(role)) != 0;
-    return !has_variables || unnamed_[static_cast<std::size_t>(role)] == 0u;
-  });
-}
 
 // after a reset: steps begin at 0 again, and earlier results are discarded
 void ClientSession::begin_epoch(std::uint32_t epoch) {
@@ -221,9 +110,7 @@ void ClientSession::begin_epoch(std::uint32_t epoch) {
   std::fill(values_.begin(), values_.end(), std::numeric_limits<double>::quiet_NaN());
 }
 
-void ClientSession::take_lease(std::span<const std::byte> bytes) {
-  wire::ControllerLease message;
-  if (!transport::decode(bytes, message) || !is_ours(message.header)) return;
+void ClientSession::take_lease(const wire::ControllerLease& message) {
   if (message.controller != options_.controller) return;
   const auto channel =
       std::find_if(channels_.begin(), channels_.end(), [&](const Channel& c) { return c.name == message.channel; });
@@ -246,32 +133,25 @@ void ClientSession::take_lease(std::span<const std::byte> bytes) {
   if (has_it && !message.reason.empty()) notices_.push_back(message.reason);
 }
 
-void ClientSession::take_block(std::span<const std::byte> bytes) {
-  wire::VariableBlock block;
-  if (!transport::decode(bytes, block) || !is_ours(block.header)) return;
-  if (block.header.phase != Phase::running || block.header.epoch < epoch_) return;
+void ClientSession::take_block(const wire::VariableBlock& block, std::span<const std::byte>, double) {
+  if (block.header.epoch < epoch_) return;
   if (block.header.epoch > epoch_) begin_epoch(block.header.epoch);
   if (new_blocks_.size() == kNewBlocks) new_blocks_.pop_front();
-  new_blocks_.push_back(std::move(block));
+  new_blocks_.push_back(block);
 }
 
 // ---- variables ------------------------------------------------------------------------------------------------
 
 Answer ClientSession::find(const std::string& variable, SimDuration timeout, int& handle) {
-  const auto wanted =
-      std::find_if(wanted_.begin(), wanted_.end(), [&](const Named& entry) { return entry.name == variable; });
-  if (wanted != wanted_.end()) {
-    handle = static_cast<int>(wanted - wanted_.begin());
-    return {};
-  }
-  static_cast<void>(wait_for([&] { return named(variable) != nullptr || is_over_ || has_whole_directory(); }, timeout));
-  const Named* found = named(variable);
-  if (found == nullptr) {
-    if (is_over_) return ended();
-    const std::string others = std::to_string(directory_.size());
-    if (!has_whole_directory()) {
+  observer_->wait_for(
+      [&] { return view().find_place(variable) != nullptr || is_over() || view().has_whole_directory(); }, timeout);
+  const observer::VariablePlace* place = view().find_place(variable);
+  if (place == nullptr) {
+    if (is_over()) return ended();
+    const std::string others = std::to_string(view().places().size());
+    if (!view().has_whole_directory()) {
       return {Code::timeout,
-              "session '" + options_.session + "' has not published all its variables within " + in_seconds(timeout) +
+              "session '" + options_.session + "' has not published all its variables within " + seconds_text(timeout) +
                   ": '" + variable + "' is not among " + others +
                   " so far; it is still starting, or not all of its nodes reach this process: wait longer, or "
                   "see `slewring sessions`"};
@@ -280,8 +160,10 @@ Answer ClientSession::find(const std::string& variable, SimDuration timeout, int
                                " others; `slewring variables SCENE` lists them, recording.variables of the scene "
                                "chooses among them"};
   }
-  handle = static_cast<int>(wanted_.size());
-  wanted_.push_back(*found);
+  const auto wanted = std::find(wanted_.begin(), wanted_.end(), *place);
+  handle = static_cast<int>(wanted - wanted_.begin());
+  if (wanted != wanted_.end()) return {};
+  wanted_.push_back(*place);
   values_.push_back(std::numeric_limits<double>::quiet_NaN());
   blocks_.clear();
   return {};
@@ -321,7 +203,7 @@ void ClientSession::place(const wire::VariableBlock& message) {
   block.has_own = block.has_own || message.header.role == Role::io;
   block.is_left_out = block.is_left_out || message.values.empty();
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
-    const Named& wanted = wanted_[i];
+    const observer::VariablePlace& wanted = wanted_[i];
     if (wanted.role != message.header.role || wanted.index < message.first) continue;
     const std::size_t at = wanted.index - message.first;
     if (at >= message.values.size()) continue;
@@ -387,24 +269,24 @@ Answer ClientSession::step(Which which, SimDuration timeout) {
   const auto is_done = [&] {
     if (lost() != channels_.end()) return true;
     has_come = has_come || choose(which);
-    return has_come || is_over_;
+    return has_come || is_over();
   };
-  const bool in_time = wait_for(is_done, timeout);
+  const bool in_time = observer_->wait_for(is_done, timeout);
   if (const auto channel = lost(); channel != channels_.end()) {
     channel->lease = Lease::none;
     return {Code::lost, channel->reason};
   }
   if (has_come) return {};
-  if (is_over_) return ended();
+  if (is_over()) return ended();
   if (in_time) return {};
-  return {Code::timeout, "no block of variables came within " + in_seconds(timeout) + " after step " +
+  return {Code::timeout, "no block of variables came within " + seconds_text(timeout) + " after step " +
                              std::to_string(step_) +
                              "; the session is paused, waits for a partner or is gone: see `slewring sessions`"};
 }
 
 Answer ClientSession::ended() const {
-  return {Code::ended,
-          "session '" + options_.session + "' has ended" + (end_reason_.empty() ? std::string() : ": " + end_reason_)};
+  return {Code::ended, "session '" + options_.session + "' has ended" +
+                           (view().end()->empty() ? std::string() : ": " + *view().end())};
 }
 
 // ---- channels -------------------------------------------------------------------------------------------------
@@ -419,8 +301,8 @@ Answer ClientSession::send(const std::string& channel, wire::ControllerAction ac
   input.value = value;
   input.sequence = ++sequence_;
   input.based_on_step = based_on;
-  if (!transport::encode(input, buffer_)) return {Code::bad_argument, "'" + channel + "' is no name of a channel"};
-  const Status status = transport_->publish(Topic::controller_input, buffer_);
+  const Status status = observer_->send(input);
+  if (status.code == ExitCode::bad_input) return {Code::bad_argument, "'" + channel + "' is no name of a channel"};
   return status.is_ok() ? Answer{} : Answer{Code::failed, status.text};
 }
 
@@ -438,25 +320,25 @@ Answer ClientSession::acquire(const std::string& name, double how, SimDuration t
   std::int64_t request_ns = 0;
   Answer sent;
   const auto is_decided = [&] {
-    if (channels_[index].lease != Lease::requested || is_over_) return true;
+    if (channels_[index].lease != Lease::requested || is_over()) return true;
     if (monotonic_ns() < request_ns) return false;
     request_ns = monotonic_ns() + kRequestIntervalNs;
     sent = send(name, wire::ControllerAction::acquire, how, step_);
     return sent.code != Code::ok;
   };
-  const bool in_time = wait_for(is_decided, timeout);
+  const bool in_time = observer_->wait_for(is_decided, timeout);
   if (sent.code != Code::ok) return sent;
   if (channels_[index].lease == Lease::held) {
     handle = static_cast<int>(index);
     return {};
   }
-  if (is_over_) return ended();
+  if (is_over()) return ended();
   channels_[index].lease = Lease::none;
   if (in_time) return {Code::refused, channels_[index].reason};
   // a channel that is granted after this is given back
   static_cast<void>(send(name, wire::ControllerAction::release, 0, kJoinStep));
   return {Code::timeout, "session '" + options_.session + "' did not answer for channel " + name + " within " +
-                             in_seconds(timeout) + "; nothing was moved"};
+                             seconds_text(timeout) + "; nothing was moved"};
 }
 
 Answer ClientSession::release(int channel) {

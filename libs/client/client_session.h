@@ -1,7 +1,7 @@
 // A controller's view of one session: the functions of slewring_client.h in C++, without handles that may be wrong.
 //
 // Blocks of variables are put together by step: a step is complete when every requested variable of it has arrived.
-// Messages of an older epoch or of another session are ignored. One thread at a time.
+// Blocks of an older epoch are ignored. One thread at a time.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "core/status.h"
 #include "core/time.h"
+#include "observer/observer.h"
 #include "transport/network.h"
 #include "transport/wire.h"
 
@@ -37,22 +37,16 @@ struct JoinOptions {
 
 enum class Which : std::uint8_t { next, newest };
 
-class ClientSession {
+class ClientSession final : private observer::Receiver {
  public:
   // Fills `session`, or reports the cause of the failure.
   static Answer join(const JoinOptions& options, SimDuration timeout, std::unique_ptr<ClientSession>& session);
-  ~ClientSession();
+  ~ClientSession() override;
   ClientSession(const ClientSession&) = delete;
   ClientSession& operator=(const ClientSession&) = delete;
 
-  struct Named {
-    std::string name;
-    std::string unit;
-    wire::Role role = wire::Role::io;
-    std::uint32_t index = 0;  // among the variables of the role
-  };
-  [[nodiscard]] const std::vector<Named>& directory() const noexcept { return directory_; }
-  void drain();
+  [[nodiscard]] const observer::SessionView& view() const noexcept { return observer_->view(); }
+  void drain() { observer_->drain(); }
 
   Answer find(const std::string& variable, SimDuration timeout, int& handle);
   [[nodiscard]] double value(int handle) const noexcept;
@@ -64,7 +58,7 @@ class ClientSession {
   bool take_notice(std::string& text);
 
   [[nodiscard]] StepIndex present_step() const noexcept { return step_; }
-  [[nodiscard]] SimDuration step_size() const noexcept { return {description_.step_ns}; }
+  [[nodiscard]] SimDuration step_size() const noexcept { return {view().session().step_ns}; }
   [[nodiscard]] StepIndex steps_per_block() const noexcept { return steps_per_block_; }
   [[nodiscard]] std::uint64_t blocks_missed() const noexcept;
 
@@ -81,11 +75,6 @@ class ClientSession {
     std::uint64_t requested_from = 0;  // number of the first message that requested it
     StepIndex answered = kJoinStep;    // step of the last value that was written since it is held; -1: none
   };
-  // A message received before the session was known: its writer was discovered before io's.
-  struct PendingMessage {
-    wire::Topic topic;
-    std::vector<std::byte> bytes;
-  };
   // Values of one step as they arrive.
   struct Block {
     std::vector<double> values;
@@ -97,15 +86,8 @@ class ClientSession {
 
   explicit ClientSession(JoinOptions options);
 
-  template <typename Done>
-  bool wait_for(Done done, SimDuration timeout);
-  void take(wire::Topic topic, std::span<const std::byte> bytes);
-  void take_session(std::span<const std::byte> bytes);
-  void take_status(std::span<const std::byte> bytes);
-  void take_directory(std::span<const std::byte> bytes);
-  void take_lease(std::span<const std::byte> bytes);
-  void take_block(std::span<const std::byte> bytes);
-  [[nodiscard]] bool is_ours(const wire::Header& header) const noexcept;
+  void take_lease(const wire::ControllerLease& message) override;
+  void take_block(const wire::VariableBlock& block, std::span<const std::byte> bytes, double time) override;
   void begin_epoch(std::uint32_t epoch);
   void note_distance(const wire::Header& header) noexcept;
   void place(const wire::VariableBlock& block);
@@ -113,25 +95,17 @@ class ClientSession {
   [[nodiscard]] bool is_complete(const Block& block) const noexcept;
   [[nodiscard]] bool can_never_be_complete(std::map<StepIndex, Block>::const_iterator block) const noexcept;
   Answer send(const std::string& channel, wire::ControllerAction action, double value, StepIndex based_on);
-  [[nodiscard]] const Named* named(const std::string& name) const noexcept;
-  [[nodiscard]] bool has_whole_directory() const noexcept;
+  [[nodiscard]] bool is_over() const noexcept { return view().end().has_value(); }
   [[nodiscard]] Answer ended() const;
 
   JoinOptions options_;
-  std::unique_ptr<transport::Transport> transport_;
-  bool has_session_ = false;
-  std::vector<PendingMessage> before_session_;
-  wire::SessionDescription description_;
-  bool is_over_ = false;
-  std::string end_reason_;
+  std::unique_ptr<observer::Observer> observer_;
   std::uint32_t epoch_ = 0;
-  std::vector<Named> directory_;
-  std::array<std::optional<std::uint32_t>, wire::kRoles> unnamed_;  // variables that each role has yet to name
-  std::vector<Named> wanted_;                                       // by handle
-  std::deque<wire::VariableBlock> new_blocks_;                      // received before step() was called
-  std::map<StepIndex, Block> blocks_;                               // not handed out yet
-  bool only_newest_ = false;    // the next step is the newest: a channel was acquired in mid-run
-  std::vector<double> values_;  // values of step_, by handle
+  std::vector<observer::VariablePlace> wanted_;  // by handle
+  std::deque<wire::VariableBlock> new_blocks_;   // received before step() was called
+  std::map<StepIndex, Block> blocks_;            // not handed out yet
+  bool only_newest_ = false;                     // the next step is the newest: a channel was acquired in mid-run
+  std::vector<double> values_;                   // values of step_, by handle
   StepIndex step_ = kJoinStep;
   std::array<std::optional<StepIndex>, wire::kRoles> newest_of_;  // step of each node's newest block
   StepIndex steps_per_block_ = 0;                                 // the smallest distance of two; 0: not known yet
@@ -141,7 +115,6 @@ class ClientSession {
   std::deque<std::string> notices_;
   std::uint64_t
       sequence_;  // number of the last message that was sent; drawn at random, as another process may have this name
-  std::vector<std::byte> buffer_;
 };
 
 }  // namespace slew::client

@@ -17,6 +17,7 @@ namespace {
 using slew::client::Answer;
 using slew::client::ClientSession;
 using slew::client::Code;
+using slew::observer::VariableView;
 
 // answer of a failed join, when there is no session that could keep it
 Answer& join_answer() {
@@ -43,6 +44,14 @@ std::vector<std::string> split(const std::string& list) {
 
 std::string text_of(const char* text) {
   return text != nullptr ? text : "";
+}
+
+// Null: the session has not named so many variables.
+const VariableView* variable_of(const slewring_session* session, int number) {
+  if (session == nullptr || number < 0) return nullptr;
+  const slew::observer::SessionView& view = session->client->view();
+  const auto index = static_cast<std::size_t>(number);
+  return index < view.places().size() ? &view.variable(view.places()[index]) : nullptr;
 }
 
 // Runs an action that may fail: no exception crosses the border to C.
@@ -111,23 +120,19 @@ int slewring_steps_per_block(const slewring_session* session) {
 int slewring_variable_count(slewring_session* session) {
   return guarded(session, [](ClientSession& client, int& count) {
     client.drain();
-    count = static_cast<int>(client.directory().size());
+    count = static_cast<int>(client.view().places().size());
     return Answer{};
   });
 }
 
 const char* slewring_variable_name(const slewring_session* session, int number) {
-  if (session == nullptr || number < 0) return nullptr;
-  const auto& directory = session->client->directory();
-  const auto index = static_cast<std::size_t>(number);
-  return index < directory.size() ? directory[index].name.c_str() : nullptr;
+  const VariableView* variable = variable_of(session, number);
+  return variable != nullptr ? variable->name.c_str() : nullptr;
 }
 
 const char* slewring_variable_unit(const slewring_session* session, int number) {
-  if (session == nullptr || number < 0) return nullptr;
-  const auto& directory = session->client->directory();
-  const auto index = static_cast<std::size_t>(number);
-  return index < directory.size() ? directory[index].unit.c_str() : nullptr;
+  const VariableView* variable = variable_of(session, number);
+  return variable != nullptr ? variable->unit.c_str() : nullptr;
 }
 
 int slewring_find(slewring_session* session, const char* variable, double timeout_s) {

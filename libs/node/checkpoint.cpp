@@ -34,51 +34,52 @@ std::uint64_t check_of(std::span<const std::byte> bytes) {
   return hash.digest();
 }
 
-[[nodiscard]] bool get_said(std::span<const std::byte>& bytes, wire::SampleState& said) {
+[[nodiscard]] bool get_published(std::span<const std::byte>& bytes, wire::SampleState& published) {
   const std::span<const std::byte> all = bytes;
   std::uint32_t layout = 0;
   std::uint64_t check = 0;
-  const bool is_there = get(bytes, layout) && layout == kLayout && get(bytes, said.level) && get(bytes, said.quality) &&
-                        get(bytes, said.used_step) && get(bytes, said.lost) && get(bytes, said.flags) &&
-                        get(bytes, said.offender) && get(bytes, said.substeps);
+  const bool is_there = get(bytes, layout) && layout == kLayout && get(bytes, published.level) &&
+                        get(bytes, published.quality) && get(bytes, published.used_step) &&
+                        get(bytes, published.lost) && get(bytes, published.flags) && get(bytes, published.offender) &&
+                        get(bytes, published.substeps);
   const std::size_t size = all.size() - bytes.size();
-  return is_there && get(bytes, check) && check == check_of(all.first(size)) && said.level <= coupling::Level::tlm &&
-         said.quality <= coupling::Quality::invalid;
+  return is_there && get(bytes, check) && check == check_of(all.first(size)) &&
+         published.level <= coupling::Level::tlm && published.quality <= coupling::Quality::invalid;
 }
 
 }  // namespace
 
-void save_node(const coupling::Subsystem& subsystem, const wire::SampleState& said, StepIndex step,
+void save_node(const coupling::Subsystem& subsystem, const wire::SampleState& published, StepIndex step,
                Checkpoint& checkpoint) {
   checkpoint.step = step;
-  checkpoint.state_hash = said.state_hash;
+  checkpoint.state_hash = published.state_hash;
   checkpoint.bytes.clear();
   put(checkpoint.bytes, kLayout);
-  put(checkpoint.bytes, said.level);
-  put(checkpoint.bytes, said.quality);
-  put(checkpoint.bytes, said.used_step);
-  put(checkpoint.bytes, said.lost);
-  put(checkpoint.bytes, said.flags);
-  put(checkpoint.bytes, said.offender);
-  put(checkpoint.bytes, said.substeps);
+  put(checkpoint.bytes, published.level);
+  put(checkpoint.bytes, published.quality);
+  put(checkpoint.bytes, published.used_step);
+  put(checkpoint.bytes, published.lost);
+  put(checkpoint.bytes, published.flags);
+  put(checkpoint.bytes, published.offender);
+  put(checkpoint.bytes, published.substeps);
   put(checkpoint.bytes, check_of(checkpoint.bytes));
   subsystem.save(checkpoint.bytes);
 }
 
-Status load_node(const Checkpoint& checkpoint, coupling::Subsystem& subsystem, wire::SampleState& said,
+Status load_node(const Checkpoint& checkpoint, coupling::Subsystem& subsystem, wire::SampleState& published,
                  coupling::OwnSample& sample) {
   std::span<const std::byte> bytes = checkpoint.bytes;
-  const std::string of_step = "the state of step " + std::to_string(checkpoint.step);
-  if (!get_said(bytes, said)) {
+  const std::string state_text = "the state of step " + std::to_string(checkpoint.step);
+  if (!get_published(bytes, published)) {
     subsystem.reset();
-    return Status::error(ExitCode::bad_input, of_step + " is damaged or of another version of this program; " +
+    return Status::error(ExitCode::bad_input, state_text + " is damaged or from another version of this program; " +
                                                   "install one build on all machines");
   }
   if (const Status loaded = subsystem.load(bytes, sample); !loaded.is_ok()) return loaded;
-  said.state_hash = subsystem.state_hash();
-  if (said.state_hash == checkpoint.state_hash) return Status::ok();
+  published.state_hash = subsystem.state_hash();
+  if (published.state_hash == checkpoint.state_hash) return Status::ok();
   subsystem.reset();
-  return Status::error(ExitCode::bad_input, of_step +
+  return Status::error(ExitCode::bad_input, state_text +
                                                 " has another hash here than where it was saved; install one "
                                                 "build on all machines, on processors of one family");
 }
@@ -96,7 +97,7 @@ void fill(wire::StatePart& part, const Checkpoint& checkpoint, std::size_t first
   std::memcpy(part.bytes.data(), checkpoint.bytes.data() + first, count);
 }
 
-// At a place of the state that it says it is of, and as long as that place.
+// The part lies at a place of the state that it names, and has the length of that place.
 bool has_place(const wire::StatePart& part) noexcept {
   return part.header.step >= 0 && part.total <= kMaxStateBytes && part.first < part.total &&
          part.first % wire::kMaxStatePart == 0 &&

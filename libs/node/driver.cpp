@@ -29,14 +29,14 @@ void on_signal(int signal) {
   stop_requested.store(signal == SIGINT ? 130 : 143);
 }
 
-// the loop wakes at least this often, for the stop flag and the watch over the others
+// the loop wakes at least this often, for the stop flag and the watch over the other nodes
 constexpr std::int64_t kLongestWaitNs = 20'000'000;
-constexpr int kHealthsBetweenLooks = 10;  // of one second: who does not fit is named within two
+constexpr int kHealthsPerMisfitCheck = 10;  // one second: an endpoint that does not fit is named within two
 
 class HealthThread {
  public:
   explicit HealthThread(Node& node) : node_(node), report_(node), loop_(node.health()), thread_([this] { run(); }) {
-    // of a real-time process: below every loop, above everything else
+    // in a real-time process: below every loop, above everything else
     int policy = SCHED_OTHER;
     sched_param parameters{};
     if (pthread_getschedparam(thread_.native_handle(), &policy, &parameters) != 0 || policy != SCHED_FIFO) return;
@@ -50,7 +50,7 @@ class HealthThread {
     }
     condition_.notify_one();
     thread_.join();
-    report_.send();  // as it was in the end
+    report_.send();  // the final state
   }
 
  private:
@@ -60,14 +60,14 @@ class HealthThread {
     while (!condition_.wait_for(lock, std::chrono::nanoseconds(kHealthInterval.ns), [this] { return is_stopping_; })) {
       if (is_loop_standing()) continue;
       report_.send();
-      if (++sent % kHealthsBetweenLooks == 0) name_misfits();
+      if (++sent % kHealthsPerMisfitCheck == 0) name_misfits();
     }
   }
 
-  // To the others a node whose loop stands still is silent.
+  // A node whose loop stands still publishes no health: the other nodes find it silent.
   bool is_loop_standing() {
     const SimDuration before = loop_.stood_for();
-    const bool stands = loop_.look();
+    const bool stands = loop_.poll();
     if (stands == std::exchange(is_standing_, stands)) return stands;
     std::string text = stands ? "the loop of this node has stood still for " + seconds_text(loop_.stood_for())
                               : "the loop of this node goes on; it had stood still for " + seconds_text(before);
@@ -76,19 +76,19 @@ class HealthThread {
       text += "; it is silent from now on, and given up after " + node_.member().give_up_text() +
               "; look for a deadlock, a computation without an end, or a debugger";
     }
-    say_warning(text);
+    print_warning(text);
     return stands;
   }
 
-  void say_warning(const std::string& text) {
+  void print_warning(const std::string& text) {
     std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node_.member().role())).c_str(),
                  printable(text).c_str());
   }
 
-  // each once
+  // names each misfit once
   void name_misfits() {
     for (const std::string& misfit : node_.member().transport().misfits()) {
-      if (named_.insert(misfit).second) say_warning(misfit);
+      if (named_.insert(misfit).second) print_warning(misfit);
     }
   }
 
@@ -103,15 +103,15 @@ class HealthThread {
   std::thread thread_;
 };
 
-void tell_warnings(Node& node) {
+void print_warnings(Node& node) {
   for (const std::string& warning : node.member().take_warnings()) {
     std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node.member().role())).c_str(),
                  printable(warning).c_str());
   }
 }
 
-// Heap calls of the loop's thread since all nodes were READY and this one has done its first step: memory of messages
-// is laid out with the first of each kind.
+// Heap calls of the loop's thread, counted once all nodes were READY and this one has done its first step: the first
+// message of each kind allocates the memory for those that follow.
 class LoopHeap {
  public:
   LoopHeap(Node& node, HeapMeter meter) : node_(node), meter_(meter) {}
@@ -160,7 +160,7 @@ ExitCode run_alone(Node& node, HeapMeter meter) {
     node.health().turn();
     const bool was_busy = node.poll(now);
     heap.after_poll();
-    tell_warnings(node);
+    print_warnings(node);
     if (was_busy) continue;
     now = monotonic_ns();
     node.member().transport().wait_until(std::min(node.next_deadline(now), now + kLongestWaitNs));
@@ -190,7 +190,7 @@ ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>&
           if (!nodes[i]->is_finished()) reports[i].send();
         }
       }
-      for (Node* node : nodes) tell_warnings(*node);
+      for (Node* node : nodes) print_warnings(*node);
       if (each_round) each_round();
     }
     bool any = false;
@@ -205,7 +205,7 @@ ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>&
     sleep_until_monotonic(deadline);
   }
   for (HealthReport& report : reports) report.send();
-  // the first serious code counts
+  // the first code that is not ok counts
   for (Node* node : nodes) {
     if (node->member().exit_code() != ExitCode::ok) return node->member().exit_code();
   }

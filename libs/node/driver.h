@@ -20,12 +20,13 @@ void install_signal_handlers();
 // Heap calls of the calling thread so far.
 struct HeapCalls {
   std::uint64_t all = 0;
-  std::uint64_t transport = 0;  // of them inside the transport's calls: the middleware's
+  std::uint64_t transport = 0;  // part of `all`, inside the transport's calls: those of the middleware
 };
 using HeapMeter = HeapCalls (*)() noexcept;
 
 // Runs until the node has finished; sends its health every 100 ms from a thread of its own, and once more at the end.
-// meter: counts the heap calls of this thread from the node's first step on into its timing; null: nobody counts.
+// meter: counts the heap calls of this thread from the node's first step on into its timing; null: they are not
+// counted.
 ExitCode run_alone(Node& node, HeapMeter meter = nullptr);
 
 // Runs all nodes in turn on this thread until every one has finished, and sends their health every 100 ms. each_round

@@ -1,5 +1,5 @@
-// Which samples a physics role uses, and how old they are: at the start of a session and in each step. Pure functions,
-// on which the nodes, the session in one process and the replay stand alike.
+// Which samples a physics role uses, and how old they are: at the start of a session and in each step. Pure functions
+// that the nodes, the session in one process and the replay share.
 //
 //   start   mechanics and flex publish INIT; hydraulics starts from the INIT of mechanics and publishes sample 0;
 //           mechanics starts from that and from the INIT of flex, flex from the sample 0 of mechanics
@@ -43,21 +43,21 @@ inline constexpr Reading kReadings[] = {
 // Each starts from samples of those before it.
 inline constexpr wire::Role kStartOrder[] = {wire::Role::hydraulics, wire::Role::mechanics, wire::Role::flex};
 
-// How often, of a session's settings.
+// How often samples are exchanged, from the session's settings.
 struct ExchangeRules {
   StepIndex port_every = 1;      // steps between two exchanges of mechanics and hydraulics
-  StepIndex flexible_every = 1;  // steps between two samples for and of flexible bodies, Scene::flexible_every()
+  StepIndex flexible_every = 1;  // steps between two samples to and from flexible bodies, Scene::flexible_every()
   coupling::ElasticExchange elastic = coupling::ElasticExchange::once;
 
   // Steps from one sample of the topic to the next one that its reader uses.
   [[nodiscard]] constexpr StepIndex every(wire::Topic sample) const noexcept {
     return is_of_ports(sample) ? port_every : flexible_every;
   }
-  // A role publishes the samples of its ports at every step, although they are not used at each.
+  // A role publishes the samples of its ports at every step, although its partner does not use each.
   [[nodiscard]] constexpr bool is_published_at(wire::Topic sample, StepIndex step) const noexcept {
     return is_of_ports(sample) || step % every(sample) == 0;
   }
-  // Elastic forces that are stated once are used at the start alone.
+  // Elastic forces that are published once are used at the start only.
   [[nodiscard]] constexpr bool is_used_in_steps(wire::Topic sample) const noexcept {
     return sample != wire::Topic::elastic || elastic != coupling::ElasticExchange::once;
   }

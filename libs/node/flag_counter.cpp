@@ -10,7 +10,7 @@ bool is_up(StepFlag flag, const wire::SampleState& state) {
   return (state.flags & static_cast<std::uint32_t>(flag)) != 0;
 }
 
-// Of hydraulics' samples: the offender is a volume where none of the flags that name something else is up.
+// The offender of a sample of hydraulics is a volume unless a flag that names something else is up.
 bool names_volume(StepFlag flag, const wire::SampleState& state) {
   for (const StepFlag other : {StepFlag::not_converged, StepFlag::step_budget, StepFlag::non_finite}) {
     if (is_up(other, state)) return false;
@@ -24,7 +24,7 @@ void FlagCounter::take(const wire::Header& header, const wire::SampleState& stat
   if (header.phase != wire::Phase::running) return;
   Counts& counts = of_[header.role];
   const bool is_same_epoch = counts.has_sample && header.epoch == counts.epoch;
-  // a sample that is sent again, or one of an epoch that is over
+  // a resent sample, or one of a former epoch
   if (counts.has_sample && (header.epoch < counts.epoch || (is_same_epoch && header.step <= counts.step))) {
     if (!is_same_epoch || header.step < counts.step) is_in_order_ = false;
     return;

@@ -1,5 +1,5 @@
-// Counts what the steps of the two physics nodes report (core/step_report.h), sample by sample: of a live session, of
-// one that is being recorded, or of a recording.
+// Counts the flags that the steps of the two physics nodes report (core/step_report.h), sample by sample: in a live
+// session, while it is recorded, or from a recording.
 #pragma once
 
 #include <array>
@@ -30,26 +30,26 @@ class FlagCounter {
   };
   struct Counts {
     std::array<Seen, kFlags.size()> seen;  // in the order of kFlags
-    std::uint64_t steps = 0, late = 0;     // late: steps that continued a copy of the partner
+    std::uint64_t steps = 0, late = 0;     // late: steps that continued from a model of the partner
     StepIndex longest = 0;                 // late steps in a row
     std::uint32_t lost = 0;                // samples that no step used
     std::uint64_t missed = 0;              // samples that did not arrive here, between two that did
-    StepIndex begin = 0, step = 0;         // of the first and of the newest sample
+    StepIndex begin = 0, step = 0;         // steps of the first and of the newest sample
     std::uint32_t epoch = 0;
     bool has_sample = false;
   };
 
-  // Repeated samples of a role are ignored, and those that come behind a later one.
+  // Ignores repeated samples of a role, and samples that arrive after a later one.
   void take(const wire::Header& header, const wire::SampleState& state);
 
   [[nodiscard]] bool has_samples() const noexcept { return !of_.empty(); }
-  // No sample came behind a later one of its role.
+  // No sample arrived after a later one of its role.
   [[nodiscard]] bool is_in_order() const noexcept { return is_in_order_; }
-  // Samples between the session's first step and the last sample that did not arrive here.
+  // Samples from the session's first step to the last sample received here, less those received.
   [[nodiscard]] std::uint64_t missed(StepIndex begin) const;
   [[nodiscard]] const std::map<wire::Role, Counts>& by_role() const noexcept { return of_; }
 
-  // All counts as one line, and back; none: it is no such line.
+  // All counts as one line, and back; none: the text is no such line.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] static std::optional<FlagCounter> of_text(const std::string& text);
 

@@ -29,10 +29,10 @@ class FollowerLoop final : public StepLoop {
 
   SessionMember& member_;
   const SampleExchange& samples_;
-  wire::Tick last_tick_;          // keeps its memory
-  std::uint32_t tick_flags_ = 0;  // of the last tick that could be decoded
+  wire::Tick last_tick_;          // a member so that its memory is kept
+  std::uint32_t tick_flags_ = 0;  // flags of the last tick that could be decoded
   TickEnd end_ = TickEnd::none;
-  StepIndex last_step_ = 0;  // of the session, once end_ is known
+  StepIndex last_step_ = 0;  // last step of the session, once end_ is known
 };
 
 }  // namespace slew::node

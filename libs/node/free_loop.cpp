@@ -18,7 +18,7 @@ bool FreeLoop::receive_tick(std::span<const std::byte> bytes, const wire::Header
   return false;
 }
 
-// Commands of a tick are taken once: a tick that was requested may come twice.
+// Commands of a tick are taken once: a tick that was requested may arrive twice.
 void FreeLoop::receive_late(std::span<const std::byte> bytes) {
   wire::Tick tick;
   if (!transport::decode(bytes, tick)) {
@@ -57,7 +57,7 @@ bool FreeLoop::is_time_over(StepIndex n, std::int64_t now_ns) const noexcept {
   return !is_far_ahead && !is_withheld(member_, n) && now_ns >= time_limit_ns(n);
 }
 
-// age: of the oldest sample that the step would use [steps]
+// age: age of the oldest sample that the step would use [steps]
 bool FreeLoop::waits_for_sample(StepIndex n, StepIndex age, std::int64_t now_ns) noexcept {
   // a node behind the ticks waits for no sample: its partner is ahead
   if (age > 0 && newest_tick_ <= n) {

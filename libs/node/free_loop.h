@@ -1,14 +1,13 @@
-// Free-running: step n is done when tick n has come, or when the time at which it was due and the wait budget have
-// passed; with the partners' samples of step n, or, after the budget again, with the newest ones.
+// Free-running: step n is done when tick n has arrived, or when the time at which it was due and the wait budget have
+// passed. It uses the partners' samples of step n or, after the budget has passed once more, the newest ones.
 //
-// Commands of a tick that comes after its step are applied in the next step. The node is at most the session's window
-// ahead of the newest tick.
+// Commands of a late tick are applied in the next step. The node is at most the session's window ahead of the newest
+// tick.
 #pragma once
 
 #include <vector>
 
 #include "node/step_loop.h"
-#include "node/tick_ring.h"
 
 namespace slew::node {
 
@@ -21,7 +20,7 @@ class FreeLoop final : public StepLoop {
                     std::int64_t now_ns) override;
   Next next(StepIndex n, std::int64_t now_ns, StepInput& input) override;
   [[nodiscard]] bool lacks_tick(StepIndex n) const noexcept override { return ticks_.find(n) == nullptr; }
-  // Late ticks alone: a late sample is of no use, a late command is.
+  // Late ticks only: a late sample is useless, a late command is not.
   void collect_missing(StepIndex n, MissingMessages& missing) const noexcept override;
   [[nodiscard]] std::optional<Awaited> awaited(StepIndex) const noexcept override { return std::nullopt; }
   [[nodiscard]] std::int64_t next_poll_ns(StepIndex n, std::int64_t now_ns,
@@ -38,7 +37,7 @@ class FreeLoop final : public StepLoop {
   [[nodiscard]] bool is_time_over(StepIndex n, std::int64_t now_ns) const noexcept;
   [[nodiscard]] bool waits_for_sample(StepIndex n, StepIndex age, std::int64_t now_ns) noexcept;
   void use_tick(StepIndex n, const wire::Tick* tick, StepInput& input);
-  // When tick n is due, by the newest one, and the budget is over.
+  // Time at which tick n is due, counted from the newest one, plus the budget.
   [[nodiscard]] std::int64_t time_limit_ns(StepIndex n) const noexcept;
 
   static constexpr StepIndex kNoStep = -1;
@@ -48,14 +47,14 @@ class FreeLoop final : public StepLoop {
   SimDuration wait_budget_;
   TickRing ticks_;
   StepIndex newest_tick_ = kNoStep;             // highest step of a tick that was received
-  std::int64_t newest_tick_ns_ = 0;             // when it was received
-  std::vector<StepIndex> missed_ticks_;         // of steps that were done without their tick, ascending
-  std::vector<wire::Command> late_commands_;    // for the next step
+  std::int64_t newest_tick_ns_ = 0;             // time at which it was received
+  std::vector<StepIndex> missed_ticks_;         // steps that were done without their tick, ascending
+  std::vector<wire::Command> late_commands_;    // commands for the next step
   std::vector<wire::Command> handed_commands_;  // late commands of the step that is being done
-  std::vector<double> controls_;                // of the newest tick that was used
-  std::uint32_t tick_flags_ = 0;                // of the same tick
-  std::int64_t sample_due_ns_ = 0;              // when the budget of the waiting step is over; 0: no step waits
-  StepIndex used_step_ = kJoinStep;             // of the newest partner sample that a step used
+  std::vector<double> controls_;                // controls of the newest tick that was used
+  std::uint32_t tick_flags_ = 0;                // flags of the same tick
+  std::int64_t sample_due_ns_ = 0;              // end of the waiting step's budget; 0: no step waits
+  StepIndex used_step_ = kJoinStep;             // step of the newest partner sample that a step used
   std::uint32_t lost_ = 0;                      // partner samples that no step used
   TickEnd end_ = TickEnd::none;
 };

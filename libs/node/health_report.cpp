@@ -12,14 +12,14 @@ bool LoopWatch::is_busy() const noexcept {
 
 std::int64_t LoopWatch::longest_ns() const noexcept {
   const auto steps = std::max<std::int64_t>(1, static_cast<std::int64_t>(loop_.steps_done.load()));
-  return std::max(kLoopStands.ns, kStepsOfALoop * (loop_.step_time_sum_ns.load() / steps));
+  return std::max(kLoopStalled.ns, kStepsOfALoop * (loop_.step_time_sum_ns.load() / steps));
 }
 
-bool LoopWatch::look() noexcept {
+bool LoopWatch::poll() noexcept {
   const std::uint64_t signs = loop_.turns.load(std::memory_order_relaxed) + loop_.steps_done.load();
   const bool is_alive = signs != signs_ || is_busy();
   signs_ = signs;
-  looks_ = is_alive ? 0 : looks_ + 1;
+  polls_ = is_alive ? 0 : polls_ + 1;
   return stood_for().ns >= longest_ns();
 }
 
@@ -70,7 +70,7 @@ void HealthReport::add_timing(wire::Health& message) const {
   message.transitions = timing.transitions.load();
   const SessionBooks books = timing.books.read();
   if (books.due == 0) return;
-  message.header.step = books.run;  // of the same moment
+  message.header.step = books.run;  // read with the books, at one moment
   message.steps_due = books.due;
   message.steps_skipped = books.skipped;
   message.lag_ns = books.lag_ns;

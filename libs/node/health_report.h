@@ -1,4 +1,4 @@
-// The health message of a node, made from what its loop keeps in atomics.
+// The health message of a node, made from the atomics that its loop updates.
 #pragma once
 
 #include <cstddef>
@@ -10,23 +10,23 @@
 
 namespace slew::node {
 
-// A loop that has not come round for so long while it should stands still: a deadlock, an endless computation, a thread
-// that a debugger holds. Nothing that it does from READY on takes as long, but a step of a large model and a disk.
-inline constexpr SimDuration kLoopStands = milliseconds(1000);
-inline constexpr int kStepsOfALoop = 20;  // it stands after so many of the steps that it has done, where that is longer
+// A loop without a turn for this long stands still: a deadlock, an endless computation, a thread held by a debugger.
+// From READY on only a step of a large model and a disk take as long.
+inline constexpr SimDuration kLoopStalled = milliseconds(1000);
+inline constexpr int kStepsOfALoop = 20;  // the limit is this many mean steps where that is longer
 
-// Looks after the loop of a node from another thread: whether it has given a sign of life (a turn, a message taken, a
-// step done). It counts looks and no clock: who looks stands still with a whole process that does.
+// Watches the loop of a node from another thread for signs of life: a turn, a message taken, a step done. Counts polls
+// instead of time: if the whole process is suspended, the watcher is suspended too.
 //
-// Not covered: what comes before READY and behind a reset until READY, which has its own deadline (JOIN), the time
-// after the end, and a recorder that waits for its disk, for as long as it does.
+// Not covered: the time before READY, also after a reset (JOIN has its own deadline), the time after the end, and a
+// recorder while it waits for its disk.
 class LoopWatch {
  public:
   explicit LoopWatch(const HealthState& loop) : loop_(loop) {}
   // To be called every kHealthInterval. True when the loop stands still.
-  [[nodiscard]] bool look() noexcept;
-  // Since its last sign of life, in looks.
-  [[nodiscard]] SimDuration stood_for() const noexcept { return {looks_ * kHealthInterval.ns}; }
+  [[nodiscard]] bool poll() noexcept;
+  // Time since the last sign of life, in polls.
+  [[nodiscard]] SimDuration stood_for() const noexcept { return {polls_ * kHealthInterval.ns}; }
 
  private:
   [[nodiscard]] bool is_busy() const noexcept;
@@ -34,14 +34,15 @@ class LoopWatch {
 
   const HealthState& loop_;
   std::uint64_t signs_ = 0;
-  std::int64_t looks_ = 0;
+  std::int64_t polls_ = 0;
 };
 
-// To be sent every kHealthInterval, by one thread, which need not be the node's: silence means death to the others.
+// To be sent every kHealthInterval by one thread, which may differ from the node's: the other nodes give a silent node
+// up.
 class HealthReport {
  public:
   explicit HealthReport(Node& node) : node_(node) {}
-  // Publishes; does nothing before the node has a session. The mean step time is that since the last report.
+  // Publishes; does nothing before the node has a session. The mean step time is taken since the last report.
   void send();
 
  private:

@@ -1,4 +1,4 @@
-// Who this process is, for messages, logs and the detection of a process that is gone.
+// The identity of this process, for messages, logs and the detection of a process that has exited.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct Identity {
 
 // 32 hexadecimal digits.
 [[nodiscard]] std::string to_text(const wire::SessionId& id);
-// The id of such a text; nothing when it is none.
+// The id of such a text; none when it has another form.
 [[nodiscard]] std::optional<wire::SessionId> session_id_of(std::string_view text);
 [[nodiscard]] std::string_view to_text(wire::Role role) noexcept;
 [[nodiscard]] std::string_view to_text(wire::NodeState state) noexcept;

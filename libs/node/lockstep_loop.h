@@ -2,7 +2,6 @@
 #pragma once
 
 #include "node/step_loop.h"
-#include "node/tick_ring.h"
 
 namespace slew::node {
 
@@ -28,8 +27,8 @@ class LockstepLoop final : public StepLoop {
   const SampleExchange& samples_;
   StepTiming& timing_;
   TickRing ticks_;
-  std::uint32_t tick_flags_ = 0;  // of the tick that was used last
-  TickEnd end_ = TickEnd::none;   // as soon as the END tick is the next one
+  std::uint32_t tick_flags_ = 0;  // flags of the last used tick
+  TickEnd end_ = TickEnd::none;   // set once the END tick is the next one
 };
 
 }  // namespace slew::node

@@ -1,4 +1,4 @@
-// A transport that counts what its calls take from the heap, so that a node's own use can be told from the
+// A transport that counts the heap calls inside its functions, so that a node's own use can be separated from the
 // middleware's.
 #pragma once
 
@@ -29,8 +29,8 @@ class MeteredTransport final : public transport::Transport {
   std::unique_ptr<transport::Transport> transport_;
 };
 
-// Heap calls of the calling thread, those inside of a MeteredTransport apart. Null under a sanitizer, which counts
-// itself.
+// Heap calls of the calling thread, those inside a MeteredTransport counted apart. Null under a sanitizer, which
+// replaces the heap.
 [[nodiscard]] node::HeapMeter heap_meter() noexcept;
 
 }  // namespace slew::node

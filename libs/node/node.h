@@ -1,5 +1,5 @@
-// A node as a driver sees it: something to poll. The same node code runs in a process of its own, where the driver
-// waits on the transport, and beside others on one thread, where the driver polls them in turn.
+// The interface between a node and the driver that polls it. The same node code runs in a process of its own, where the
+// driver waits on the transport, and beside others on one thread, where the driver polls them in turn.
 #pragma once
 
 #include <atomic>
@@ -13,11 +13,11 @@
 
 namespace slew::node {
 
-// What the health message says, kept in atomics: a thread of its own sends it, so that a node that computes or waits
-// long is still seen to be alive, for as long as its loop comes round (LoopWatch in health_report.h).
+// Contents of the health message, in atomics: a separate thread sends it, so that a node that computes or waits for
+// long still reports, as long as its loop turns (LoopWatch in health_report.h).
 struct HealthState {
-  std::atomic<std::uint64_t> turns{0};      // of the loop, and messages that it took: signs of life
-  std::atomic<bool> waits_for_disk{false};  // the loop may stand for as long as a disk takes
+  std::atomic<std::uint64_t> turns{0};      // turns of the loop and messages taken: signs of life
+  std::atomic<bool> waits_for_disk{false};  // the loop may stand still for as long as a disk takes
   std::atomic<std::uint8_t> state{0};
   std::atomic<bool> is_waiting{false};
   std::atomic<std::uint8_t> waiting_for{0};
@@ -33,11 +33,11 @@ struct HealthState {
   std::atomic<bool> has_session{false};
   std::atomic<std::uint32_t> epoch{0};
 
-  // By the loop's thread alone. Real-time safe.
+  // To be called by the loop's thread only. Real-time safe.
   void turn() noexcept { turns.store(turns.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed); }
 };
 
-// While it lives the loop may wait for a disk.
+// The loop may wait for a disk while an object of this class exists.
 class DiskWait {
  public:
   explicit DiskWait(HealthState& health) noexcept
@@ -55,7 +55,7 @@ class Node {
  public:
   virtual ~Node() = default;
 
-  // Takes what has arrived and does what can be done now. True when anything was done.
+  // Takes the messages that have arrived and does what they allow. True when anything was done.
   virtual bool poll(std::int64_t now_ns) = 0;
 
   // Monotonic time at which poll() has something to do even if nothing arrives.
@@ -63,7 +63,7 @@ class Node {
 
   [[nodiscard]] virtual bool is_finished() const = 0;
 
-  // Orderly end from outside (signal): io ends the session, the others leave it.
+  // Orderly end on a signal: io ends the session, other nodes leave it.
   virtual void request_stop(ExitCode code) = 0;
 
   [[nodiscard]] virtual SessionMember& member() = 0;

@@ -37,7 +37,7 @@ bool check_processor(const std::string& program) noexcept {
   return false;
 }
 
-// files, memory and threads, of the process or of the machine
+// the process or the machine has no more files, memory or threads
 bool is_of_resources(const std::error_code& code) {
   return code == std::errc::too_many_files_open || code == std::errc::too_many_files_open_in_system ||
          code == std::errc::not_enough_memory || code == std::errc::resource_unavailable_try_again;
@@ -50,7 +50,7 @@ int guarded(const std::string& program, const std::function<ExitCode()>& body) n
   } catch (const Failure& failure) {
     return report(program, failure.what(), failure.code());
   } catch (const scene::LoadError& error) {
-    // one line a problem, each beginning with its place in the file
+    // one line per problem, each beginning with its place in the file
     std::fflush(stdout);
     std::fprintf(stderr, "%s\n", printable_lines(error.what()).c_str());
     return static_cast<int>(ExitCode::bad_input);
@@ -93,7 +93,7 @@ std::optional<ExitCode> run_node(node::Node& node) {
   const ExitCode code = node::run_alone(node, heap_meter());
   if (node.member().is_withdrawn()) return std::nullopt;
   const std::string& reason = node.member().reason();
-  // whoever sent this process the signal knows why it ended
+  // the end by a signal needs no message
   const bool was_asked_to_end = static_cast<int>(code) == node::stop_requested.load();
   if (code != ExitCode::ok && !was_asked_to_end && !reason.empty()) throw Failure(code, reason);
   return code;

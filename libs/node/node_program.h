@@ -12,21 +12,21 @@
 
 namespace slew::node {
 
-// Checks the processor, adds --version, parses, and runs the program's action: all that a main does. What the action
-// throws becomes one line on standard error and an exit code. Failure: its own code; a scene's LoadError: bad_input; no
-// memory, or a processor that this build is not for: resources; anything else: failed. A file at its size limit is a
-// failed write to the action and no signal (core/file_size_limit.h).
+// Checks the processor, adds --version, parses, and runs the program's action: all that a main does. An exception of
+// the action becomes one line on standard error and an exit code. Failure: its own code; a scene's LoadError:
+// bad_input; no memory, or a processor that this build is not for: resources; anything else: failed. A write to a file
+// at its size limit fails in the action instead of raising a signal (core/file_size_limit.h).
 [[nodiscard]] int run_program(options::Program& program, int argc, const char* const* argv) noexcept;
 
-// Processor and real-time scheduling as asked for; refused permission is a warning with the remedy on standard error, a
-// processor that is not there a Failure.
+// Sets processor and real-time scheduling of the options. Without the permission: a warning with the remedy on standard
+// error; a processor that does not exist: a Failure.
 void apply_real_time(const NodeOptions& options, const std::string& program);
 
-// Runs a node to its end; throws Failure with its reason if it failed. Nothing when its session was withdrawn: the
-// process has then no session yet.
+// Runs a node to its end; throws Failure with its reason if it failed. None when its session was withdrawn: the process
+// then has no session yet.
 [[nodiscard]] std::optional<ExitCode> run_node(node::Node& node);
 
-// Makes and runs nodes with `run` until one had a session that was not withdrawn.
+// Makes and runs nodes with `run` until the session of one was not withdrawn.
 [[nodiscard]] ExitCode run_until_in_session(const std::function<std::optional<ExitCode>()>& run);
 
 }  // namespace slew::node

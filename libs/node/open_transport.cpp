@@ -17,7 +17,7 @@ using wire::Topic;
 
 namespace {
 
-// The keys are those of the role, unless the options name others: a process that only reads is an observer.
+// The keys are those of the role unless the options name others. A process that only reads uses those of an observer.
 std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role role,
                                            const transport::Endpoint& endpoint) {
   transport::Network network{options.domain, options.interface, options.peers};

@@ -15,18 +15,18 @@ namespace slew::node {
 // Throws Failure.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_transport(wire::Role role, const SessionOptions& options);
 
-// An observer that does not look at the variables' values: for a run that shows none, since every reader costs the
-// writers time.
+// An observer that does not read the variables' values: for a run that shows none, since every reader costs the writers
+// time.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_observer_without_values(const SessionOptions& options);
 
-// An observer that reads the samples of mechanics and hydraulics too: for a run that counts what they report.
+// An observer that also reads the samples of mechanics and hydraulics: for a run that counts their flags.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_observer_with_samples(const SessionOptions& options);
 [[nodiscard]] std::unique_ptr<transport::Transport> open_observer_with_samples(transport::InProcessBus& bus);
 
-// An observer that writes nothing: for keys that let somebody look on and no more.
+// An observer that writes nothing: for keys that permit reading only.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_viewer(const SessionOptions& options);
 
-// Reads what all sessions of the domain say about themselves; writes nothing.
+// Reads descriptions, statuses and health of all sessions of the domain; writes nothing.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options);
 
 [[nodiscard]] std::unique_ptr<transport::Transport> open_transport(wire::Role role, transport::InProcessBus& bus);

@@ -20,7 +20,7 @@ std::vector<Topic> topics_of(Role role) {
   return topics;
 }
 
-// What a sample states before a step has used a sample of the partner.
+// State in a sample before a step has used a sample of the partner.
 wire::SampleState start_state() {
   wire::SampleState state;
   state.used_step = kJoinStep;
@@ -111,10 +111,10 @@ void PhysicsNode::wait_for_session(std::int64_t now_ns) {
 
 bool PhysicsNode::advance_join(std::int64_t now_ns) {
   if (deadline_ns_ == 0) deadline_ns_ = now_ns + join_.join_timeout.ns + kOwnerFirst.ns;
-  if (member_.is_heard_by_all()) {
+  if (member_.is_acknowledged_by_all()) {
     member_.set_state(NodeState::initialising);
     stage_ = member_.has_state() ? Stage::loading : Stage::initialising;
-    if (member_.has_state()) n_ = member_.session().header.step;  // so that what comes meanwhile is near
+    if (member_.has_state()) n_ = member_.session().header.step;  // messages that arrive meanwhile are within the rings
     resend_.restart(member_.has_state() ? now_ns - kResendAfter.ns : now_ns);
     return true;
   }
@@ -164,7 +164,7 @@ bool PhysicsNode::advance_init(std::int64_t now_ns) {
   return true;
 }
 
-// In the place of INIT: the own state at a step that the session has done, from io.
+// Instead of INIT: takes over the own state at a step that the session has done, from io.
 bool PhysicsNode::advance_loading(std::int64_t now_ns) {
   if (!states_.has_state()) {
     request_missing(now_ns);
@@ -180,7 +180,7 @@ bool PhysicsNode::advance_loading(std::int64_t now_ns) {
   publish_sample(Phase::running, n_);
   if (n_ % built_.variables_every == 0) publish_variables(n_);
   get_ready();
-  // what the other nodes have published since that step is missing now
+  // the messages that the other nodes have published since that step are missing now
   resend_.restart(now_ns - kResendAfter.ns);
   states_.save_if_due(member_, n_, published_);
   return true;
@@ -237,7 +237,7 @@ void PhysicsNode::restart(const wire::Header& init) {
   member_.set_state(NodeState::initialising);
   member_.mark_status_changed();
   stage_ = init.step >= 0 ? Stage::loading : Stage::initialising;
-  update_health();  // INIT may come in the same poll, and takes its time
+  update_health();  // INIT may follow in the same poll and take long
 }
 
 void PhysicsNode::leave(ExitCode code, const std::string& reason, std::int64_t now_ns) {
@@ -263,7 +263,7 @@ void PhysicsNode::do_step(const StepInput& input, std::int64_t now_ns) {
   if (added_work_.ns > 0) burn_added_work();
   step_timing_.computed();
   const std::int64_t spent_ns = monotonic_ns() - begin_ns;
-  // stated beside the hashed state, which has no clock
+  // a flag of the sample only: no clock enters the hashed state
   if (step_timing_.is_late()) report.raise(StepFlag::overrun);
 
   published_.used_step = input.used_step;

@@ -1,11 +1,11 @@
 // The node around one physics subsystem: its part in the session, JOIN, INIT, and its steps (architecture section 2).
 //
 // Step n: the subsystem applies the commands, advances to t_{n+1}, and the node publishes sample n+1 with the hash of
-// the state. A StepLoop decides when a step can be done and what it is done with: node/step_loop.h.
+// the state. A StepLoop decides when a step can be done and selects its inputs: node/step_loop.h.
 //
-// A session that is at a step already (SessionDescription.header.step, or that of the INIT tick) has a state of every
-// role at io. After JOIN a node requests its own and takes it over in the place of INIT; it requests the ticks and
-// samples since that step like any that are missing: node/state_transfer.h.
+// If a session is at a step already (SessionDescription.header.step, or that of the INIT tick), io has a state of every
+// role. After JOIN a node requests its own state and takes it over instead of INIT; it requests the ticks and samples
+// since that step like any missing ones: node/state_transfer.h.
 #pragma once
 
 #include <memory>
@@ -13,13 +13,13 @@
 #include <string>
 
 #include "coupling/subsystem.h"
-#include "node/built_subsystem.h"
 #include "node/node.h"
 #include "node/resend_clock.h"
 #include "node/sample_exchange.h"
 #include "node/stall_watch.h"
 #include "node/state_transfer.h"
 #include "node/step_loop.h"
+#include "node/subsystem_factory.h"
 #include "node/variable_publisher.h"
 #include "transport/roles.h"
 
@@ -30,7 +30,8 @@ class PhysicsNode final : public Node {
   PhysicsNode(wire::Role role, transport::Transport& transport, SubsystemFactory factory,
               const JoinOptions& join = JoinOptions{});
 
-  // CPU time that every step burns beside its own, to measure what the machine bears; before the session begins.
+  // CPU time that every step burns beside its own, to measure the reserve of the machine. Pre-condition: the session
+  // has not begun.
   void add_work(SimDuration work) noexcept { added_work_ = work; }
 
   bool poll(std::int64_t now_ns) override;
@@ -95,14 +96,14 @@ class PhysicsNode final : public Node {
   JoinOptions join_;
   BuiltSubsystem built_;
   Stage stage_ = Stage::waiting_for_session;
-  std::int64_t deadline_ns_ = 0;        // of the stages before INIT; 0: the stage has just begun
-  std::int64_t leave_deadline_ns_ = 0;  // 0: not known yet
-  std::int64_t io_ended_ns_ = 0;        // when a status of io first reported its end
+  std::int64_t deadline_ns_ = 0;        // deadline of the stages before INIT; 0: the stage has just begun
+  std::int64_t leave_deadline_ns_ = 0;  // 0: not set yet
+  std::int64_t io_ended_ns_ = 0;        // time at which a status of io first reported its end
   StepIndex n_ = 0;                     // next step to do
   bool first_sample_sent_ = false;
   SampleExchange samples_;
   coupling::OwnSample own_;
-  wire::SampleState published_;  // what the newest own sample states beside the physics
+  wire::SampleState published_;  // state in the newest own sample
   VariablePublisher variables_{built_};
   StateTransfer states_{built_};
   StepTiming step_timing_{timing()};

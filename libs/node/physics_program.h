@@ -11,12 +11,12 @@ namespace slew::node {
 
 struct PhysicsProgram {
   wire::Role role = wire::Role::mechanics;
-  std::string description;  // of --help
-  std::string example;      // of --help: the command's options
+  std::string description;  // text of --help
+  std::string example;      // options of the command in --help
   MakeSubsystem make;
 };
 
-// What main() does; gives the exit code.
+// The whole of main(); returns the exit code.
 [[nodiscard]] int run_physics_program(const PhysicsProgram& program, int argc, const char* const* argv) noexcept;
 
 }  // namespace slew::node

@@ -1,4 +1,4 @@
-// What a physics node does with each message that it receives.
+// PhysicsNode's part that receives messages.
 #include <string>
 
 #include "node/physics_node.h"
@@ -37,7 +37,7 @@ void PhysicsNode::receive(const transport::Received& message, std::int64_t now_n
   }
 }
 
-// another process holds the role: this one was never part of the session
+// Another process holds the role: this one was never part of the session.
 void PhysicsNode::refuse(const Status& refusal) {
   member_.step_aside(refusal.code, refusal.text);
   stage_ = Stage::finished;
@@ -49,13 +49,13 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
     ++member_.refusals().undecodable;
     return;
   }
-  const SessionNews news = member_.news(session);
-  if (news == SessionNews::withdrawn) {
+  const SessionChange change = member_.change_of(session);
+  if (change == SessionChange::withdrawn) {
     member_.withdraw();
     stage_ = Stage::finished;
   }
-  if (news == SessionNews::renewed) return renew(session, now_ns);
-  if (news != SessionNews::begins) return;
+  if (change == SessionChange::renewed) return renew(session, now_ns);
+  if (change != SessionChange::begins) return;
   if (const Status held = member_.adopt(session, now_ns); !held.is_ok()) return refuse(held);
   const Status protocol = member_.problem_of_protocol();
   if (protocol.is_ok() && !member_.requires_role(member_.role())) {
@@ -69,7 +69,7 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
     stage_ = Stage::finished;
     return;
   }
-  const bool has_deadline = session.pace == wire::Pace::real;
+  const bool has_deadline = session.pace == Pace::real;
   const bool takes_late = built_.session.mode == scene::ExchangeMode::free_running;
   samples_.configure(member_, built_.exchange, takes_late);
   step_timing_.set_deadline({has_deadline ? session.step_ns * samples_.stride() : 0});
@@ -96,7 +96,7 @@ Status PhysicsNode::build(const wire::SessionDescription& session) {
                            "; this node does not take part; run it with session.rejoin=0, from the start");
 }
 
-// io has published which processes it gave up, and the step of the session
+// io has published the processes that it gave up, and the step of the session.
 void PhysicsNode::renew(const wire::SessionDescription& session, std::int64_t now_ns) {
   member_.renew(session, now_ns);
   if (!member_.is_given_up()) return;
@@ -123,7 +123,7 @@ void PhysicsNode::receive_tick(const transport::Received& message, std::int64_t 
   // a new epoch starts with an INIT tick
   if (member_.begins_next_epoch(header)) return restart(header);
   if (!member_.fits(header, Topic::tick)) return;
-  member_.heard(header, Topic::tick, now_ns);
+  member_.acknowledge(header, Topic::tick, now_ns);
   if (header.phase != Phase::running) return;
   if (loop_->receive_tick(message.bytes, header, n_, now_ns)) measure_release(header.step, message.source_ns);
 }
@@ -135,7 +135,7 @@ void PhysicsNode::receive_sample(const transport::Received& message, std::int64_
     return;
   }
   if (!member_.fits(header, message.topic)) return;
-  member_.heard(header, message.topic, now_ns);
+  member_.acknowledge(header, message.topic, now_ns);
   samples_.for_each_missing(n_, [&](Role role, Topic missing, StepIndex) {
     if (missing == message.topic) step_timing_.came(role, now_ns);
   });

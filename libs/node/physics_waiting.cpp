@@ -1,5 +1,5 @@
-// How a physics node waits: requests for the messages that the next step lacks, the stall watch, and what it does when
-// another node is silent, gone or at its end.
+// PhysicsNode's part that waits: requests for the messages that the next step lacks, the stall watch, and the reaction
+// to a node that is silent, gone or at its end.
 #include <algorithm>
 
 #include "node/physics_node.h"
@@ -34,17 +34,17 @@ void PhysicsNode::update_health() noexcept {
   h.has_session.store(member_.has_session(), std::memory_order_release);
 }
 
-// In `real` pace the next tick is due one step later. No node waits for a follower: it does not request a sample before
-// the time at which that pace brings it.
+// In `real` pace the next tick is due one step later. No node waits for a follower: it requests a sample only after the
+// time at which that pace brings it.
 void PhysicsNode::expect_next(std::int64_t now_ns) noexcept {
   const std::int64_t stride_ns = std::min(samples_.stride() * member_.session().step_ns, kResendAtMost.ns);
-  const bool has_time = is_follower() || member_.session().pace == wire::Pace::real;
+  const bool has_time = is_follower() || member_.session().pace == Pace::real;
   resend_.restart(has_time ? now_ns + stride_ns : now_ns);
 }
 
 void PhysicsNode::request_missing(std::int64_t now_ns) {
   if (loop_->is_ended_by_fault() || !resend_.is_due(now_ns)) return;
-  resend_.asked(now_ns);
+  resend_.requested(now_ns);
   MissingMessages missing;
   if (stage_ == Stage::initialising) {
     samples_.for_each_missing_at_start([&](Role role, Topic topic, StepIndex step) {
@@ -58,7 +58,7 @@ void PhysicsNode::request_missing(std::int64_t now_ns) {
   for (const Awaited& message : missing) request(message);
 }
 
-// While this node computes steps that the others have done it requests many messages at once.
+// While this node computes steps that the other nodes have done, it requests many messages at once.
 void PhysicsNode::request(const Awaited& missing) {
   const StepIndex newest = std::min(states_.caught_up_at() - 1, n_ + kCatchUp);
   wire::ResendRequest request;
@@ -83,20 +83,20 @@ std::optional<Awaited> PhysicsNode::awaited() const noexcept {
 // io decides first. A node whose messages io does not receive ends by itself a little later.
 void PhysicsNode::look_for_stall(std::int64_t now_ns) {
   const bool was_named = stall_.is_named();
-  const std::uint64_t asked = health().resends_asked;
-  stall_.look(awaited(), asked, now_ns);
+  const std::uint64_t requests = health().resends_asked;
+  stall_.look(awaited(), requests, now_ns);
   if (was_named && !stall_.is_named() && member_.state() == NodeState::holding && !member_.silent_peer()) {
     member_.set_state(n_ > 0 ? NodeState::running : NodeState::ready);
   }
   if (stall_.begins(member_, now_ns)) {
-    const std::string text = stall_.text(member_, asked);
+    const std::string text = stall_.text(member_, requests);
     if (stall_.may_warn()) member_.warn(text);
     if (stage_ == Stage::stepping) member_.hold(text);
   }
   const SimDuration most{duration_of_seconds(built_.session.stall_timeout).ns + member_.give_up_after().ns};
   if (!stall_.is_named() || stall_.waited() < most) return;
   leave(ExitCode::node_lost,
-        stall_.text(member_, asked) + ", nothing came within " + seconds_text(most) +
+        stall_.text(member_, requests) + ", nothing came within " + seconds_text(most) +
             " (session.stall_timeout and session.give_up_after); this node stopped after step " + std::to_string(n_),
         now_ns);
 }

@@ -11,7 +11,7 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-// false: a sample that is needed is not there
+// False: a needed sample is missing.
 template <typename Message, typename Sample>
 bool take(const Inbox<Message>& inbox, const Message* found, const Sample*& sample) noexcept {
   if (!inbox.is_needed) return true;
@@ -107,7 +107,7 @@ void SampleExchange::probe(SessionMember& member) {
   const wire::Header header = member.header(Phase::join, kJoinStep);
   mechanism_out_.header = actuators_out_.header = flexible_out_.header = elastic_out_.header = header;
   for (const Outbox& outbox : outboxes_) {
-    if (member.is_heard_on(outbox.topic)) continue;
+    if (member.is_acknowledged_on(outbox.topic)) continue;
     if (outbox.topic == Topic::mechanism) member.publish(outbox.topic, mechanism_out_);
     if (outbox.topic == Topic::actuators) member.publish(outbox.topic, actuators_out_);
     if (outbox.topic == Topic::flexible) member.publish(outbox.topic, flexible_out_);

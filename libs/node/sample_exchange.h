@@ -1,8 +1,8 @@
-// The samples of one physics node: those of its partners by step, as long as they are needed, and its own, kept for
-// those that missed one. Which samples a role uses in which step: node/exchange.h.
+// The samples of one physics node: those of its partners by step, as long as they are needed, and its own, kept to be
+// resent. node/exchange.h defines the samples that a role uses in each step.
 //
-// In between two exchanges a node is handed the sample of the last one again, with its age; in a free-running session
-// the newest sample, however old. A node with several partners waits for all of them.
+// Between two exchanges a step uses the sample of the last exchange, with its age; in a free-running session the newest
+// sample, whatever its age. A node with several partners waits for all of them.
 #pragma once
 
 #include <cstddef>
@@ -18,11 +18,10 @@
 
 namespace slew::node {
 
-// ticks come up to the window (64 at most) ahead, samples one step ahead; a node that nobody waits for lags by the
-// window of kFollowerWindow at most
+// Ticks arrive up to the window (64 at most) ahead, samples one step ahead. A follower lags by kFollowerWindow at most.
 inline constexpr std::size_t kRingDepth = 128;
 
-// steps that a node may be behind although nobody waits for its samples: io's ticks wait for it then
+// Steps that a follower may lag: no node waits for its samples, but io's ticks then wait for it.
 inline constexpr StepIndex kFollowerWindow = 64;
 
 // Samples of one partner.
@@ -61,9 +60,9 @@ class Inbox {
     ring_.clear();
     has_init_ = false;
   }
-  // Of the step, or of the last one before it that brings a message.
+  // The message of the step, or of the last step before it that has one.
   [[nodiscard]] const Message* find(StepIndex step) const noexcept { return ring_.find(step / every); }
-  // The newest up to the step; null when there is none in reach.
+  // The newest message up to the step; null: the ring has none.
   [[nodiscard]] const Message* find_newest(StepIndex step) const noexcept {
     for (std::size_t back = 0; back < kRingDepth; ++back) {
       const Message* found = ring_.find(step - static_cast<StepIndex>(back));
@@ -71,7 +70,7 @@ class Inbox {
     }
     return nullptr;
   }
-  // What the reader starts from.
+  // The message that the reader starts from.
   [[nodiscard]] const Message* find_start() const noexcept {
     if (reading.start == StartSample::first) return find(0);
     return has_init_ ? &init_ : nullptr;
@@ -79,8 +78,8 @@ class Inbox {
 
   const Reading reading;
   bool is_needed = false;
-  bool is_needed_each_step = true;  // beyond the start
-  bool takes_late = false;          // also messages of steps that are done
+  bool is_needed_each_step = true;  // not at the start only
+  bool takes_late = false;          // keeps messages of steps that are done too
   StepIndex every = 1;
 
  private:
@@ -93,10 +92,10 @@ class SampleExchange {
  public:
   explicit SampleExchange(wire::Role own);
 
-  // Topics of the samples that a role publishes; what its partners need comes before what serves the eye.
+  // Topics of the samples that a role publishes; those that its partners need come before those for display.
   [[nodiscard]] static std::vector<wire::Topic> topics_written(wire::Role role);
 
-  // To be called when the session is known. takes_late: samples of steps that are done are kept too.
+  // To be called once the session is adopted. takes_late: samples of steps that are done are kept too.
   void configure(const SessionMember& member, const ExchangeRules& rules, bool takes_late);
   void clear() noexcept;
   [[nodiscard]] bool has_partner() const noexcept;
@@ -115,7 +114,7 @@ class SampleExchange {
   // The newest samples up to the step. Pre-condition: the session is free-running.
   void find_newest(StepIndex step, coupling::PartnerSamples& partners) const noexcept;
 
-  // What is missing, for a request: visit(role, topic, step).
+  // Visits each missing message, for a request: visit(role, topic, step).
   template <typename Visit>
   void for_each_missing_at_start(Visit visit) const {
     for_each_needed([&](const auto& inbox) {
@@ -131,12 +130,12 @@ class SampleExchange {
     });
   }
 
-  // Step -1 on every topic of this node that somebody has not heard yet.
+  // Publishes step -1 on every topic of this node that a required reader has not acknowledged yet.
   void probe(SessionMember& member);
   // Sends the sample of a step and keeps it.
   void publish(SessionMember& member, wire::Phase phase, StepIndex step, const wire::SampleState& state,
                const coupling::OwnSample& own);
-  // Answers a request for this node's samples; the number of messages sent.
+  // Answers a request for this node's samples. Returns the number of messages sent.
   std::size_t answer(SessionMember& member, const wire::ResendRequest& request);
 
  private:

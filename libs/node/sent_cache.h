@@ -1,4 +1,4 @@
-// The encoded step messages a node has sent, kept for those that missed one. Repeating one is idempotent.
+// The encoded step messages that a node has sent, kept to be resent. A resent message changes nothing at its readers.
 #pragma once
 
 #include <algorithm>
@@ -12,20 +12,20 @@
 
 namespace slew::node {
 
-// Messages that are kept at least.
+// Least number of messages kept.
 inline constexpr std::size_t kSentDepth = 1024;
-// Answered to one request at most: what is asked for after a long silence must not make the answerer late. Who misses
-// more asks again when these have come.
+// Most messages sent for one request: a request after a long silence must not make the sender late. A node that lacks
+// more requests again once these have arrived.
 inline constexpr StepIndex kMostAnswers = 128;
-// Of one cache at most, where steps are short and messages long.
+// Largest size of one cache, where steps are short and messages long.
 inline constexpr std::size_t kSentBytes = std::size_t{64} << 20;
 
-// A node that comes back just before it is given up has this time to request what it has missed.
+// A node that resumes just before it is given up has this time to request the messages it lacks.
 inline constexpr SimDuration kRequestTime = {500'000'000};
-// No step message is shorter: its encapsulation and its header.
+// Shortest step message: encapsulation and header.
 inline constexpr std::size_t kLeastMessage = 44;
 
-// Messages that a node may lack that has been silent without being given up, and is requesting them.
+// Most messages that a node can lack after a silence for which it is not given up, while it requests them.
 [[nodiscard]] constexpr std::size_t sent_depth(SimDuration give_up_after, SimDuration step) noexcept {
   const std::int64_t steps = step.ns > 0 ? (give_up_after.ns + kRequestTime.ns + step.ns - 1) / step.ns : 0;
   return std::clamp(static_cast<std::size_t>(steps), kSentDepth, kSentBytes / kLeastMessage);
@@ -35,12 +35,12 @@ class SentCache {
  public:
   explicit SentCache(std::size_t depth = kSentDepth) : ring_(depth) {}
 
-  // How far back it goes. Pre-condition: nothing is kept yet.
+  // Pre-condition: the cache is empty.
   void set_depth(std::size_t depth) {
     ring_ = StepRing<std::vector<std::byte>>(depth);
     reserved_ = 0;
   }
-  // Room for messages of this size in all places, so that no step needs memory of its own.
+  // Reserves messages of this size in all places, so that no step allocates.
   void reserve(std::size_t bytes) {
     if (bytes <= reserved_) return;
     const std::size_t most = std::max(kSentDepth, kSentBytes / bytes);
@@ -48,8 +48,8 @@ class SentCache {
     reserved_ = bytes;
     ring_.for_each([bytes](std::vector<std::byte>& slot) { slot.reserve(bytes); });
   }
-  // The first message makes room for all that follow. A larger one, as a tick with commands, has memory for itself
-  // alone: a step must not pay for all places.
+  // The first message reserves the memory of all places. A larger one, such as a tick with commands, allocates for its
+  // own place only: a step must not pay for all places.
   void keep(StepIndex step, std::span<const std::byte> bytes) {
     if (reserved_ == 0) reserve(bytes.size());
     std::vector<std::byte>& slot = ring_.put(step);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "transport/given_up.h"
 #include "transport/roles.h"
+#include "transport/session_state.h"
 #include "transport/topics.h"
 
 namespace slew::node {
@@ -19,13 +19,13 @@ bool is_over(NodeState state) {
   return state == NodeState::ended || state == NodeState::fault;
 }
 
-// tells processes of one role apart; not 0, which nobody has
+// Distinguishes processes of one role. Never 0.
 std::uint32_t incarnation_of(const Identity& identity) {
   const std::uint64_t mixed = static_cast<std::uint64_t>(identity.started_ns) * 0x9e3779b97f4a7c15u + identity.pid;
   return static_cast<std::uint32_t>(mixed >> 32) | 1u;
 }
 
-constexpr std::size_t kMaxEarlyStatuses = 64;
+constexpr std::size_t kMaxPendingStatuses = 64;
 
 bool is_ready_state(NodeState state) {
   return state >= NodeState::ready && state < NodeState::ended;
@@ -48,30 +48,30 @@ SessionMember::SessionMember(Role role, transport::Transport& transport, std::sp
   status_.self_test = identity_.self_test;
 }
 
-SessionNews SessionMember::news(const wire::SessionDescription& session) const noexcept {
+SessionChange SessionMember::change_of(const wire::SessionDescription& session) const noexcept {
   const Phase phase = session.header.phase;
   if (has_session_) {
     const bool is_owner = is_in_session(session.header) && is_writer(session.header, Topic::session);
-    if (!is_owner) return SessionNews::none;
-    if (phase == Phase::ended) return SessionNews::withdrawn;
-    const bool is_news = session.given_up != session_.given_up || session.header.step != session_.header.step;
-    return phase == Phase::running && is_news ? SessionNews::renewed : SessionNews::none;
+    if (!is_owner) return SessionChange::none;
+    if (phase == Phase::ended) return SessionChange::withdrawn;
+    const bool is_changed = session.given_up != session_.given_up || session.header.step != session_.header.step;
+    return phase == Phase::running && is_changed ? SessionChange::renewed : SessionChange::none;
   }
-  // a description in phase JOIN only claims the name
+  // in phase JOIN a description only claims the name
   const bool is_wanted = !only_ || session.header.session == *only_;
-  return phase == Phase::running && is_wanted ? SessionNews::begins : SessionNews::none;
+  return phase == Phase::running && is_wanted ? SessionChange::begins : SessionChange::none;
 }
 
 Status SessionMember::adopt(const wire::SessionDescription& session, std::int64_t now_ns) {
   session_ = session;
   has_session_ = true;
   epoch_ = session.header.epoch;
-  // the owner is known from its own words, so that its end is seen even if nothing more comes from it
+  // the description identifies its owner, so that the end of the owner is noticed even without a further message
   if (role_ != Role::io) {
     Peer& io = peers_[static_cast<std::size_t>(Role::io)];
     io.is_known = true;
     io.incarnation = session.header.incarnation;
-    io.last_heard_ns = now_ns;
+    io.last_received_ns = now_ns;
     io.status.header = session.header;
     io.status.state = NodeState::joining;
     io.status.host = session.host;
@@ -80,20 +80,20 @@ Status SessionMember::adopt(const wire::SessionDescription& session, std::int64_
     if (session.host == identity_.host && session.pid != identity_.pid) io.process = ProcessWatch(session.pid);
   }
   Status refusal = Status::ok();
-  for (const wire::NodeStatus& status : std::exchange(early_statuses_, {})) {
-    const Status answer = take_status(status, now_ns);
-    if (refusal.is_ok()) refusal = answer;
+  for (const wire::NodeStatus& status : std::exchange(pending_statuses_, {})) {
+    const Status taken = take_status(status, now_ns);
+    if (refusal.is_ok()) refusal = taken;
   }
   return refusal;
 }
 
 void SessionMember::renew(const wire::SessionDescription& session, std::int64_t now_ns) {
-  // nothing that the thread which tells the health reads
+  // no field that the thread of the health report reads
   session_.header.step = session.header.step;
   session_.header.epoch = session.header.epoch;
   session_.given_up = session.given_up;
   forget_given_up(now_ns);
-  // those who come hear this process as it is now
+  // new processes receive the present status
   status_changed_ = true;
 }
 
@@ -102,8 +102,8 @@ void SessionMember::forget_given_up(std::int64_t now_ns) {
     const auto index = static_cast<std::size_t>(gone.role);
     if (index >= wire::kRoles || !peers_[index].is_known || peers_[index].incarnation != gone.incarnation) continue;
     peers_[index] = Peer{};
-    if (const auto rival = std::exchange(rivals_[index], std::nullopt)) {
-      static_cast<void>(take_status(*rival, now_ns));
+    if (const auto claimant = std::exchange(claimants_[index], std::nullopt)) {
+      static_cast<void>(take_status(*claimant, now_ns));
     }
   }
 }
@@ -128,7 +128,7 @@ bool SessionMember::is_in_session(const wire::Header& header) const noexcept {
   return has_session_ && header.session == session_.header.session;
 }
 
-// the process that holds the role, and the role writes the topic
+// The writer holds its role, and the role writes the topic.
 bool SessionMember::is_writer(const wire::Header& header, Topic topic) const noexcept {
   if ((transport::writers_of(topic) & bit(header.role)) == 0) return false;
   const Peer& peer = peers_[static_cast<std::size_t>(header.role)];
@@ -195,8 +195,8 @@ void SessionMember::yield() {
 Status SessionMember::given_to_another() const {
   return Status::error(ExitCode::node_lost, "the role " + std::string(to_text(role_)) + " of session '" +
                                                 session_.name +
-                                                "' was given to another process, because nothing had been heard of "
-                                                "this one; this one ends, and the session goes on without it");
+                                                "' was given to another process, because no message from this one "
+                                                "arrived; this one ends, and the session goes on without it");
 }
 
 void SessionMember::withdraw() {
@@ -222,15 +222,15 @@ void SessionMember::publish_status_if_changed() {
 }
 
 Status SessionMember::on_node_status(std::span<const std::byte> bytes, std::int64_t now_ns) {
-  if (!transport::decode(bytes, heard_)) {
+  if (!transport::decode(bytes, received_status_)) {
     ++refusals_.undecodable;
     return Status::ok();
   }
   if (!has_session_) {
-    if (early_statuses_.size() < kMaxEarlyStatuses) early_statuses_.push_back(heard_);
+    if (pending_statuses_.size() < kMaxPendingStatuses) pending_statuses_.push_back(received_status_);
     return Status::ok();
   }
-  return take_status(heard_, now_ns);
+  return take_status(received_status_, now_ns);
 }
 
 Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t now_ns) {
@@ -248,7 +248,7 @@ Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t n
     return Status::ok();
   }
   if (!may_hold(status, peer)) {
-    if (role != Role::io) rivals_[index] = status;
+    if (role != Role::io) claimants_[index] = status;
     ++refusals_.unexpected_writer;
     return Status::ok();
   }
@@ -260,23 +260,23 @@ Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t n
   peer.is_known = true;
   peer.incarnation = status.header.incarnation;
   peer.status = status;
-  peer.last_heard_ns = now_ns;
-  if (role_ == Role::io) heard(status.header, Topic::node_status, now_ns);
+  peer.last_received_ns = now_ns;
+  if (role_ == Role::io) acknowledge(status.header, Topic::node_status, now_ns);
   return role == Role::io ? follow_choice(now_ns) : Status::ok();
 }
 
 // The process of the role that io has chosen.
 std::optional<std::uint32_t> SessionMember::holder(Role role) const noexcept {
-  const std::vector<wire::Heard>& of_io = role_ == Role::io ? status_.heard : peer(Role::io).status.heard;
-  const auto chosen = std::find_if(of_io.rbegin(), of_io.rend(), [&](const wire::Heard& entry) {
+  const std::vector<wire::Heard>& choices = role_ == Role::io ? status_.heard : peer(Role::io).status.heard;
+  const auto chosen = std::find_if(choices.rbegin(), choices.rend(), [&](const wire::Heard& entry) {
     return entry.role == role && entry.topic == static_cast<std::uint8_t>(Topic::node_status) &&
            !is_given_up(role, entry.incarnation);
   });
-  return chosen == of_io.rend() ? std::nullopt : std::optional(chosen->incarnation);
+  return chosen == choices.rend() ? std::nullopt : std::optional(chosen->incarnation);
 }
 
-// The writer of this status has the role, as far as this node has received: the session's owner, the one that io has
-// chosen, or before that the first that was heard and has not ended.
+// The writer of this status has the role, as far as this node has received: the session's owner, the process that io
+// has chosen, or before its choice the first process received that has not ended.
 bool SessionMember::may_hold(const wire::NodeStatus& status, const Peer& peer) const noexcept {
   const std::uint32_t claimant = status.header.incarnation;
   if (status.header.role == Role::io) return claimant == session_.header.incarnation;
@@ -288,42 +288,42 @@ bool SessionMember::may_hold(const wire::NodeStatus& status, const Peer& peer) c
   return chosen ? *chosen == claimant : is_vacant;
 }
 
-// io has published its choice: a process that it has not chosen is not followed any more.
+// io has published its choice: peers that it has not chosen are dropped.
 Status SessionMember::follow_choice(std::int64_t now_ns) {
   for (std::size_t index = 0; index < wire::kRoles; ++index) {
     const std::optional<std::uint32_t> chosen = holder(static_cast<Role>(index));
     Peer& peer = peers_[index];
     if (!chosen || !peer.is_known || peer.is_lost || peer.incarnation == *chosen) continue;
     peer = Peer{};
-    if (const auto rival = std::exchange(rivals_[index], std::nullopt)) static_cast<void>(take_status(*rival, now_ns));
+    if (const auto claimant = std::exchange(claimants_[index], std::nullopt))
+      static_cast<void>(take_status(*claimant, now_ns));
   }
   was_chosen_ = was_chosen_ || holds_role();
-  const auto rival = rivals_[static_cast<std::size_t>(role_)];
-  return rival && !holds_role() ? on_own_role(*rival) : Status::ok();
+  const auto claimant = claimants_[static_cast<std::size_t>(role_)];
+  return claimant && !holds_role() ? on_own_role(*claimant) : Status::ok();
 }
 
-void SessionMember::tell_of_claim(const wire::NodeStatus& status) {
-  // a second process that was just started learns from io that the role is held, and one that came later may have got
-  // it
+void SessionMember::warn_of_claim(const wire::NodeStatus& status) {
+  // a process that was just started receives from io that the role is held; a later process may have been given it
   const bool is_usual = !is_ready_state(status.state) || status.started_ns > identity_.started_ns;
-  if (is_usual || std::exchange(has_told_of_claim_, true)) return;
+  if (is_usual || std::exchange(has_warned_of_claim_, true)) return;
   warn("process " + std::to_string(status.pid) + " on " + machine_of(status.host) + ", started " +
-       time_text(status.started_ns) + ", says that it has the role " + std::string(to_text(role_)) + " of session '" +
-       session_.name + "'; this process keeps it and the other one is not heard; stop it, or look who sends that");
+       time_text(status.started_ns) + ", claims the role " + std::string(to_text(role_)) + " of session '" +
+       session_.name + "'; this process keeps the role and ignores the other one; stop the other process");
 }
 
-// another process that says it has this role
+// Another process claims the role of this one.
 Status SessionMember::on_own_role(const wire::NodeStatus& status) {
   if (status.header.incarnation == incarnation_ || is_over(status.state)) return Status::ok();
   if (is_given_up(role_, status.header.incarnation)) return Status::ok();
-  rivals_[static_cast<std::size_t>(role_)] = status;
+  claimants_[static_cast<std::size_t>(role_)] = status;
   const std::optional<std::uint32_t> chosen = role_ == Role::io ? incarnation_ : holder(role_);
   if (chosen == incarnation_) {
     ++refusals_.unexpected_writer;
-    tell_of_claim(status);
+    warn_of_claim(status);
   }
   if (!chosen || *chosen != status.header.incarnation) return Status::ok();
-  // io's word that this one was given up may come behind its new choice
+  // io's update that this process was given up may arrive after its new choice
   if (was_chosen_) return given_to_another();
   return Status::error(ExitCode::bad_input,
                        "the role " + std::string(to_text(role_)) + " of session '" + session_.name +
@@ -333,15 +333,15 @@ Status SessionMember::on_own_role(const wire::NodeStatus& status) {
 }
 
 void SessionMember::compare_builds(const wire::NodeStatus& status) {
-  // the owner compares, so that each difference is told once
+  // only the owner compares, so that each difference is reported once
   if (role_ != Role::io) return;
-  const std::string who = std::string(to_text(status.header.role)) + " on " + machine_of(status.host);
+  const std::string peer = std::string(to_text(status.header.role)) + " on " + machine_of(status.host);
   if (status.self_test != identity_.self_test) {
     warnings_.push_back(
-        who + " computes the arithmetic self-test with another result than io: this session's bits " +
+        peer + " computes the arithmetic self-test with another result than io: this session's bits " +
         "cannot be compared with those of another layout; use processors of one family and one C library");
   } else if (status.build != identity_.build) {
-    warnings_.push_back(who + " is of build '" + status.build + "', io of '" + identity_.build +
+    warnings_.push_back(peer + " is of build '" + status.build + "', io of '" + identity_.build +
                         "': bits may differ from those of one build; install one build on all machines");
   }
 }
@@ -355,7 +355,7 @@ void SessionMember::on_health(std::span<const std::byte> bytes, std::int64_t now
   if (!transport::decode(bytes, health) || !has_session_ || health.header.session != session_.header.session) return;
   const auto index = static_cast<std::size_t>(health.header.role);
   if (index < wire::kRoles && peers_[index].incarnation == health.header.incarnation) {
-    peers_[index].last_heard_ns = now_ns;
+    peers_[index].last_received_ns = now_ns;
     peers_[index].step = health.header.step;
     peers_[index].step_epoch = health.header.epoch;
   }
@@ -368,7 +368,7 @@ bool SessionMember::may_be_replaced(Role role) const noexcept {
 void SessionMember::excuse_peers(std::int64_t now_ns) noexcept {
   const std::int64_t gap_ns = watched_ns_ == 0 ? 0 : now_ns - watched_ns_;
   watched_ns_ = now_ns;
-  // what was sent behind the last look's clock reading counts too
+  // time spent in sending after the last check read the clock counts too
   const std::int64_t sending_ns = sending_ns_ + std::exchange(sent_before_ns_, sending_ns_);
   sending_ns_ = 0;
   if (gap_ns <= kUsualLook.ns) return;
@@ -380,19 +380,19 @@ void SessionMember::excuse_peers(std::int64_t now_ns) noexcept {
   // a long gap is excused once, since a peer may have ended in it; each shorter one, since a part of it still counts
   const bool is_long = gap_ns > kStoodStill.ns;
   for (Peer& peer : peers_) {
-    if (is_long && peer.last_heard_ns == peer.excused_ns) continue;
-    const bool was_excused = peer.last_heard_ns == peer.excused_ns;
-    peer.last_heard_ns = std::min(now_ns, peer.last_heard_ns + gap_ns - (is_long ? 0 : kUsualLook.ns));
-    if (is_long || was_excused) peer.excused_ns = peer.last_heard_ns;
+    if (is_long && peer.last_received_ns == peer.excused_ns) continue;
+    const bool was_excused = peer.last_received_ns == peer.excused_ns;
+    peer.last_received_ns = std::min(now_ns, peer.last_received_ns + gap_ns - (is_long ? 0 : kUsualLook.ns));
+    if (is_long || was_excused) peer.excused_ns = peer.last_received_ns;
   }
 }
 
 PeerEvent SessionMember::look_at(Peer& peer, Role role, std::int64_t now_ns) noexcept {
-  const std::int64_t silent_ns = now_ns - peer.last_heard_ns;
-  // what it said last may still be on its way, and says why
-  const bool is_gone = peer.exit_seen_ns != 0 && now_ns - peer.exit_seen_ns >= kLastWords.ns;
+  const std::int64_t silent_ns = now_ns - peer.last_received_ns;
+  // its last message, with the reason, may be in flight
+  const bool is_gone = peer.exit_seen_ns != 0 && now_ns - peer.exit_seen_ns >= kInFlight.ns;
   if (peer.gone_ns != 0) {
-    // io decides about its place; who is heard again was cut off from this process alone
+    // io decides about its place; a peer whose messages arrive again was cut off from this process only
     if (!is_gone && silent_ns <= kSilentAfter.ns) {
       peer.gone_ns = 0;
       peer.is_lost = peer.is_silent = false;
@@ -466,7 +466,7 @@ std::string SessionMember::end_text(Role about, const std::string& reason) const
   const bool is_given_up = peer.status.reason.find(own_loss) != std::string::npos;
   const std::string stood_still =
       "stood still for " + seconds_text({stood_still_ns_}) + (stood_sending_ ? " while it sent" : "");
-  // who was stopped just then sent too
+  // a process that was stopped may have been sending just then
   const std::string remedy =
       std::string("; look for what stopped the process (a signal, a debugger, lack of memory or of processors)") +
       (stood_sending_ ? " or took nothing from it (a cable that is out, an interface that is down)" : "");
@@ -475,10 +475,10 @@ std::string SessionMember::end_text(Role about, const std::string& reason) const
            give_up_text() + "; session '" + session_.name + "' has ended" + remedy;
   }
   if (is_given_up) {
-    return "this node ran, but was not heard for " + give_up_text() +
-           " and was given up; look at the network from this machine to the others; " + reason;
+    return "this node ran, but its messages did not arrive for " + give_up_text() +
+           " and it was given up; check the network from this machine to the others; " + reason;
   }
-  // the others may have given it up and have gone
+  // the peers may have given this node up and exited
   if (peer.is_lost && stood_still_ns_ > 0 && watched_ns_ - stood_until_ns_ <= session_.give_up_ns + linger().ns) {
     return reason + "; this node itself had " + stood_still + ", and after " + give_up_text() +
            " the others give a node up" + remedy;
@@ -490,7 +490,7 @@ bool SessionMember::all_required(NodeState at_least) const noexcept {
   for (const Role role : wire::kNodeRoles) {
     if (role == role_ || !requires_role(role)) continue;
     const Peer& peer = peers_[static_cast<std::size_t>(role)];
-    // nobody waits for the end of one that is gone or never came
+    // a peer that is gone or never joined counts as ended
     if (at_least == NodeState::ended && (peer.is_lost || !peer.is_known)) continue;
     if (!peer.is_known || peer.status.state < at_least) return false;
     // ready and running count only for the present epoch
@@ -499,9 +499,9 @@ bool SessionMember::all_required(NodeState at_least) const noexcept {
   return true;
 }
 
-void SessionMember::heard(const wire::Header& from, Topic topic, std::int64_t now_ns) {
+void SessionMember::acknowledge(const wire::Header& from, Topic topic, std::int64_t now_ns) {
   const auto index = static_cast<std::size_t>(from.role);
-  if (index < wire::kRoles) peers_[index].last_heard_ns = now_ns;
+  if (index < wire::kRoles) peers_[index].last_received_ns = now_ns;
   const wire::Heard entry{from.role, from.incarnation, static_cast<std::uint8_t>(topic)};
   if (std::find(status_.heard.begin(), status_.heard.end(), entry) != status_.heard.end()) return;
   if (status_.heard.size() == wire::kMaxHeard) return;
@@ -515,19 +515,19 @@ bool SessionMember::must_read(Role reader, Topic topic) const noexcept {
   return reader != role_ && requires_role(reader) && (transport::readers_of(topic) & bit(reader)) != 0;
 }
 
-bool SessionMember::has_heard_me(Role reader, Topic topic) const noexcept {
+bool SessionMember::has_acknowledged(Role reader, Topic topic) const noexcept {
   const Peer& peer = peers_[static_cast<std::size_t>(reader)];
   const wire::Heard me{role_, incarnation_, static_cast<std::uint8_t>(topic)};
   return peer.is_known && std::find(peer.status.heard.begin(), peer.status.heard.end(), me) != peer.status.heard.end();
 }
 
-bool SessionMember::is_heard_on(Topic topic) const noexcept {
+bool SessionMember::is_acknowledged_on(Topic topic) const noexcept {
   return std::all_of(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles),
-                     [&](Role reader) { return !must_read(reader, topic) || has_heard_me(reader, topic); });
+                     [&](Role reader) { return !must_read(reader, topic) || has_acknowledged(reader, topic); });
 }
 
-bool SessionMember::is_heard_by_all() const noexcept {
-  return std::all_of(step_topics_.begin(), step_topics_.end(), [&](Topic topic) { return is_heard_on(topic); });
+bool SessionMember::is_acknowledged_by_all() const noexcept {
+  return std::all_of(step_topics_.begin(), step_topics_.end(), [&](Topic topic) { return is_acknowledged_on(topic); });
 }
 
 bool SessionMember::probe_is_due(std::int64_t now_ns) noexcept {
@@ -536,7 +536,7 @@ bool SessionMember::probe_is_due(std::int64_t now_ns) noexcept {
   return true;
 }
 
-// what the transport knows about the writers of a topic that should be heard
+// The writers of a topic that the transport has discovered.
 std::string SessionMember::found_writers(Topic topic) {
   const transport::TopicTraits& expected = transport::traits(topic);
   std::string text = std::string(" (expected topic ") + expected.name + ", type " + expected.type_name + "; found ";
@@ -551,14 +551,14 @@ std::string SessionMember::missing_join_text() {
   for (const Role role : wire::kNodeRoles) {
     if (role != role_ && requires_role(role) && !peer(role).is_known) {
       text += (text.empty() ? "" : "; ") + std::string("no ") + std::string(to_text(role)) +
-              " node has been heard in session '" + session_.name + "'" + found_writers(transport::traits(role).sample);
+              " node has joined session '" + session_.name + "'" + found_writers(transport::traits(role).sample);
     }
   }
   for (const Topic topic : step_topics_) {
     for (const Role reader : wire::kNodeRoles) {
-      if (!peer(reader).is_known || !must_read(reader, topic) || has_heard_me(reader, topic)) continue;
-      text += (text.empty() ? "" : "; ") + describe_peer(reader) + " has not heard topic '" +
-              std::string(to_text(topic)) + "' of " + std::string(to_text(role_));
+      if (!peer(reader).is_known || !must_read(reader, topic) || has_acknowledged(reader, topic)) continue;
+      text += (text.empty() ? "" : "; ") + describe_peer(reader) + " has not received topic '" +
+              std::string(to_text(topic)) + "' from " + std::string(to_text(role_));
     }
   }
   return text;

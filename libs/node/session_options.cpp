@@ -50,16 +50,15 @@ void add_network_options(options::Command& app, SessionOptions& options) {
       .group("Network");
   options::Option keys =
       app.option("--keys", options.keys,
-                 "key store (slewring keys): only who holds its keys takes part, and nobody else can "
-                 "read what is said")
+                 "key store (slewring keys): only processes with its keys take part and can read the messages")
           .value_name("DIR")
           .group("Network");
-  app.option("--identity", options.identity, "which of its keys to use; without it those of the role")
+  app.option("--identity", options.identity, "name of the keys in the store; without it those of the role")
       .value_name("NAME")
       .needs(keys)
       .group("Network");
   app.flag("--insecure-lan", options.is_insecure_lan,
-           "send beyond this machine without keys: whoever is on that network can read and steer the session")
+           "send beyond this machine without keys: any program on that network can read and steer the session")
       .excludes(keys)
       .group("Network");
 }
@@ -116,7 +115,7 @@ void add_physics_node_options(options::Command& app, NodeOptions& options) {
       .value_name("DIR")
       .show_default();
   app.option("--add-work", options.added_work_us,
-             "CPU time that every step burns beside its own, to see what the machine bears")
+             "CPU time that every step burns beside its own, to measure the reserve of the machine")
       .between(0.0, 1e6)
       .value_name("US")
       .group("Real time");

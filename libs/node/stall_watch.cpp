@@ -4,13 +4,13 @@
 
 namespace slew::node {
 
-void StallWatch::look(const std::optional<Awaited>& awaited, std::uint64_t asked, std::int64_t now_ns) noexcept {
+void StallWatch::look(const std::optional<Awaited>& awaited, std::uint64_t requests, std::int64_t now_ns) noexcept {
   const std::int64_t since_ns = now_ns - looked_ns_;
   looked_ns_ = now_ns;
   if (!awaited || awaited != awaited_) {
     awaited_ = awaited;
     waited_ns_ = 0;
-    asked_before_ = asked;
+    requests_before_ = requests;
     is_named_ = false;
     return;
   }
@@ -19,8 +19,8 @@ void StallWatch::look(const std::optional<Awaited>& awaited, std::uint64_t asked
 
 bool StallWatch::is_stalled(const SessionMember& member, std::int64_t now_ns) const noexcept {
   if (!awaited_ || waited_ns_ < kSilentAfter.ns) return false;
-  // a writer that is not heard at all is named as silent, and given up as such
-  return now_ns - member.peer(awaited_->role).last_heard_ns < kSilentAfter.ns;
+  // a silent writer is named as silent, and given up as such
+  return now_ns - member.peer(awaited_->role).last_received_ns < kSilentAfter.ns;
 }
 
 bool StallWatch::begins(const SessionMember& member, std::int64_t now_ns) noexcept {
@@ -30,10 +30,10 @@ bool StallWatch::begins(const SessionMember& member, std::int64_t now_ns) noexce
   return true;
 }
 
-std::string StallWatch::text(const SessionMember& member, std::uint64_t asked) const {
+std::string StallWatch::text(const SessionMember& member, std::uint64_t requests) const {
   return "waits for " + std::string(to_text(awaited_->topic)) + " of step " + std::to_string(awaited_->step) +
-         " from " + member.describe_peer(awaited_->role) + ", which is heard otherwise; asked " +
-         std::to_string(asked - asked_before_) + " times";
+         " from " + member.describe_peer(awaited_->role) + ", whose other messages arrive; requested " +
+         std::to_string(requests - requests_before_) + " times";
 }
 
 }  // namespace slew::node

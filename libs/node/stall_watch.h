@@ -1,7 +1,7 @@
-// Progress of the message that a node waits for. Health, status and samples of other topics from its writer are no
-// progress: a writer that is heard otherwise may still never deliver the one that the next step needs.
+// Watches for the message that a node waits for. Health, status and samples of other topics do not count as progress: a
+// writer whose other messages arrive may never deliver the one that the next step needs.
 //
-// Time counts only while this process looks: between two looks further apart than kStoodStill the waiter itself stood.
+// A time between two calls longer than kStoodStill is not counted: the waiting process itself stood still.
 #pragma once
 
 #include <cstdint>
@@ -22,31 +22,33 @@ struct Awaited {
 
 class StallWatch {
  public:
-  static constexpr int kMostNamed = 20;  // on standard error, of one session
+  static constexpr int kMostNamed = 20;  // warnings on standard error in one session
 
-  // To be called in every poll. awaited: none: nothing is missing, or the wait has a reason that is told already.
-  // asked: requests to resend that this node has sent so far.
-  void look(const std::optional<Awaited>& awaited, std::uint64_t asked, std::int64_t now_ns) noexcept;
+  // To be called in every poll. awaited: none: nothing is missing, or the reason of the wait is already reported.
+  // requests: resend requests that this node has sent so far.
+  void look(const std::optional<Awaited>& awaited, std::uint64_t requests, std::int64_t now_ns) noexcept;
 
   // Time for which the same message has been missing.
   [[nodiscard]] SimDuration waited() const noexcept { return {waited_ns_}; }
-  // It is to be named: missing for kSilentAfter, while its writer is heard.
+  // The message has been missing for kSilentAfter while other messages of its writer arrive.
   [[nodiscard]] bool is_stalled(const SessionMember& member, std::int64_t now_ns) const noexcept;
-  // The same, once for each message.
+  // The same, true once for each message.
   [[nodiscard]] bool begins(const SessionMember& member, std::int64_t now_ns) noexcept;
-  // It has been named and is still missing.
+  // The message has been named and is still missing.
   [[nodiscard]] bool is_named() const noexcept { return is_named_; }
-  // Whether what is named is still to be written to standard error.
+  // The named message may be written to standard error.
   [[nodiscard]] bool may_warn() const noexcept { return named_ <= kMostNamed; }
-  [[nodiscard]] const Awaited& awaited() const noexcept { return *awaited_; }  // while something is
-  // "waits for actuators of step 7320 from hydraulics (process 12 on crane2), which is heard otherwise; asked 40 times"
-  [[nodiscard]] std::string text(const SessionMember& member, std::uint64_t asked) const;
+  // Pre-condition: a message is missing.
+  [[nodiscard]] const Awaited& awaited() const noexcept { return *awaited_; }
+  // "waits for actuators of step 7320 from hydraulics (process 12 on crane2), whose other messages arrive; requested 40
+  // times"
+  [[nodiscard]] std::string text(const SessionMember& member, std::uint64_t requests) const;
 
  private:
   std::optional<Awaited> awaited_;
   std::int64_t looked_ns_ = 0;
   std::int64_t waited_ns_ = 0;
-  std::uint64_t asked_before_ = 0;
+  std::uint64_t requests_before_ = 0;
   bool is_named_ = false;
   int named_ = 0;
 };

@@ -1,16 +1,17 @@
-// The states of a physics node that it exchanges with io: its checkpoints, which io keeps, and the state of its role
-// that it takes over in the place of INIT (node/checkpoint.h has the bytes).
+// States that a physics node exchanges with io: its checkpoints, which io keeps, and the state of its role that it
+// takes over instead of INIT (bytes: node/checkpoint.h).
 //
 // In a session that can be rejoined a node saves a checkpoint every checkpoint_interval() steps and publishes one part
-// of it with each step after that, so that the cost of a step is bounded. Of io's request, the whole state at once.
+// of it with each step after that, so that the cost of a step is bounded. On io's request it publishes the whole state
+// at once.
 #pragma once
 
 #include <cstddef>
 #include <span>
 
-#include "node/built_subsystem.h"
 #include "node/checkpoint.h"
 #include "node/session_member.h"
+#include "node/subsystem_factory.h"
 
 namespace slew::node {
 
@@ -23,19 +24,19 @@ class StateTransfer {
   // io requests the state at this step, and holds the ticks until it has received it.
   void request(StepIndex step) noexcept { requested_ = step; }
   [[nodiscard]] bool is_requested(StepIndex step) const noexcept { return step == requested_; }
-  // To be called at every step n, after its sample. published: what the sample stated.
+  // To be called at every step n, after its sample. published: the state in that sample.
   void save_if_due(SessionMember& member, StepIndex n, const wire::SampleState& published);
-  // Publishes the whole state at step n; without bytes when the subsystem cannot save.
+  // Publishes the whole state at step n; a part without bytes when the subsystem cannot save.
   void publish_state(SessionMember& member, StepIndex n, const wire::SampleState& published);
 
   // ---- taking over
   // A message of the topic state, of the present session and epoch.
   void receive_part(std::span<const std::byte> bytes, SessionMember& member);
   [[nodiscard]] bool has_state() const noexcept { return taken_over_.is_whole(); }
-  // Loads the state that was received into the subsystem. n, published, own: of the step that it holds at. Error: as
+  // Loads the received state into the subsystem. n, published, own: step, state and sample of that state. Error: as
   // load_node(). Pre-condition: has_state().
   Status load(const SessionMember& member, StepIndex& n, wire::SampleState& published, coupling::OwnSample& own);
-  // The session was at this step when this node joined: ticks and samples before it are there to be requested.
+  // Step of the session when this node joined: ticks and samples before it can be requested.
   [[nodiscard]] StepIndex caught_up_at() const noexcept { return caught_up_at_; }
 
   // A new epoch begins.

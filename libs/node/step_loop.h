@@ -1,4 +1,5 @@
-// When the next step of a physics node can be done, and what it is done with. A node runs one loop for the session:
+// Decides when the next step of a physics node can be done, and selects its inputs. A node runs one loop for the
+// session:
 //
 //   LockstepLoop  step n needs tick n and the samples of all partners
 //   FreeLoop      step n needs tick n, or the time at which it was due and the wait budget; it uses the newest samples
@@ -17,11 +18,12 @@
 
 #include "core/static_vector.h"
 #include "coupling/subsystem.h"
-#include "node/built_subsystem.h"
 #include "node/sample_exchange.h"
 #include "node/session_member.h"
 #include "node/stall_watch.h"
+#include "node/step_ring.h"
 #include "node/step_timing.h"
+#include "node/subsystem_factory.h"
 
 namespace slew::node {
 
@@ -29,7 +31,7 @@ namespace slew::node {
 struct StepInput {
   coupling::PartnerSamples partners;
   std::span<const double> controls;              // by input channel
-  std::span<const wire::Command> late_commands;  // from ticks that came after their step; applied before `commands`
+  std::span<const wire::Command> late_commands;  // from late ticks; applied before `commands`
   std::span<const wire::Command> commands;
   StepIndex released_by = 0;        // step of the message that released this step
   StepIndex used_step = kJoinStep;  // step of the partner's sample
@@ -37,7 +39,7 @@ struct StepInput {
   coupling::Quality quality = coupling::Quality::ok;
 };
 
-// At most a ring of ticks and one sample of each topic.
+// Capacity: a ring of ticks and one sample of each topic.
 using MissingMessages = StaticVector<Awaited, kRingDepth + wire::kTopics>;
 
 class StepLoop {
@@ -54,7 +56,7 @@ class StepLoop {
   // Pre-condition: `input` is as constructed. A loop that returns `step` takes the step for done.
   virtual Next next(StepIndex n, std::int64_t now_ns, StepInput& input) = 0;
 
-  // The tick that releases step n has not come.
+  // The tick that releases step n is missing.
   [[nodiscard]] virtual bool lacks_tick(StepIndex n) const noexcept = 0;
   // Appends the messages to request from their writers. A tick that io withholds is not among them.
   virtual void collect_missing(StepIndex n, MissingMessages& missing) const noexcept = 0;
@@ -73,7 +75,7 @@ class StepLoop {
 
   // A new epoch begins.
   virtual void restart() noexcept = 0;
-  // Continues from the state of a session under way, with what the sample of that step stated.
+  // Continues from a state of the session. The argument is the state in the sample of that step.
   virtual void take_over(const wire::SampleState&) noexcept {}
 };
 
@@ -82,6 +84,31 @@ class StepLoop {
                                                        const scene::SessionDef& session, StepTiming& timing);
 
 // ---- parts of several loops -------------------------------------------------------------------------------------
+
+// The ticks that a node still needs, by step.
+class TickRing {
+ public:
+  // Keeps the tick of a step that is still to be done, once. n: the next step to do. False: the tick was dropped and
+  // counted in `refusals`.
+  bool keep(std::span<const std::byte> bytes, StepIndex step, StepIndex n, Refusals& refusals) {
+    if (step >= n + static_cast<StepIndex>(kRingDepth)) {
+      ++refusals.too_far_ahead;
+    } else if (step < n || ring_.find(step) != nullptr) {
+      ++refusals.duplicate;
+    } else if (!transport::decode(bytes, ring_.put(step))) {
+      ring_.remove(step);
+      ++refusals.undecodable;
+    } else {
+      return true;
+    }
+    return false;
+  }
+  [[nodiscard]] const wire::Tick* find(StepIndex step) const noexcept { return ring_.find(step); }
+  void clear() noexcept { ring_.clear(); }
+
+ private:
+  StepRing<wire::Tick> ring_{kRingDepth};
+};
 
 // fault: the session ends for an error; the status of io gives the reason.
 enum class TickEnd : std::uint8_t { none, regular, fault };

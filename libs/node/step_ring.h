@@ -13,7 +13,7 @@ class StepRing {
  public:
   explicit StepRing(std::size_t depth) : slots_(depth), steps_(depth, kEmpty) {}
 
-  // Slot to decode a message of this step into; the old content is lost.
+  // Slot to decode a message of this step into; its old content is dropped.
   [[nodiscard]] Message& put(StepIndex step) noexcept {
     const std::size_t i = slot(step);
     steps_[i] = step;

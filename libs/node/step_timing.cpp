@@ -9,8 +9,8 @@ namespace slew::node {
 namespace {
 
 constexpr auto kRelaxed = std::memory_order_relaxed;
-// a message is not longer on its way than its writer may be silent
-constexpr std::int64_t kLongestWayNs = 2'000'000'000;
+// a message is in flight for no longer than its writer may be silent
+constexpr std::int64_t kLongestFlightNs = 2'000'000'000;
 
 double seconds(std::int64_t ns) noexcept {
   return static_cast<double>(ns) * 1e-9;
@@ -41,7 +41,7 @@ void NodeTiming::add_given_up(std::int64_t first_due_for_ns, SimDuration step, S
 }
 
 void NodeTiming::note_recent(std::int64_t response_ns) noexcept {
-  // the reader takes it away meanwhile: then this step's is the largest since
+  // if the reader resets it meanwhile, this step's response is the largest since
   if (response_ns > response_recent_ns.load(kRelaxed)) response_recent_ns.store(response_ns, kRelaxed);
 }
 
@@ -74,8 +74,8 @@ std::int64_t thread_cpu_ns() noexcept {
 std::int64_t sent_ns(std::int64_t source_wall_ns, WriterClock clock) noexcept {
   const std::int64_t now_ns = monotonic_ns();
   if (clock == WriterClock::other) return now_ns;
-  const std::int64_t way_ns = wall_clock_ns() - source_wall_ns;
-  return way_ns >= 0 && way_ns <= kLongestWayNs ? now_ns - way_ns : now_ns;
+  const std::int64_t flight_ns = wall_clock_ns() - source_wall_ns;
+  return flight_ns >= 0 && flight_ns <= kLongestFlightNs ? now_ns - flight_ns : now_ns;
 }
 
 void StepTiming::release(StepIndex step, std::int64_t released_ns) noexcept {
@@ -98,8 +98,8 @@ bool StepTiming::is_late() const noexcept {
   return deadline_ns_ > 0 && step_ >= first_ && computed_ns_ - release_.released_ns > deadline_ns_;
 }
 
-// How long the release was held back, as every tick is, by the partner whose sample came last: from when it was due,
-// or, where nothing has a time, from the end of the step before.
+// Delay of the release by the partner whose sample arrived last, as it delays every tick: from the time at which the
+// release was due or, without a pace, from the end of the step before.
 std::int64_t StepTiming::held_back_ns() const noexcept {
   const std::int64_t due_ns = deadline_ns_ > 0 ? std::max(published_ns_, released_ns_ + deadline_ns_) : published_ns_;
   return std::max<std::int64_t>(0, std::min(came_.ns, release_.in_hand_ns) - due_ns);
@@ -119,7 +119,7 @@ void StepTiming::published() noexcept {
   if (before_ns != 0) {
     timing_.cpu_time.record(cpu_ns - cpu_before_ns);
     timing_.wait.record(begin_ns_ - before_ns);
-    // until the release for io, from then on for the partner whose sample came last
+    // until the release the node waits for io, from then on for the partner whose sample arrived last
     const std::int64_t to_io_ns =
         partner == wire::Role::io ? begin_ns_ - before_ns
                                   : std::clamp<std::int64_t>(release_.in_hand_ns - before_ns, 0, begin_ns_ - before_ns);

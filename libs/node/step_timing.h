@@ -1,14 +1,14 @@
-// How a node keeps its time: what each step took, whom it waited for, how many came too late (docs/realtime.md).
+// Timing of a node: duration of each step, waits by partner, overruns (docs/realtime.md).
 //
 //   Tick n sent by io            released        t = 0 of the step's response
-//   Tick n in hand               release jitter  how late the node gets to know
-//   partners' samples n there    wait            from the node's own sample before, until it can begin; and for whom
-//   Subsystem::step done         execution
-//   sample n+1 handed over       response        late (an overrun) when longer than H
+//   Tick n received              release jitter  delay of the tick
+//   partners' samples n there    wait            from the node's own sample before, until the step can begin; by
+//   partner Subsystem::step done         execution sample n+1 published         response        an overrun when longer
+//   than H
 //
-// Release is the moment at which io sent the tick, told by its time stamp when io is on the same machine, else that of
-// its arrival. All times are of the monotonic clock of the host, whatever clock drives the node.
-// Steps of the start-up grace are measured by nobody. Without a deadline (`free` pace) nothing overruns.
+// Release is the time at which io sent the tick, from its time stamp when io is on the same machine, else the time of
+// its arrival. All times are of the monotonic clock of the host, whatever clock drives the node. Steps of the start-up
+// grace are not measured. Without a deadline (`free` pace) there are no overruns.
 #pragma once
 
 #include <array>
@@ -22,10 +22,10 @@
 
 namespace slew::node {
 
-// What became of the steps of a paced session, io_node/session_clock.h.
+// Accounts of the steps of a paced session, io_node/session_clock.h.
 struct SessionBooks {
-  StepIndex run = 0;      // the next tick's number
-  std::uint64_t due = 0;  // 0: no books are kept
+  StepIndex run = 0;      // number of the next tick
+  std::uint64_t due = 0;  // 0: the session has no accounts
   std::uint64_t skipped = 0;
   std::int64_t lag_ns = 0, rest_ns = 0;
 };
@@ -33,7 +33,7 @@ struct SessionBooks {
 // The books as of one moment, for another thread.
 class BooksCell {
  public:
-  // Real-time safe: while they are being read the older ones stay.
+  // Real-time safe: keeps the older ones while another thread reads them.
   void write(const SessionBooks& books) noexcept {
     if (!mutex_.try_lock()) return;
     books_ = books;
@@ -49,25 +49,25 @@ class BooksCell {
   SessionBooks books_;
 };
 
-// Everything that is measured, for the thread that tells it while the loop goes on. One thread writes.
+// All measurements, for the thread that publishes them while the loop goes on. One thread writes.
 struct NodeTiming {
   HdrHistogram release_jitter, execution, cpu_time, wait, response;
   HdrHistogram input_latency;  // io: from a controller's value to the samples that first used it
-  std::array<std::atomic<std::int64_t>, 4> waited_ns{};  // for io (of io: for controllers), mechanics, hydraulics, flex
-  std::atomic<std::int64_t> response_recent_ns{0};       // largest since it was last taken
+  std::array<std::atomic<std::int64_t>, 4> waited_ns{};  // for io (io: for controllers), mechanics, hydraulics, flex
+  std::atomic<std::int64_t> response_recent_ns{0};       // largest since it was last read
   std::atomic<std::uint64_t> overruns{0};
   std::atomic<std::uint64_t> longest_overrun{0};  // steps in a row
   std::atomic<std::uint64_t> overrun_run{0};      // steps in a row up to now
-  // newest step, for who shows them
+  // newest step, for display
   std::atomic<std::int64_t> last_response_ns{0}, last_release_jitter_ns{0};
-  // heap calls in the loop from the first step on; -1: nobody counts them
+  // heap calls in the loop from the first step on; -1: not counted
   std::atomic<std::int64_t> allocations{-1}, carrier_allocations{-1};
-  std::atomic<std::uint64_t> transitions{0};  // of the overrun policy, by io
-  BooksCell books;                            // by io
+  std::atomic<std::uint64_t> transitions{0};  // io: transitions of the overrun policy
+  BooksCell books;                            // io
 
-  // A step's response, against the deadline where there is one.
+  // Adds a step's response, which is late if it exceeds the deadline.
   void add_response(std::int64_t ns, bool is_late) noexcept;
-  // Steps in a row that nobody does, of which the first was due so long ago: as many that overran.
+  // Adds skipped steps in a row, the first of which was due this long ago, as overruns.
   void add_given_up(std::int64_t first_due_for_ns, SimDuration step, StepIndex steps) noexcept;
 
  private:
@@ -80,32 +80,32 @@ struct NodeTiming {
 // CPU time of the calling thread so far.
 [[nodiscard]] std::int64_t thread_cpu_ns() noexcept;
 
-// When a message was sent, on the monotonic clock: by its stamp when its writer has the same clock, else its arrival.
-// A stamp that cannot be true (the clock was set) counts as the arrival.
+// Time at which a message was sent, on the monotonic clock: from its stamp when its writer has the same clock, else
+// now. An impossible stamp (the clock was set) is replaced by now.
 enum class WriterClock : std::uint8_t { same, other };
 [[nodiscard]] std::int64_t sent_ns(std::int64_t source_wall_ns, WriterClock clock) noexcept;
 
-// Follows the steps of one node, in the order in which a step goes. Real-time safe.
+// Measures the steps of one node; its functions are called in the order of a step. Real-time safe.
 class StepTiming {
  public:
   explicit StepTiming(NodeTiming& timing) : timing_(timing) {}
 
-  // Of a step's response; 0: none.
+  // Deadline of a step's response; 0: none.
   void set_deadline(SimDuration deadline) noexcept { deadline_ns_ = deadline.ns; }
   // Earlier steps are not measured.
   void judge_from(StepIndex first) noexcept { first_ = first; }
-  // What releases this step is in hand.
+  // The message that releases this step has arrived.
   void release(StepIndex step, std::int64_t released_ns) noexcept;
   // The step waits for a partner although it is released.
   void waits_for(wire::Role partner) noexcept { partner_ = partner; }
-  // The sample has come without which the next step cannot be done.
+  // A sample that the next step needs has arrived.
   void came(wire::Role partner, std::int64_t now_ns) noexcept { came_ = {partner, now_ns}; }
   void begin(StepIndex step) noexcept;
   void computed() noexcept;
-  // The step's response so far is beyond the deadline.
+  // The step's response so far exceeds the deadline.
   [[nodiscard]] bool is_late() const noexcept;
   void published() noexcept;
-  // A new epoch: nothing of the former is waited for any more.
+  // A new epoch begins: drops the releases of the former one.
   void restart() noexcept;
 
  private:
@@ -119,7 +119,7 @@ class StepTiming {
   std::array<Release, kDepth> releases_{};
   std::int64_t deadline_ns_ = 0;
   StepIndex first_ = 0;
-  // of the step in work
+  // the present step
   StepIndex step_ = kJoinStep;
   Release release_;
   wire::Role partner_ = wire::Role::io;
@@ -128,7 +128,7 @@ class StepTiming {
     std::int64_t ns = 0;
   } came_;
   std::int64_t begin_ns_ = 0, computed_ns_ = 0;
-  // of the one before
+  // the step before
   std::int64_t published_ns_ = 0, cpu_ns_ = 0, released_ns_ = 0;
 
   [[nodiscard]] std::int64_t held_back_ns() const noexcept;

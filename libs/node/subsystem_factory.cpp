@@ -19,12 +19,12 @@ std::vector<std::uint32_t> published_variables(const scene::Scene& scene, const 
   std::vector<std::string> names, kept;
   for (const ElementVariable& variable : subsystem.variables()) names.push_back(variable.name);
   std::vector<std::uint32_t> published = scene::matching(scene.recording.variables, names);
-  // what there is much of has to be asked for by more than "everything"
+  // variables of detail are published only if another pattern than "*" selects them
   std::copy_if(scene.recording.variables.begin(), scene.recording.variables.end(), std::back_inserter(kept),
                [](const std::string& pattern) { return pattern != "*"; });
-  const std::vector<std::uint32_t> asked_for = scene::matching(kept, names);
+  const std::vector<std::uint32_t> selected = scene::matching(kept, names);
   std::erase_if(published, [&](std::uint32_t i) {
-    return subsystem.variables()[i].is_detail && !std::binary_search(asked_for.begin(), asked_for.end(), i);
+    return subsystem.variables()[i].is_detail && !std::binary_search(selected.begin(), selected.end(), i);
   });
   return published;
 }

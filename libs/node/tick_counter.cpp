@@ -6,6 +6,8 @@
 #include <limits>
 #include <sstream>
 
+#include "transport/session_state.h"
+
 namespace slew::node {
 
 std::string text_of(const TickSpan& span) {
@@ -20,10 +22,6 @@ std::optional<TickSpan> tick_span_of(const std::string& text) {
   TickSpan span;
   words >> span.wall_time >> span.paused_time >> span.steps >> span.epoch >> span.next >> span.behind_end;
   return words ? std::optional(span) : std::nullopt;
-}
-
-bool is_pause(const wire::NodeStatus& io) noexcept {
-  return io.state == wire::NodeState::holding && io.reason.empty();
 }
 
 void TickCounter::take(const wire::Header& header, std::uint32_t flags) {
@@ -55,8 +53,8 @@ void TickCounter::take_time(std::int64_t sent_ns) {
 
 void TickCounter::take_status(const wire::NodeStatus& io, std::int64_t sent_ns) {
   if (io.header.role != wire::Role::io) return;
-  const bool is_change = paused_since_.empty() || paused_since_.rbegin()->second != is_pause(io);
-  if (is_change) paused_since_[sent_ns] = is_pause(io);
+  const bool is_change = paused_since_.empty() || paused_since_.rbegin()->second != transport::is_pause(io);
+  if (is_change) paused_since_[sent_ns] = transport::is_pause(io);
 }
 
 bool TickCounter::was_paused(std::int64_t from_ns, std::int64_t to_ns) const {

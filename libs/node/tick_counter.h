@@ -1,4 +1,4 @@
-// Counts a session's ticks as they come: steps, wall time and pauses.
+// Counts a session's ticks as they arrive: steps, wall time and pauses.
 #pragma once
 
 #include <cstdint>
@@ -11,34 +11,32 @@
 
 namespace slew::node {
 
-// Steps that were done, in all epochs, those of lost ticks between others among them, and the wall time from the first
-// tick to the last as their writer stamped them. Of the time between two ticks around which the session was paused one
-// step counts as running, the rest as paused.
+// Steps of all epochs, including those of lost ticks between two others, and the wall time from the first tick to the
+// last by the stamps of their writer. If the session was paused between two ticks, one step of that time counts as
+// running, the rest as paused.
 struct TickSpan {
   double wall_time = 0;    // s, without pauses
   double paused_time = 0;  // s
   StepIndex steps = 0;
   std::uint32_t epoch = 0;       // the last one
-  StepIndex next = 0;            // step behind the last one of that epoch
-  std::uint64_t behind_end = 0;  // ticks behind the END of their epoch, which a session in order has not got
+  StepIndex next = 0;            // step after the last one of that epoch
+  std::uint64_t behind_end = 0;  // ticks after the END of their epoch; a session in order has none
 };
 
-// One line, and back; none: it is no such line.
+// One line, and back; none: the text is no such line.
 [[nodiscard]] std::string text_of(const TickSpan& span);
 [[nodiscard]] std::optional<TickSpan> tick_span_of(const std::string& text);
-
-// io's status in a pause that somebody asked for; when it holds for a node it gives a reason.
-[[nodiscard]] bool is_pause(const wire::NodeStatus& io) noexcept;
 
 class TickCounter {
  public:
   explicit TickCounter(SimDuration step) : step_ns_(step.ns) {}
   // A tick, in any order.
   void take(const wire::Header& header, std::uint32_t flags);
-  // When it was sent by the wall clock of its writer, 0: unknown; in order, behind the statuses of the time before.
+  // Time of the tick by the wall clock of its writer, 0: unknown. To be called in order, after take_status() of earlier
+  // statuses.
   void take_time(std::int64_t sent_ns);
   void take_status(const wire::NodeStatus& io, std::int64_t sent_ns);
-  // No tick came behind a later one.
+  // No tick arrived after a later one.
   [[nodiscard]] bool is_in_order() const noexcept { return is_in_order_; }
   [[nodiscard]] TickSpan span() const;
 

@@ -10,7 +10,7 @@ using wire::Topic;
 
 void VariablePublisher::probe(SessionMember& member) {
   block_.header = member.header(Phase::join, kJoinStep);
-  if (!member.is_heard_on(Topic::variables)) member.publish(Topic::variables, block_);
+  if (!member.is_acknowledged_on(Topic::variables)) member.publish(Topic::variables, block_);
 }
 
 void VariablePublisher::publish(SessionMember& member, StepIndex step) {

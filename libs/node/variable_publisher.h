@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "node/built_subsystem.h"
 #include "node/session_member.h"
+#include "node/subsystem_factory.h"
 
 namespace slew::node {
 
@@ -15,11 +15,11 @@ class VariablePublisher {
 
   // JOIN: step -1 on the topic, until every reader has acknowledged it.
   void probe(SessionMember& member);
-  // Names and units. An empty directory is published as well, so that clients do not wait for it.
+  // Publishes names and units. An empty directory is published as well, so that clients do not wait for it.
   void publish_directory(SessionMember& member) const;
-  // The values at a step. No allocation after the first call.
+  // Publishes the values at a step. No allocation after the first call.
   void publish(SessionMember& member, StepIndex step);
-  // The same blocks without values, so that no reader counts them as lost while the session sheds load.
+  // Publishes the same blocks without values, so that no reader counts them as lost while the session sheds load.
   void publish_shed(SessionMember& member, StepIndex step);
 
  private:
@@ -27,7 +27,7 @@ class VariablePublisher {
   void publish_blocks(SessionMember& member, StepIndex step, Content content);
 
   const BuiltSubsystem& built_;
-  std::vector<double> values_;  // of all variables of the subsystem
+  std::vector<double> values_;  // values of all variables of the subsystem
   wire::VariableBlock block_;
 };
 

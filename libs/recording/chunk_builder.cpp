@@ -38,16 +38,9 @@ void ChunkBuilder::add(const MessageRecord& message) {
 
 Status ChunkBuilder::finish(Bytes& out, std::uint64_t file_size, ChunkIndexRecord& index) {
   const std::size_t begin = out.size();
-  std::ignore = begin_record(out, Opcode::chunk);
-  put(out, start_time_);
-  put(out, end_time_);
-  put(out, static_cast<std::uint64_t>(records_.size()));
-  put(out, crc32_of(records_));
-  put_string(out, kZstd);
+  encode(out, ChunkRecord{start_time_, end_time_, records_.size(), crc32_of(records_), kZstd, {}});
 
   // compress in place behind the length of the records
-  const std::size_t length_at = out.size();
-  put(out, std::uint64_t{0});
   const std::size_t records_at = out.size();
   out.resize(records_at + ZSTD_compressBound(records_.size()));
   const std::size_t size = context_ ? ZSTD_compress2(context_.get(), out.data() + records_at, out.size() - records_at,
@@ -60,7 +53,7 @@ Status ChunkBuilder::finish(Bytes& out, std::uint64_t file_size, ChunkIndexRecor
                                                           records_.size(), ZSTD_getErrorName(size)));
   }
   out.resize(records_at + size);
-  put_at(out, length_at, static_cast<std::uint64_t>(size));
+  put_at(out, records_at - sizeof(std::uint64_t), static_cast<std::uint64_t>(size));
   end_record(out, begin);
 
   index.start_time = start_time_;

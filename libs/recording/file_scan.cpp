@@ -93,9 +93,9 @@ class Scanner {
     is_proved_ = false;
     switch (opcode) {
       case Opcode::schema:
-        return take_into(scan_.index.schemas, decode_schema, "a schema is not well formed");
+        return take_into(scan_.index.schemas, "a schema is not well formed");
       case Opcode::channel:
-        return take_into(scan_.index.channels, decode_channel, "a channel is not well formed");
+        return take_into(scan_.index.channels, "a channel is not well formed");
       case Opcode::metadata:
         return take_metadata();
       case Opcode::attachment:
@@ -115,8 +115,8 @@ class Scanner {
     }
   }
 
-  template <typename Record, typename Decode>
-  void take_into(std::vector<Record>& records, const Decode& decode, const char* problem) {
+  template <typename Record>
+  void take_into(std::vector<Record>& records, const char* problem) {
     Record record;
     if (!decode(content_, record)) return damage(at_, problem);
     const auto same = std::find_if(records.begin(), records.end(), [&](const Record& r) { return r.id == record.id; });
@@ -125,7 +125,7 @@ class Scanner {
 
   void take_metadata() {
     MetadataRecord record;
-    if (!decode_metadata(content_, record)) return damage(at_, "a metadata record is not well formed");
+    if (!decode(content_, record)) return damage(at_, "a metadata record is not well formed");
     scan_.index.metadata.push_back({at_, record_length(), std::move(record.name)});
   }
 

@@ -95,7 +95,7 @@ bool Reader::load_metadata(Status& status) {
     ByteSpan content;
     MetadataRecord record;
     if (!read_record(file_, index.offset, index.length, Opcode::metadata, buffer, content, status)) return false;
-    if (!decode_metadata(content, record)) return false;
+    if (!decode(content, record)) return false;
     if (!damage_ && !is_between_marks(file_, index.offset, index.length, status)) {
       damage_ = Damage{index.offset, fmt::format("the record '{}' differs from what was written", record.name)};
     }

@@ -4,58 +4,152 @@
 
 #include <algorithm>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 
 namespace slew::recording {
 namespace {
 
-template <typename PutEntries>
-void put_sized(Bytes& out, const PutEntries& put_entries) {
-  const std::size_t size_at = out.size();
-  put(out, std::uint32_t{0});
-  put_entries();
-  put_at(out, size_at, static_cast<std::uint32_t>(out.size() - size_at - sizeof(std::uint32_t)));
-}
+// ---- fields of the records, once for both directions ----------------------------------------------------------
 
-void put_text_map(Bytes& out, const TextMap& map) {
-  put_sized(out, [&] {
-    for (const auto& [key, value] : map) {
-      put_string(out, key);
-      put_string(out, value);
-    }
-  });
-}
+// An archive is called with the fields of a record; Of<T> is `const T` in the one that reads the record, T in the one
+// that fills it.
 
-void put_number_map(Bytes& out, const std::map<std::uint16_t, std::uint64_t>& map) {
-  put_sized(out, [&] {
-    for (const auto& [key, value] : map) {
-      put(out, key);
-      put(out, value);
-    }
-  });
-}
+class FieldWriter {
+ public:
+  template <typename T>
+  using Of = const T;
 
-bool take_text_map(ByteSource& source, TextMap& map) {
-  map.clear();
-  ByteSource entries(source.take_bytes(source.take<std::uint32_t>()));
-  while (!entries.is_empty()) {
-    const std::string_view key = entries.take_string();
-    const std::string_view value = entries.take_string();
-    if (!entries.is_valid()) return false;
-    map.emplace(key, value);
+  explicit FieldWriter(Bytes& out) noexcept : out_(out) {}
+
+  template <typename... T>
+  void operator()(const T&... values) {
+    (item(values), ...);
   }
-  return source.is_valid();
+
+ private:
+  template <typename T>
+  requires std::is_integral_v<T>
+  void item(T value) { put(out_, value); }
+  void item(Opcode opcode) { put(out_, static_cast<std::uint8_t>(opcode)); }
+  void item(std::string_view text) { put_string(out_, text); }
+  void item(ByteSpan bytes) {
+    put(out_, static_cast<std::uint64_t>(bytes.size()));
+    put_bytes(out_, bytes);
+  }
+  template <typename Key, typename Value>
+  void item(const std::map<Key, Value>& map) {
+    const std::size_t size_at = out_.size();
+    put(out_, std::uint32_t{0});
+    for (const auto& [key, value] : map) (*this)(key, value);
+    put_at(out_, size_at, static_cast<std::uint32_t>(out_.size() - size_at - sizeof(std::uint32_t)));
+  }
+
+  Bytes& out_;
+};
+
+class FieldReader {
+ public:
+  template <typename T>
+  using Of = T;
+
+  explicit FieldReader(ByteSpan content) noexcept : source_(content) {}
+
+  template <typename... T>
+  void operator()(T&... values) {
+    (item(values), ...);
+  }
+
+  [[nodiscard]] bool is_good() const noexcept { return is_good_ && source_.is_valid(); }
+  [[nodiscard]] bool is_through() const noexcept { return is_good() && source_.is_empty(); }
+  [[nodiscard]] std::size_t position() const noexcept { return source_.position(); }
+
+ private:
+  template <typename T>
+  requires std::is_integral_v<T>
+  void item(T& value) { value = source_.take<T>(); }
+  void item(Opcode& opcode) { opcode = Opcode{source_.take<std::uint8_t>()}; }
+  template <typename Text>
+  requires std::is_same_v<Text, std::string> || std::is_same_v<Text, std::string_view>
+  void item(Text& text) { text = source_.take_string(); }
+  void item(ByteSpan& bytes) { bytes = source_.take_bytes(source_.take<std::uint64_t>()); }
+  template <typename Key, typename Value>
+  void item(std::map<Key, Value>& map) {
+    map.clear();
+    FieldReader entries(source_.take_bytes(source_.take<std::uint32_t>()));
+    while (!entries.source_.is_empty()) {
+      Key key{};
+      Value value{};
+      entries(key, value);
+      if (entries.is_good()) map.emplace(std::move(key), std::move(value));
+    }
+    is_good_ = is_good_ && entries.is_good();
+  }
+
+  ByteSource source_;
+  bool is_good_ = true;
+};
+
+template <typename A>
+void fields(A& a, typename A::template Of<HeaderRecord>& r) {
+  a(r.profile, r.library);
 }
 
-bool take_number_map(ByteSource& source, std::map<std::uint16_t, std::uint64_t>& map) {
-  map.clear();
-  ByteSource entries(source.take_bytes(source.take<std::uint32_t>()));
-  while (!entries.is_empty()) {
-    const std::uint16_t key = entries.take<std::uint16_t>();
-    const std::uint64_t value = entries.take<std::uint64_t>();
-    if (!entries.is_valid()) return false;
-    map.emplace(key, value);
-  }
-  return source.is_valid();
+template <typename A>
+void fields(A& a, typename A::template Of<SchemaRecord>& r) {
+  a(r.id, r.name, r.encoding, r.text);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<ChannelRecord>& r) {
+  a(r.id, r.schema_id, r.topic, r.message_encoding, r.metadata);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<ChunkRecord>& r) {
+  a(r.start_time, r.end_time, r.uncompressed_size, r.uncompressed_crc, r.compression, r.records);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<ChunkIndexRecord>& r) {
+  a(r.start_time, r.end_time, r.offset, r.length, r.message_index_offsets, r.message_index_length, r.compression);
+  a(r.compressed_size, r.uncompressed_size);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<AttachmentRecord>& r) {
+  a(r.log_time, r.create_time, r.name, r.media_type, r.content);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<AttachmentIndexRecord>& r) {
+  a(r.offset, r.length, r.log_time, r.create_time, r.size, r.name, r.media_type);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<MetadataRecord>& r) {
+  a(r.name, r.entries);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<MetadataIndexRecord>& r) {
+  a(r.offset, r.length, r.name);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<StatisticsRecord>& r) {
+  a(r.message_count, r.schema_count, r.channel_count, r.attachment_count, r.metadata_count, r.chunk_count);
+  a(r.start_time, r.end_time, r.channel_message_counts);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<SummaryOffsetRecord>& r) {
+  a(r.group, r.start, r.length);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<FooterRecord>& r) {
+  a(r.summary_start, r.summary_offset_start, r.summary_crc);
 }
 
 }  // namespace
@@ -113,31 +207,43 @@ void put_magic(Bytes& out) {
   put_bytes(out, std::as_bytes(std::span(kMagic)));
 }
 
-void encode_header(Bytes& out, const HeaderRecord& record) {
-  const std::size_t begin = begin_record(out, Opcode::header);
-  put_string(out, record.profile);
-  put_string(out, record.library);
+template <typename Record>
+void encode(Bytes& out, const Record& record) {
+  const std::size_t begin = begin_record(out, Record::kOpcode);
+  FieldWriter writer(out);
+  fields(writer, record);
   end_record(out, begin);
 }
 
-void encode_schema(Bytes& out, const SchemaRecord& record) {
-  const std::size_t begin = begin_record(out, Opcode::schema);
-  put(out, record.id);
-  put_string(out, record.name);
-  put_string(out, record.encoding);
-  put_string(out, record.text);
-  end_record(out, begin);
+template <typename Record>
+bool decode(ByteSpan content, Record& record) {
+  FieldReader reader(content);
+  fields(reader, record);
+  if constexpr (std::is_same_v<Record, SchemaRecord>) return reader.is_good() && record.id != 0;
+  return reader.is_good();
 }
 
-void encode_channel(Bytes& out, const ChannelRecord& record) {
-  const std::size_t begin = begin_record(out, Opcode::channel);
-  put(out, record.id);
-  put(out, record.schema_id);
-  put_string(out, record.topic);
-  put_string(out, record.message_encoding);
-  put_text_map(out, record.metadata);
-  end_record(out, begin);
-}
+template void encode(Bytes&, const HeaderRecord&);
+template void encode(Bytes&, const SchemaRecord&);
+template void encode(Bytes&, const ChannelRecord&);
+template void encode(Bytes&, const ChunkRecord&);
+template void encode(Bytes&, const ChunkIndexRecord&);
+template void encode(Bytes&, const AttachmentIndexRecord&);
+template void encode(Bytes&, const MetadataRecord&);
+template void encode(Bytes&, const MetadataIndexRecord&);
+template void encode(Bytes&, const StatisticsRecord&);
+template void encode(Bytes&, const SummaryOffsetRecord&);
+template void encode(Bytes&, const FooterRecord&);
+
+template bool decode(ByteSpan, HeaderRecord&);
+template bool decode(ByteSpan, SchemaRecord&);
+template bool decode(ByteSpan, ChannelRecord&);
+template bool decode(ByteSpan, ChunkIndexRecord&);
+template bool decode(ByteSpan, AttachmentIndexRecord&);
+template bool decode(ByteSpan, MetadataRecord&);
+template bool decode(ByteSpan, MetadataIndexRecord&);
+template bool decode(ByteSpan, StatisticsRecord&);
+template bool decode(ByteSpan, FooterRecord&);
 
 void encode_message(Bytes& out, const MessageRecord& record) {
   // one resize: this is the path of every recorded sample
@@ -167,78 +273,11 @@ void encode_message_index(Bytes& out, std::uint16_t channel_id, const std::vecto
   end_record(out, begin);
 }
 
-void encode_chunk_index(Bytes& out, const ChunkIndexRecord& record) {
-  const std::size_t begin = begin_record(out, Opcode::chunk_index);
-  put(out, record.start_time);
-  put(out, record.end_time);
-  put(out, record.offset);
-  put(out, record.length);
-  put_number_map(out, record.message_index_offsets);
-  put(out, record.message_index_length);
-  put_string(out, record.compression);
-  put(out, record.compressed_size);
-  put(out, record.uncompressed_size);
-  end_record(out, begin);
-}
-
 void encode_attachment(Bytes& out, const AttachmentRecord& record) {
   const std::size_t begin = begin_record(out, Opcode::attachment);
-  put(out, record.log_time);
-  put(out, record.create_time);
-  put_string(out, record.name);
-  put_string(out, record.media_type);
-  put(out, static_cast<std::uint64_t>(record.content.size()));
-  put_bytes(out, record.content);
+  FieldWriter writer(out);
+  fields(writer, record);
   put(out, crc32_of(ByteSpan(out).subspan(begin + kRecordHeadBytes)));
-  end_record(out, begin);
-}
-
-void encode_attachment_index(Bytes& out, const AttachmentIndexRecord& record) {
-  const std::size_t begin = begin_record(out, Opcode::attachment_index);
-  put(out, record.offset);
-  put(out, record.length);
-  put(out, record.log_time);
-  put(out, record.create_time);
-  put(out, record.size);
-  put_string(out, record.name);
-  put_string(out, record.media_type);
-  end_record(out, begin);
-}
-
-void encode_metadata(Bytes& out, const MetadataRecord& record) {
-  const std::size_t begin = begin_record(out, Opcode::metadata);
-  put_string(out, record.name);
-  put_text_map(out, record.entries);
-  end_record(out, begin);
-}
-
-void encode_metadata_index(Bytes& out, const MetadataIndexRecord& record) {
-  const std::size_t begin = begin_record(out, Opcode::metadata_index);
-  put(out, record.offset);
-  put(out, record.length);
-  put_string(out, record.name);
-  end_record(out, begin);
-}
-
-void encode_statistics(Bytes& out, const StatisticsRecord& record) {
-  const std::size_t begin = begin_record(out, Opcode::statistics);
-  put(out, record.message_count);
-  put(out, record.schema_count);
-  put(out, record.channel_count);
-  put(out, record.attachment_count);
-  put(out, record.metadata_count);
-  put(out, record.chunk_count);
-  put(out, record.start_time);
-  put(out, record.end_time);
-  put_number_map(out, record.channel_message_counts);
-  end_record(out, begin);
-}
-
-void encode_summary_offset(Bytes& out, const SummaryOffsetRecord& record) {
-  const std::size_t begin = begin_record(out, Opcode::summary_offset);
-  put(out, static_cast<std::uint8_t>(record.group));
-  put(out, record.start);
-  put(out, record.length);
   end_record(out, begin);
 }
 
@@ -254,31 +293,6 @@ void encode_mark(Bytes& out, std::uint32_t crc_so_far) {
   end_record(out, begin);
 }
 
-bool decode_header(ByteSpan content, HeaderRecord& record) {
-  ByteSource source(content);
-  record.profile = source.take_string();
-  record.library = source.take_string();
-  return source.is_valid();
-}
-
-bool decode_schema(ByteSpan content, SchemaRecord& record) {
-  ByteSource source(content);
-  record.id = source.take<std::uint16_t>();
-  record.name = source.take_string();
-  record.encoding = source.take_string();
-  record.text = source.take_string();
-  return source.is_valid() && record.id != 0;
-}
-
-bool decode_channel(ByteSpan content, ChannelRecord& record) {
-  ByteSource source(content);
-  record.id = source.take<std::uint16_t>();
-  record.schema_id = source.take<std::uint16_t>();
-  record.topic = source.take_string();
-  record.message_encoding = source.take_string();
-  return take_text_map(source, record.metadata);
-}
-
 bool decode_message(ByteSpan content, MessageRecord& record) noexcept {
   ByteSource source(content);
   record.channel_id = source.take<std::uint16_t>();
@@ -290,87 +304,18 @@ bool decode_message(ByteSpan content, MessageRecord& record) noexcept {
 }
 
 bool decode_chunk(ByteSpan content, ChunkRecord& record) noexcept {
-  ByteSource source(content);
-  record.start_time = source.take<std::uint64_t>();
-  record.end_time = source.take<std::uint64_t>();
-  record.uncompressed_size = source.take<std::uint64_t>();
-  record.uncompressed_crc = source.take<std::uint32_t>();
-  record.compression = source.take_string();
-  record.records = source.take_bytes(source.take<std::uint64_t>());
-  return source.is_valid() && source.is_empty();
-}
-
-bool decode_chunk_index(ByteSpan content, ChunkIndexRecord& record) {
-  ByteSource source(content);
-  record.start_time = source.take<std::uint64_t>();
-  record.end_time = source.take<std::uint64_t>();
-  record.offset = source.take<std::uint64_t>();
-  record.length = source.take<std::uint64_t>();
-  if (!take_number_map(source, record.message_index_offsets)) return false;
-  record.message_index_length = source.take<std::uint64_t>();
-  record.compression = source.take_string();
-  record.compressed_size = source.take<std::uint64_t>();
-  record.uncompressed_size = source.take<std::uint64_t>();
-  return source.is_valid();
+  FieldReader reader(content);
+  fields(reader, record);
+  return reader.is_through();
 }
 
 bool decode_attachment(ByteSpan content, AttachmentRecord& record) noexcept {
-  ByteSource source(content);
-  record.log_time = source.take<std::uint64_t>();
-  record.create_time = source.take<std::uint64_t>();
-  record.name = source.take_string();
-  record.media_type = source.take_string();
-  record.content = source.take_bytes(source.take<std::uint64_t>());
-  const std::size_t covered = source.position();
-  const std::uint32_t crc = source.take<std::uint32_t>();
-  return source.is_valid() && source.is_empty() && crc == crc32_of(content.first(covered));
-}
-
-bool decode_attachment_index(ByteSpan content, AttachmentIndexRecord& record) {
-  ByteSource source(content);
-  record.offset = source.take<std::uint64_t>();
-  record.length = source.take<std::uint64_t>();
-  record.log_time = source.take<std::uint64_t>();
-  record.create_time = source.take<std::uint64_t>();
-  record.size = source.take<std::uint64_t>();
-  record.name = source.take_string();
-  record.media_type = source.take_string();
-  return source.is_valid();
-}
-
-bool decode_metadata(ByteSpan content, MetadataRecord& record) {
-  ByteSource source(content);
-  record.name = source.take_string();
-  return take_text_map(source, record.entries);
-}
-
-bool decode_metadata_index(ByteSpan content, MetadataIndexRecord& record) {
-  ByteSource source(content);
-  record.offset = source.take<std::uint64_t>();
-  record.length = source.take<std::uint64_t>();
-  record.name = source.take_string();
-  return source.is_valid();
-}
-
-bool decode_statistics(ByteSpan content, StatisticsRecord& record) {
-  ByteSource source(content);
-  record.message_count = source.take<std::uint64_t>();
-  record.schema_count = source.take<std::uint16_t>();
-  record.channel_count = source.take<std::uint32_t>();
-  record.attachment_count = source.take<std::uint32_t>();
-  record.metadata_count = source.take<std::uint32_t>();
-  record.chunk_count = source.take<std::uint32_t>();
-  record.start_time = source.take<std::uint64_t>();
-  record.end_time = source.take<std::uint64_t>();
-  return take_number_map(source, record.channel_message_counts);
-}
-
-bool decode_footer(ByteSpan content, FooterRecord& record) noexcept {
-  ByteSource source(content);
-  record.summary_start = source.take<std::uint64_t>();
-  record.summary_offset_start = source.take<std::uint64_t>();
-  record.summary_crc = source.take<std::uint32_t>();
-  return source.is_valid();
+  FieldReader reader(content);
+  fields(reader, record);
+  const std::size_t covered = reader.position();
+  std::uint32_t crc = 0;
+  reader(crc);
+  return reader.is_through() && crc == crc32_of(content.first(covered));
 }
 
 bool decode_crc(ByteSpan content, std::uint32_t& crc) noexcept {

@@ -1,7 +1,7 @@
 // The records of an MCAP file (https://mcap.dev/spec, version 0) that a recording uses, as structs, with their bytes.
 //
-// A record is  <opcode: 1 byte> <length of content: uint64> <content>. encode_* append a whole record to a buffer;
-// decode_* read the content of one, return false if it is malformed and never read outside of it. Content may be longer
+// A record is  <opcode: 1 byte> <length of content: uint64> <content>. encode* append a whole record to a buffer;
+// decode* read the content of one, return false if it is malformed and never read outside of it. Content may be longer
 // than the known fields: newer fields are ignored. Chunks and attachments may not be longer: they carry their own
 // checksum, and bytes behind it would mean a wrong length.
 //
@@ -51,11 +51,13 @@ inline constexpr std::size_t kFooterBytes = kRecordHeadBytes + 20;
 using TextMap = std::map<std::string, std::string>;
 
 struct HeaderRecord {
+  static constexpr Opcode kOpcode = Opcode::header;
   std::string profile;
   std::string library;
 };
 
 struct SchemaRecord {
+  static constexpr Opcode kOpcode = Opcode::schema;
   std::uint16_t id = 0;  // 1 or more
   std::string name;
   std::string encoding;
@@ -63,6 +65,7 @@ struct SchemaRecord {
 };
 
 struct ChannelRecord {
+  static constexpr Opcode kOpcode = Opcode::channel;
   std::uint16_t id = 0;
   std::uint16_t schema_id = 0;
   std::string topic;
@@ -79,6 +82,7 @@ struct MessageRecord {
 };
 
 struct ChunkRecord {
+  static constexpr Opcode kOpcode = Opcode::chunk;
   std::uint64_t start_time = 0;  // ns, smallest log time of a message in it, 0 when there is none
   std::uint64_t end_time = 0;    // ns, largest
   std::uint64_t uncompressed_size = 0;
@@ -93,6 +97,7 @@ struct MessageIndexEntry {
 };
 
 struct ChunkIndexRecord {
+  static constexpr Opcode kOpcode = Opcode::chunk_index;
   std::uint64_t start_time = 0;
   std::uint64_t end_time = 0;
   std::uint64_t offset = 0;  // offset of the chunk record in the file
@@ -113,6 +118,7 @@ struct AttachmentRecord {
 };
 
 struct AttachmentIndexRecord {
+  static constexpr Opcode kOpcode = Opcode::attachment_index;
   std::uint64_t offset = 0;
   std::uint64_t length = 0;
   std::uint64_t log_time = 0;
@@ -123,17 +129,20 @@ struct AttachmentIndexRecord {
 };
 
 struct MetadataRecord {
+  static constexpr Opcode kOpcode = Opcode::metadata;
   std::string name;
   TextMap entries;
 };
 
 struct MetadataIndexRecord {
+  static constexpr Opcode kOpcode = Opcode::metadata_index;
   std::uint64_t offset = 0;
   std::uint64_t length = 0;
   std::string name;
 };
 
 struct StatisticsRecord {
+  static constexpr Opcode kOpcode = Opcode::statistics;
   std::uint64_t message_count = 0;
   std::uint16_t schema_count = 0;
   std::uint32_t channel_count = 0;
@@ -146,12 +155,14 @@ struct StatisticsRecord {
 };
 
 struct SummaryOffsetRecord {
+  static constexpr Opcode kOpcode = Opcode::summary_offset;
   Opcode group = Opcode::invalid;
   std::uint64_t start = 0;
   std::uint64_t length = 0;
 };
 
 struct FooterRecord {
+  static constexpr Opcode kOpcode = Opcode::footer;
   std::uint64_t summary_start = 0;
   std::uint64_t summary_offset_start = 0;
   std::uint32_t summary_crc = 0;
@@ -174,35 +185,23 @@ inline constexpr std::uint64_t kFrontBytes = 64 * 1024;
 void end_record(Bytes& out, std::size_t begin) noexcept;
 
 void put_magic(Bytes& out);
-void encode_header(Bytes& out, const HeaderRecord& record);
-void encode_schema(Bytes& out, const SchemaRecord& record);
-void encode_channel(Bytes& out, const ChannelRecord& record);
 void encode_message(Bytes& out, const MessageRecord& record);
 void encode_message_index(Bytes& out, std::uint16_t channel_id, const std::vector<MessageIndexEntry>& entries);
-void encode_chunk_index(Bytes& out, const ChunkIndexRecord& record);
 void encode_attachment(Bytes& out, const AttachmentRecord& record);
-void encode_attachment_index(Bytes& out, const AttachmentIndexRecord& record);
-void encode_metadata(Bytes& out, const MetadataRecord& record);
-void encode_metadata_index(Bytes& out, const MetadataIndexRecord& record);
-void encode_statistics(Bytes& out, const StatisticsRecord& record);
-void encode_summary_offset(Bytes& out, const SummaryOffsetRecord& record);
 void encode_data_end(Bytes& out, std::uint32_t data_section_crc);
 void encode_mark(Bytes& out, std::uint32_t crc_so_far);
+// All other records.
+template <typename Record>
+void encode(Bytes& out, const Record& record);
 
-[[nodiscard]] bool decode_header(ByteSpan content, HeaderRecord& record);
-[[nodiscard]] bool decode_schema(ByteSpan content, SchemaRecord& record);
-[[nodiscard]] bool decode_channel(ByteSpan content, ChannelRecord& record);
 [[nodiscard]] bool decode_message(ByteSpan content, MessageRecord& record) noexcept;
 [[nodiscard]] bool decode_chunk(ByteSpan content, ChunkRecord& record) noexcept;
-[[nodiscard]] bool decode_chunk_index(ByteSpan content, ChunkIndexRecord& record);
 // Also checks the attachment's checksum.
 [[nodiscard]] bool decode_attachment(ByteSpan content, AttachmentRecord& record) noexcept;
-[[nodiscard]] bool decode_attachment_index(ByteSpan content, AttachmentIndexRecord& record);
-[[nodiscard]] bool decode_metadata(ByteSpan content, MetadataRecord& record);
-[[nodiscard]] bool decode_metadata_index(ByteSpan content, MetadataIndexRecord& record);
-[[nodiscard]] bool decode_statistics(ByteSpan content, StatisticsRecord& record);
-[[nodiscard]] bool decode_footer(ByteSpan content, FooterRecord& record) noexcept;
 // The single uint32 of a Data End or a Mark.
 [[nodiscard]] bool decode_crc(ByteSpan content, std::uint32_t& crc) noexcept;
+// All other records.
+template <typename Record>
+[[nodiscard]] bool decode(ByteSpan content, Record& record);
 
 }  // namespace slew::recording

@@ -21,7 +21,7 @@ class Copy {
   Status start(const std::string& library) {
     buffer_.clear();
     put_magic(buffer_);
-    encode_header(buffer_, {kProfile, library});
+    encode(buffer_, HeaderRecord{kProfile, library});
     return to_.append_marked(buffer_);
   }
 
@@ -47,7 +47,7 @@ class Copy {
 
   Status add_metadata(const char* name, const TextMap& entries) {
     buffer_.clear();
-    encode_metadata(buffer_, {name, entries});
+    encode(buffer_, MetadataRecord{name, entries});
     index_.metadata.push_back({to_.size(), buffer_.size(), name});
     return to_.append_marked(buffer_);
   }
@@ -70,7 +70,7 @@ class Copy {
   // the end of the session and an earlier recovery do not apply to this file
   Status take_metadata(ByteSpan content) {
     MetadataRecord record;
-    if (!decode_metadata(content, record) || record.name == kSummaryName || record.name == kRecoveryName) {
+    if (!decode(content, record) || record.name == kSummaryName || record.name == kRecoveryName) {
       return Status::ok();
     }
     // the first of several records is the one read
@@ -90,14 +90,14 @@ class Copy {
   Status take_schema(ByteSpan content) {
     SchemaRecord record;
     const auto same = [&](const SchemaRecord& known) { return known.id == record.id; };
-    if (!decode_schema(content, record) || std::ranges::any_of(index_.schemas, same)) return Status::ok();
+    if (!decode(content, record) || std::ranges::any_of(index_.schemas, same)) return Status::ok();
     index_.schemas.push_back(std::move(record));
     return to_.append_marked(buffer_);
   }
 
   Status take_channel(ByteSpan content) {
     ChannelRecord record;
-    if (!decode_channel(content, record) || is_known(record.id)) return Status::ok();
+    if (!decode(content, record) || is_known(record.id)) return Status::ok();
     const auto same = [&](const SchemaRecord& known) { return known.id == record.schema_id; };
     if (std::ranges::none_of(index_.schemas, same)) record.schema_id = 0;  // none
     return add_channel(std::move(record));
@@ -105,7 +105,7 @@ class Copy {
 
   Status add_channel(ChannelRecord record) {
     Bytes bytes;
-    encode_channel(bytes, record);
+    encode(bytes, record);
     index_.channels.push_back(std::move(record));
     return to_.append_marked(bytes);
   }
@@ -185,9 +185,9 @@ Status read_identity(const InputFile& file, const Salvage& salvage, SessionIdent
     const Status status = file.read(record.offset + kRecordHeadBytes, record.length - kRecordHeadBytes, bytes);
     if (!status.is_ok()) return status;
     HeaderRecord header;
-    if (record.opcode == Opcode::header && decode_header(bytes, header)) library = header.library;
+    if (record.opcode == Opcode::header && decode(bytes, header)) library = header.library;
     MetadataRecord metadata;
-    if (record.opcode != Opcode::metadata || !decode_metadata(bytes, metadata) || metadata.name != kIdentityName) {
+    if (record.opcode != Opcode::metadata || !decode(bytes, metadata) || metadata.name != kIdentityName) {
       continue;
     }
     std::string problem;

@@ -8,16 +8,16 @@ namespace slew::recording {
 namespace {
 
 // one group of records of the same kind, and its entry for the summary offset section
-template <typename Records, typename Encode>
-void encode_group(Bytes& out, std::uint64_t file_size, Opcode opcode, const Records& records, const Encode& encode,
+template <typename Record>
+void encode_group(Bytes& out, std::uint64_t file_size, std::span<const Record> records,
                   std::vector<SummaryOffsetRecord>& groups) {
   const std::size_t begin = out.size();
-  for (const auto& record : records) encode(out, record);
-  if (out.size() > begin) groups.push_back({opcode, file_size + begin, out.size() - begin});
+  for (const Record& record : records) encode(out, record);
+  if (out.size() > begin) groups.push_back({Record::kOpcode, file_size + begin, out.size() - begin});
 }
 
-template <typename Record, typename Decode>
-bool decode_into(std::vector<Record>& records, ByteSpan content, const Decode& decode) {
+template <typename Record>
+bool decode_into(std::vector<Record>& records, ByteSpan content) {
   Record record;
   if (!decode(content, record)) return false;
   records.push_back(std::move(record));
@@ -27,17 +27,17 @@ bool decode_into(std::vector<Record>& records, ByteSpan content, const Decode& d
 bool decode_summary_record(Opcode opcode, ByteSpan content, FileIndex& index) {
   switch (opcode) {
     case Opcode::schema:
-      return decode_into(index.schemas, content, decode_schema);
+      return decode_into(index.schemas, content);
     case Opcode::channel:
-      return decode_into(index.channels, content, decode_channel);
+      return decode_into(index.channels, content);
     case Opcode::chunk_index:
-      return decode_into(index.chunks, content, decode_chunk_index);
+      return decode_into(index.chunks, content);
     case Opcode::attachment_index:
-      return decode_into(index.attachments, content, decode_attachment_index);
+      return decode_into(index.attachments, content);
     case Opcode::metadata_index:
-      return decode_into(index.metadata, content, decode_metadata_index);
+      return decode_into(index.metadata, content);
     case Opcode::statistics:
-      return decode_statistics(content, index.statistics);
+      return decode(content, index.statistics);
     default:
       return opcode != Opcode::invalid;  // summary offsets, and records of later versions
   }
@@ -81,23 +81,20 @@ void encode_end(Bytes& out, std::uint64_t file_size, std::uint32_t data_section_
 
   const std::size_t summary_at = out.size();
   std::vector<SummaryOffsetRecord> groups;
-  encode_group(out, file_size, Opcode::schema, index.schemas, encode_schema, groups);
-  encode_group(out, file_size, Opcode::channel, index.channels, encode_channel, groups);
-  encode_group(out, file_size, Opcode::chunk_index, index.chunks, encode_chunk_index, groups);
-  encode_group(out, file_size, Opcode::attachment_index, index.attachments, encode_attachment_index, groups);
-  encode_group(out, file_size, Opcode::metadata_index, index.metadata, encode_metadata_index, groups);
-  encode_group(out, file_size, Opcode::statistics, std::span(&index.statistics, 1), encode_statistics, groups);
+  encode_group(out, file_size, std::span(index.schemas), groups);
+  encode_group(out, file_size, std::span(index.channels), groups);
+  encode_group(out, file_size, std::span(index.chunks), groups);
+  encode_group(out, file_size, std::span(index.attachments), groups);
+  encode_group(out, file_size, std::span(index.metadata), groups);
+  encode_group(out, file_size, std::span(&index.statistics, 1), groups);
 
   const std::size_t offsets_at = out.size();
-  for (const SummaryOffsetRecord& group : groups) encode_summary_offset(out, group);
+  for (const SummaryOffsetRecord& group : groups) encode(out, group);
 
   // the summary's checksum covers the footer up to the checksum itself
-  const std::size_t footer_at = begin_record(out, Opcode::footer);
-  put(out, file_size + summary_at);
-  put(out, file_size + offsets_at);
-  const std::size_t length_of_content = out.size() - footer_at - kRecordHeadBytes + sizeof(std::uint32_t);
-  put_at(out, footer_at + 1, static_cast<std::uint64_t>(length_of_content));
-  put(out, crc32_of(ByteSpan(out).subspan(summary_at)));
+  encode(out, FooterRecord{file_size + summary_at, file_size + offsets_at, 0});
+  const std::size_t crc_at = out.size() - sizeof(std::uint32_t);
+  put_at(out, crc_at, crc32_of(ByteSpan(out).subspan(summary_at, crc_at - summary_at)));
   put_magic(out);
 }
 
@@ -120,7 +117,7 @@ bool read_summary(const InputFile& file, FileIndex& index, Damage& damage, Statu
   const std::uint64_t length = source.take<std::uint64_t>();
   FooterRecord footer;
   const bool is_footer = opcode == Opcode::footer && length == kFooterBytes - kRecordHeadBytes &&
-                         decode_footer(source.take_bytes(length), footer) &&
+                         decode(source.take_bytes(length), footer) &&
                          std::ranges::equal(source.take_bytes(kMagic.size()), expected_magic);
   if (!is_footer) {
     damage = {file.size(), "the file ends here, without a footer"};

@@ -47,7 +47,7 @@ Status Writer::create(const std::filesystem::path& path, const SessionIdentity& 
 Status Writer::write_front(const SessionIdentity& identity) {
   buffer_.clear();
   put_magic(buffer_);
-  encode_header(buffer_, {kProfile, fmt::format("slewring {}", identity.build)});
+  encode(buffer_, HeaderRecord{kProfile, fmt::format("slewring {}", identity.build)});
   const Status status = append_marked();
   return status.is_ok() ? add_metadata(kIdentityName, to_entries(identity)) : status;
 }
@@ -91,7 +91,7 @@ Status Writer::add_attachment(std::string_view name, std::string_view media_type
 Status Writer::add_metadata(std::string_view name, const TextMap& entries) {
   if (!failure_.is_ok()) return failure_;
   buffer_.clear();
-  encode_metadata(buffer_, {std::string(name), entries});
+  encode(buffer_, MetadataRecord{std::string(name), entries});
   const MetadataIndexRecord index = {file_.size(), buffer_.size(), std::string(name)};
   Status status = append_marked();
   if (status.is_ok()) index_.metadata.push_back(index);
@@ -109,7 +109,7 @@ Status Writer::schema_of(const ChannelDef& channel, std::uint16_t& id) {
   id = static_cast<std::uint16_t>(index_.schemas.size() + 1);
   SchemaRecord schema = {id, channel.type_name, kSchemaEncoding, channel.idl};
   buffer_.clear();
-  encode_schema(buffer_, schema);
+  encode(buffer_, schema);
   Status status = append_marked();
   declared_bytes_ += buffer_.size();
   if (status.is_ok()) index_.schemas.push_back(std::move(schema));
@@ -127,7 +127,7 @@ Status Writer::add_channel(const ChannelDef& channel, ChannelId& id) {
   Status status = schema_of(channel, record.schema_id);
   if (!status.is_ok()) return status;
   buffer_.clear();
-  encode_channel(buffer_, record);
+  encode(buffer_, record);
   status = append_marked();
   if (!status.is_ok()) return status;
   declared_bytes_ += buffer_.size();
@@ -304,7 +304,7 @@ Status Writer::write_end(const TextMap& summary) {
   // after a failure there may be room for the small end, even if not for a chunk
   Bytes metadata;
   if (!summary.empty()) {
-    encode_metadata(metadata, {kSummaryName, summary});
+    encode(metadata, MetadataRecord{kSummaryName, summary});
     const MetadataIndexRecord index = {file_.size(), metadata.size(), kSummaryName};
     const Status status = file_.append_marked(metadata);
     if (!status.is_ok()) return status;

@@ -10,14 +10,13 @@
 #include <vector>
 
 #include "core/field.h"
+#include "core/pace.h"
 #include "core/problem.h"
 #include "core/time.h"
 #include "coupling/level.h"
 #include "coupling/samples.h"
 
 namespace slew::scene {
-
-enum class Pace : int { real, free };
 
 // Behaviour of a node until a partner's sample arrives.
 enum class ExchangeMode : int {

@@ -63,12 +63,12 @@ void DirectSession::reset() {
   }
 }
 
-Status DirectSession::load(std::span<const io::SavedState> states) {
+Status DirectSession::load(std::span<const io_node::SavedState> states) {
   reports_ = {};
   for (const Role role : wire::kPhysicsRoles) {
     if (part(role) == nullptr) continue;
-    const auto found =
-        std::find_if(states.begin(), states.end(), [role](const io::SavedState& state) { return state.role == role; });
+    const auto found = std::find_if(states.begin(), states.end(),
+                                    [role](const io_node::SavedState& state) { return state.role == role; });
     if (found == states.end()) {
       return Status::error(ExitCode::bad_input, "there is no state of " + std::string(node::to_text(role)));
     }
@@ -88,8 +88,8 @@ Status DirectSession::can_save() const {
   return Status::ok();
 }
 
-std::vector<io::SavedState> DirectSession::save(StepIndex n) const {
-  std::vector<io::SavedState> states;
+std::vector<io_node::SavedState> DirectSession::save(StepIndex n) const {
+  std::vector<io_node::SavedState> states;
   for (const Role role : wire::kPhysicsRoles) {
     if (part(role) == nullptr) continue;
     const bool is_follower = transport::traits(role).is_follower;
@@ -101,7 +101,7 @@ std::vector<io::SavedState> DirectSession::save(StepIndex n) const {
     published.flags = last.flags;
     published.offender = last.offender;
     published.substeps = last.substeps;
-    node::save_node(*part(role), published, n, states.emplace_back(io::SavedState{role, {}}).state);
+    node::save_node(*part(role), published, n, states.emplace_back(io_node::SavedState{role, {}}).state);
   }
   return states;
 }

@@ -35,9 +35,9 @@ class DirectSession {
   void reset();
   // Replaces start(): loads the states of one step, at which mechanics and hydraulics have exchanged. Error
   // (bad_input): a state is missing or not this scene's.
-  Status load(std::span<const io::SavedState> states);
+  Status load(std::span<const io_node::SavedState> states);
   // Returns the nodes' states after step n-1. Pre-condition: can_save().
-  [[nodiscard]] std::vector<io::SavedState> save(StepIndex n) const;
+  [[nodiscard]] std::vector<io_node::SavedState> save(StepIndex n) const;
   [[nodiscard]] Status can_save() const;
 
   // Applies the commands, then advances all subsystems from t_n to t_{n+1}.
@@ -69,7 +69,7 @@ class DirectSession {
   // Cause of the last step's failure, as "Arm is not finite" or the subsystem's own text; empty when it succeeded.
   [[nodiscard]] std::string failure() const;
 
- private:
+ protected:  // the tests of saved states save and load between two exchanges
   static constexpr std::size_t kParts = std::size(wire::kPhysicsRoles);
   // The two samples that mechanics and hydraulics exchange.
   struct Exchanged {

@@ -21,12 +21,14 @@
 #include "recording/run_directory.h"
 #include "scene/cpu_places.h"
 #include "session/interrupts.h"
-#include "session/observer.h"
-#include "transport/given_up.h"
+#include "transport/session_state.h"
 
 namespace slew::session {
 namespace {
 
+using observer::NodeView;
+using observer::Observer;
+using observer::SessionView;
 using wire::Role;
 
 constexpr int kRoundMs = 20;
@@ -42,15 +44,16 @@ constexpr std::int64_t kStartAgainNs = 500'000'000;
 
 class Supervisor {
  public:
-  Supervisor(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher)
-      : Supervisor(options, watcher, session.scene, session.beginning ? session.beginning->step : 0) {}
+  Supervisor(const RunOptions& options, const io_node::SessionScene& session, RunWatcher& watcher)
+      : Supervisor(options, watcher, session.scene, session.resume ? session.resume->step : 0) {}
 
   Supervisor(const RunOptions& options, RunWatcher& watcher, const scene::Scene& scene, StepIndex begin)
       : options_(options),
         begin_(begin),
         watcher_(watcher),
-        step_(scene.session.step_duration()),
-        roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
+        tally_({options.kept, scene.session.step_duration()}),
+        roles_(io_node::required_roles(
+            scene, options.scene.is_recording ? io_node::Recording::required : io_node::Recording::none)),
         name_(scene.name),
         give_up_after_(duration_of_seconds(scene.session.give_up_after)),
         rejoin_(duration_of_seconds(scene.session.rejoin)),
@@ -68,8 +71,8 @@ class Supervisor {
     count_interrupts();
     started_wall_ns_ = wall_clock_ns();
     if (is_ours(Role::io)) start(Role::io);
-    observer_ = std::make_unique<Observer>(open_transport(), options_.session.session);
-    observer_->keep_curves({options_.kept, step_});
+    observer_ = std::make_unique<Observer>(
+        open_transport(), observer::ObserverOptions{.session = options_.session.session, .receiver = &tally_});
     if (!is_ours(Role::io)) start_others();
     while (!all_ended()) {
       wait_for_output();
@@ -527,6 +530,7 @@ class Supervisor {
     outcome.recording = recording_;
     if (recording_.empty() && is_ours(Role::recorder) && are_others_started_) outcome.recording = find_recording();
     outcome.view = observer_->view();
+    outcome.tally = std::move(tally_);
     outcome.begin = begin_;
     outcome.steps = std::max<StepIndex>(0, outcome.view.step() - begin_);
     outcome.wall_time = clock_.running();
@@ -538,7 +542,7 @@ class Supervisor {
   const RunOptions& options_;
   StepIndex begin_;  // step that the session goes on from
   RunWatcher& watcher_;
-  SimDuration step_;
+  Tally tally_;
   std::uint32_t roles_;
   std::vector<scene::CpuPlace> cpus_;
   std::string name_;         // name of the scene
@@ -565,7 +569,7 @@ class Supervisor {
 
 }  // namespace
 
-RunOutcome run_distributed(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher) {
+RunOutcome run_distributed(const RunOptions& options, const io_node::SessionScene& session, RunWatcher& watcher) {
   return Supervisor(options, session, watcher).run();
 }
 

@@ -6,7 +6,7 @@
 
 namespace slew::session {
 
-[[nodiscard]] RunOutcome run_distributed(const RunOptions& options, const io::SessionScene& session,
+[[nodiscard]] RunOutcome run_distributed(const RunOptions& options, const io_node::SessionScene& session,
                                          RunWatcher& watcher);
 
 }  // namespace slew::session

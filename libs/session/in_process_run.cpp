@@ -4,15 +4,16 @@
 #include <memory>
 
 #include "core/real_time_thread.h"
+#include "io_node/io_node.h"
 #include "io_node/scene_config.h"
 #include "node/driver.h"
 #include "node/open_transport.h"
 #include "node/physics_node.h"
 #include "node/subsystem_factory.h"
+#include "observer/observer.h"
 #include "recorder_node/recorder_node.h"
 #include "session/interrupts.h"
 #include "session/monolithic_session.h"
-#include "session/observer.h"
 #include "transport/roles.h"
 
 namespace slew::session {
@@ -22,22 +23,23 @@ using wire::Role;
 
 class InProcessRun {
  public:
-  InProcessRun(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher)
-      : options_(options), watcher_(watcher), begin_(session.beginning ? session.beginning->step : 0) {
-    io::SessionWish wish;
-    wish.session_name = options.session.session;
-    wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
-    wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
-    io::IoConfig config = io::make_config(session, wish);
+  InProcessRun(const RunOptions& options, const io_node::SessionScene& session, RunWatcher& watcher)
+      : options_(options),
+        watcher_(watcher),
+        begin_(session.resume ? session.resume->step : 0),
+        tally_({options.kept, session.scene.session.step_duration()}) {
+    const auto recording = options.scene.is_recording ? io_node::Recording::required : io_node::Recording::none;
+    io_node::IoConfig config = io_node::make_config(session, options.session.session, recording);
     config.name_check = {};  // no other process is on this bus
     config.join_timeout = node::kNoTimeout;
     roles_ = config.required_roles;
-    io_ = std::make_unique<io::IoNode>(endpoint(Role::io), std::move(config));
+    io_ = std::make_unique<io_node::IoNode>(endpoint(Role::io), std::move(config));
     nodes_.push_back(io_.get());
     for (const Role role : wire::kPhysicsRoles) add_physics(role);
     if (options.scene.is_recording) add_recorder();
-    observer_ = std::make_unique<Observer>(node::open_observer_with_samples(bus_), options.session.session);
-    observer_->keep_curves({options.kept, session.scene.session.step_duration()});
+    observer_ = std::make_unique<observer::Observer>(
+        node::open_observer_with_samples(bus_),
+        observer::ObserverOptions{.session = options.session.session, .receiver = &tally_});
   }
 
   RunOutcome run() {
@@ -73,11 +75,11 @@ class InProcessRun {
   }
 
   void add_recorder() {
-    recorder::RecorderConfig config;
+    recorder_node::RecorderConfig config;
     config.join.session_timeout = node::kNoTimeout;
     config.runs_directory = options_.runs;
     config.keep_free = static_cast<std::uint64_t>(options_.keep_free_mb * 1e6);
-    recorder_ = std::make_unique<recorder::RecorderNode>(endpoint(Role::recorder), std::move(config));
+    recorder_ = std::make_unique<recorder_node::RecorderNode>(endpoint(Role::recorder), std::move(config));
     nodes_.push_back(recorder_.get());
   }
 
@@ -112,9 +114,10 @@ class InProcessRun {
     outcome.wall_time = clock_.running();
     outcome.paused_time = clock_.paused();
     outcome.view = observer_->view();
+    outcome.tally = std::move(tally_);
     for (const auto& node : physics_) {
       const node::HealthState& health = node->health();
-      StepTimes times;
+      observer::StepTimes times;
       times.sum = static_cast<double>(health.step_time_sum_ns.load()) * 1e-9;
       times.steps = health.steps_done.load();
       const Role role = node->member().role();
@@ -130,19 +133,20 @@ class InProcessRun {
   transport::InProcessBus bus_;
   std::vector<std::unique_ptr<transport::Transport>> endpoints_;
   std::uint32_t roles_ = 0;
-  std::unique_ptr<io::IoNode> io_;
+  std::unique_ptr<io_node::IoNode> io_;
   SubsystemFamily family_;
   std::vector<std::unique_ptr<node::PhysicsNode>> physics_;
-  std::unique_ptr<recorder::RecorderNode> recorder_;
+  std::unique_ptr<recorder_node::RecorderNode> recorder_;
   std::vector<node::Node*> nodes_;  // io first: it takes a request to stop
-  std::unique_ptr<Observer> observer_;
+  Tally tally_;
+  std::unique_ptr<observer::Observer> observer_;
   bool has_stepped_ = false;
   RunClock clock_;
 };
 
 }  // namespace
 
-RunOutcome run_in_process(const RunOptions& options, const io::SessionScene& session, RunWatcher& watcher) {
+RunOutcome run_in_process(const RunOptions& options, const io_node::SessionScene& session, RunWatcher& watcher) {
   return InProcessRun(options, session, watcher).run();
 }
 

@@ -80,10 +80,10 @@ class Monolithic {
     next_ = n + 1;
   }
 
-  [[nodiscard]] mechanics::FollowedStep mechanics() const noexcept {
+  [[nodiscard]] mechanics_node::FollowedStep mechanics() const noexcept {
     return {monolith_->equations().mechanism_state(), F_, work_, impulse_};
   }
-  [[nodiscard]] hydraulic_node::FollowedCircuit circuit() const noexcept {
+  [[nodiscard]] hydraulics_node::FollowedCircuit circuit() const noexcept {
     const monolith::SceneEquations& equations = monolith_->equations();
     return {equations.circuit_state(), equations.circuit_vapour(), work_, impulse_};
   }
@@ -175,7 +175,7 @@ class Part : public coupling::Subsystem {
   OwnSample last_;  // last good sample
 };
 
-class MechanicsPart final : public Part<mechanics::MechanicsSubsystem> {
+class MechanicsPart final : public Part<mechanics_node::MechanicsSubsystem> {
  public:
   using Part::Part;
 
@@ -186,7 +186,7 @@ class MechanicsPart final : public Part<mechanics::MechanicsSubsystem> {
   }
 };
 
-class HydraulicsPart final : public Part<hydraulic_node::HydraulicsSubsystem> {
+class HydraulicsPart final : public Part<hydraulics_node::HydraulicsSubsystem> {
  public:
   using Part::Part;
 
@@ -200,15 +200,16 @@ class HydraulicsPart final : public Part<hydraulic_node::HydraulicsSubsystem> {
 }  // namespace
 
 std::unique_ptr<coupling::Subsystem> SubsystemFamily::make(Role role, const scene::Scene& scene) {
-  if (role == Role::flex && scene.has_modes()) return flexible::make_flex_subsystem(scene);
+  if (role == Role::flex && scene.has_modes()) return flex_node::make_flex_subsystem(scene);
   const bool is_mechanics = role == Role::mechanics && scene.has_mechanics();
   const bool is_hydraulics = role == Role::hydraulics && scene.has_hydraulics();
   if (!is_mechanics && !is_hydraulics) return nullptr;
   if (scene.session.solution == scene::Solution::split) {
-    return is_mechanics ? mechanics::make_mechanics_subsystem(scene) : hydraulic_node::make_hydraulics_subsystem(scene);
+    return is_mechanics ? mechanics_node::make_mechanics_subsystem(scene)
+                        : hydraulics_node::make_hydraulics_subsystem(scene);
   }
   if (monolithic_ == nullptr) monolithic_ = std::make_shared<Monolithic>(scene);
-  if (is_mechanics) return std::make_unique<MechanicsPart>(monolithic_, scene, mechanics::Motion::followed);
+  if (is_mechanics) return std::make_unique<MechanicsPart>(monolithic_, scene, mechanics_node::Motion::followed);
   return std::make_unique<HydraulicsPart>(monolithic_, scene);
 }
 

@@ -196,19 +196,19 @@ void keep_assets(const scene::Scene& scene, const std::string& folder, const std
   if (scene.script.file && !scene.script.file->found.empty()) keep(scene.script.file->found, scene.script.file->file);
 }
 
-SessionView view_recording(const Reader& reader, Values values, const std::vector<std::string>& patterns) {
-  SessionView view;
-  view.keep_curves({patterns, reader.identity().communication_step});
+RecordedView view_recording(const Reader& reader, const std::vector<std::string>& patterns) {
+  RecordedView seen{observer::SessionView(), Tally({patterns, reader.identity().communication_step})};
   const auto take = [&](const recording::RecordedMessage& message) {
-    view.take(topic_of(*message.channel), message.payload, static_cast<double>(message.log_time_ns) / 1e9);
+    seen.view.take(topic_of(*message.channel), message.payload, static_cast<double>(message.log_time_ns) / 1e9,
+                   &seen.tally);
     return Visit::go_on;
   };
   // names first: a message of the directory may be filed behind the first values
   read_all(reader, only({Topic::session}), take);
   read_all(reader, only({Topic::variable_directory, Topic::node_status, Topic::health}), take);
-  view.end_names();
-  if (values == Values::all) read_all(reader, only({Topic::variables}), take);
-  return view;
+  seen.tally.end_names();
+  read_all(reader, only({Topic::variables}), take);
+  return seen;
 }
 
 namespace {

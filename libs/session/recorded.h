@@ -13,11 +13,12 @@
 
 #include "node/flag_counter.h"
 #include "node/tick_counter.h"
+#include "observer/session_view.h"
 #include "plotting/series.h"
 #include "recording/reader.h"
 #include "scene/scene.h"
 #include "session/curves.h"
-#include "session/session_view.h"
+#include "session/tally.h"
 
 namespace slew::session {
 
@@ -30,11 +31,13 @@ using node::TickSpan;
 // Messages of these topics.
 [[nodiscard]] recording::MessageFilter only(std::initializer_list<wire::Topic> topics);
 
-// Session, nodes, health and the names of all variables; values and extremes of the variables only on request.
-enum class Values : std::uint8_t { none, all };
-// patterns: of variables that the view keeps as curves.
-[[nodiscard]] SessionView view_recording(const recording::Reader& reader, Values values,
-                                         const std::vector<std::string>& patterns = {});
+// Session, nodes, health and variables, without the physics samples.
+struct RecordedView {
+  observer::SessionView view;
+  Tally tally;
+};
+// patterns: of variables that the tally keeps as curves.
+[[nodiscard]] RecordedView view_recording(const recording::Reader& reader, const std::vector<std::string>& patterns);
 
 // Times of the recording, both included.
 struct TimeRange {

@@ -55,7 +55,7 @@ class Replay {
     epoch_ = first_epoch();
     if (end_ != nullptr) {
       last_epoch_ = last_epoch();
-      config_ = io::make_config(scene_, {});
+      config_ = io_node::make_config(scene_, "", io_node::Recording::none);
       follower_.emplace(config_);
     }
     start_epoch();
@@ -127,7 +127,7 @@ class Replay {
   }
 
   // The states with which the epoch begins: no tick is older. None: it begins with INIT.
-  [[nodiscard]] const std::vector<io::SavedState>* first_states() const {
+  [[nodiscard]] const std::vector<io_node::SavedState>* first_states() const {
     const auto states = states_.find(epoch_);
     if (states == states_.end()) return nullptr;
     const auto& [step, first] = *states->second.begin();
@@ -185,7 +185,7 @@ class Replay {
                                 end_->step, static_cast<double>(end_->step) * H));
     }
     if (const Status can = session_.can_save(); !can.is_ok()) throw Failure(can.code, can.text);
-    io::SavedSession& saved = end_->saved;
+    io_node::SavedSession& saved = end_->saved;
     saved.step = next_;
     saved.build = node::build_id();
     saved.session_name = reader_.identity().session_name;
@@ -211,7 +211,7 @@ class Replay {
   }
 
   // With INIT, or with the states of a step.
-  void begin_from(const std::vector<io::SavedState>* states) {
+  void begin_from(const std::vector<io_node::SavedState>* states) {
     begin_ = states == nullptr ? 0 : states->front().state.step;
     next_ = begin_;
     hashes_ = {};
@@ -219,7 +219,7 @@ class Replay {
     if (status.is_ok() && follower_) {
       const node::Checkpoint* own = nullptr;
       if (states != nullptr) {
-        for (const io::SavedState& of_role : *states) {
+        for (const io_node::SavedState& of_role : *states) {
           if (of_role.role == Role::io) own = &of_role.state;
         }
       }
@@ -440,10 +440,10 @@ class Replay {
   DirectSession session_;
   ReplayResult result_;
   ReplayEnd* end_;
-  io::IoConfig config_;
-  std::optional<io::TickFollower> follower_;
-  std::map<std::uint32_t, std::map<StepIndex, std::vector<io::SavedState>>> states_;  // by epoch and step
-  std::map<std::uint32_t, StepIndex> first_ticks_;                                    // by epoch
+  io_node::IoConfig config_;
+  std::optional<io_node::TickFollower> follower_;
+  std::map<std::uint32_t, std::map<StepIndex, std::vector<io_node::SavedState>>> states_;  // by epoch and step
+  std::map<std::uint32_t, StepIndex> first_ticks_;                                         // by epoch
   bool has_stopped_ = false;
   std::uint32_t epoch_ = 0;
   std::uint32_t last_epoch_ = 0;

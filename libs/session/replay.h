@@ -40,7 +40,7 @@ struct ReplayResult {
 // End of the computed part of a recording, and the session's states there.
 struct ReplayEnd {
   StepIndex step = 0;  // step of the last epoch; replay continues to the next one at which all nodes exchange
-  io::SavedSession saved;
+  io_node::SavedSession saved;
 };
 
 // Throws Failure when the recording lacks its scene or its ticks.

@@ -22,7 +22,7 @@ void RunWatcher::report(const std::string& message) {
   std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
 }
 
-bool RunWatcher::update(Observer&, std::int64_t, bool) {
+bool RunWatcher::update(observer::Observer&, std::int64_t, bool) {
   return true;
 }
 

@@ -8,12 +8,11 @@
 
 #include "core/status.h"
 #include "node/session_options.h"
+#include "observer/observer.h"
 #include "scene/scene_options.h"
-#include "session/session_view.h"
+#include "session/tally.h"
 
 namespace slew::session {
-
-class Observer;
 
 // Follows a run: a status line, a keyboard, a measurement. This one reports messages alone.
 class RunWatcher {
@@ -30,7 +29,7 @@ class RunWatcher {
   // A message of the run or of one of its nodes: a line on standard error.
   virtual void report(const std::string& message);
   // Called some 50 times a second. False requests the end of the session; is_ending: the request was sent.
-  virtual bool update(Observer& observer, std::int64_t now_ns, bool is_ending);
+  virtual bool update(observer::Observer& observer, std::int64_t now_ns, bool is_ending);
   // The last node has ended.
   virtual void end() {}
 };
@@ -49,7 +48,7 @@ struct RunOptions {
   bool is_refusal_reported = false;  // that it was refused: not once more
   std::string cpus;                  // "mechanics=1, hydraulics=0"; empty: as in the scene
   double added_work_us = 0;          // CPU time that every step of a physics node burns beside its own
-  std::vector<std::string> kept;     // patterns of variables whose curves the outcome's view keeps
+  std::vector<std::string> kept;     // patterns of variables whose curves the outcome's tally keeps
   bool is_json = false;
   bool is_quiet = false;
 
@@ -76,7 +75,8 @@ struct RunOutcome {
   bool is_refusal_reported = false;   // a refusal of real-time scheduling or locked memory was reported
   std::vector<std::string> messages;  // causes of a failure, the first cause first
   std::string recording;              // path; empty: none
-  SessionView view;                   // as seen while it ran
+  observer::SessionView view;         // as seen while it ran
+  Tally tally{{{}, {}}};              // of the same messages
   double wall_time = 0;               // s, from the first tick to the last, without pauses
   double paused_time = 0;             // s
   StepIndex begin = 0;                // step that the session began with

@@ -14,6 +14,7 @@ namespace {
 constexpr SimDuration kSurveyTime = milliseconds(700);
 constexpr SimDuration kLongestSurvey = milliseconds(3000);  // on a machine that is busy
 constexpr SimDuration kSurveyWait = milliseconds(20);
+constexpr SimDuration kFindTimeout = milliseconds(3000);
 
 using Found = std::map<wire::SessionId, FoundSession>;
 
@@ -56,6 +57,20 @@ bool is_running(const FoundSession& session) {
   return !session.description.name.empty() && !is_over;
 }
 
+// Name of the one session of the domain. Throws Failure when there is none or more than one.
+std::string only_session(const node::SessionOptions& options) {
+  const std::vector<FoundSession> sessions = find_sessions(options, kSurveyTime, kLongestSurvey);
+  if (sessions.size() == 1) return sessions.front().description.name;
+  if (sessions.empty()) {
+    throw Failure(ExitCode::failed,
+                  "no session runs on domain " + std::to_string(options.domain) +
+                      "; start one with 'slewring run SCENE', or name its --domain, --interface, --peer and --keys");
+  }
+  std::string names;
+  for (const FoundSession& session : sessions) names += (names.empty() ? "" : ", ") + session.description.name;
+  throw Failure(ExitCode::bad_input, "several sessions run: " + names + "; name one with --session");
+}
+
 }  // namespace
 
 std::vector<FoundSession> find_sessions(const node::SessionOptions& options, SimDuration time, SimDuration longest) {
@@ -81,17 +96,21 @@ std::vector<FoundSession> find_sessions(const node::SessionOptions& options, Sim
   return sessions;
 }
 
-std::string only_session(const node::SessionOptions& options) {
-  const std::vector<FoundSession> sessions = find_sessions(options, kSurveyTime, kLongestSurvey);
-  if (sessions.size() == 1) return sessions.front().description.name;
-  if (sessions.empty()) {
-    throw Failure(ExitCode::failed,
-                  "no session runs on domain " + std::to_string(options.domain) +
-                      "; start one with 'slewring run SCENE', or name its --domain, --interface, --peer and --keys");
-  }
-  std::string names;
-  for (const FoundSession& session : sessions) names += (names.empty() ? "" : ", ") + session.description.name;
-  throw Failure(ExitCode::bad_input, "several sessions run: " + names + "; name one with --session");
+std::unique_ptr<observer::Observer> find_session(node::SessionOptions options, Access access,
+                                                 observer::Receiver* receiver) {
+  if (options.session.empty()) options.session = only_session(options);
+  auto transport =
+      access == Access::look ? node::open_viewer(options) : node::open_transport(wire::Role::observer, options);
+  auto found = std::make_unique<observer::Observer>(
+      std::move(transport),
+      observer::ObserverOptions{.session = options.session, .receiver = receiver, .stop = &node::stop_requested});
+  if (found->wait_for([&] { return found->view().has_session(); }, kFindTimeout)) return found;
+  if (const int stop = node::stop_requested.load(); stop != 0)
+    throw Failure(static_cast<ExitCode>(stop), "interrupted");
+  throw Failure(ExitCode::failed, "no session '" + options.session + "' was found on domain " +
+                                      std::to_string(options.domain) +
+                                      " within 3 s; see 'slewring sessions', and compare --domain, --interface, "
+                                      "--peer and --keys with those of the session");
 }
 
 }  // namespace slew::session

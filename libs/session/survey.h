@@ -1,11 +1,14 @@
-// The sessions that run on a domain.
+// The sessions that run on a domain, and an observer of one of them.
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "node/session_options.h"
+#include "observer/observer.h"
 #include "transport/wire.h"
 
 namespace slew::session {
@@ -22,7 +25,12 @@ struct FoundSession {
 [[nodiscard]] std::vector<FoundSession> find_sessions(const node::SessionOptions& options, SimDuration time,
                                                       SimDuration longest);
 
-// Name of the one session of the domain. Throws Failure when there is none or more than one.
-[[nodiscard]] std::string only_session(const node::SessionOptions& options);
+// An observer with `look` can send no requests.
+enum class Access : std::uint8_t { look, steer };
+
+// Opens an observer of the named session, or of the only one that runs on the domain, and waits until it receives from
+// it. Throws Failure when there is none, or more than one and no name. receiver: may be null.
+[[nodiscard]] std::unique_ptr<observer::Observer> find_session(node::SessionOptions options, Access access,
+                                                               observer::Receiver* receiver = nullptr);
 
 }  // namespace slew::session

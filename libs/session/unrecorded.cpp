@@ -18,7 +18,8 @@ namespace {
 std::vector<std::string> always_recorded(const scene::Scene& scene) {
   std::vector<std::string> inputs, names;
   for (const scene::InputDef& input : scene.inputs) inputs.push_back(input.name);
-  for (wire::VariableEntry& own : io::own_variables(inputs, io::required_roles(scene, io::Recording::none))) {
+  for (wire::VariableEntry& own :
+       io_node::own_variables(inputs, io_node::required_roles(scene, io_node::Recording::none))) {
     names.push_back(std::move(own.name));
   }
   return names;

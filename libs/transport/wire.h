@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/pace.h"
 #include "core/static_vector.h"
 #include "core/time.h"
 #include "coupling/level.h"
@@ -138,8 +139,6 @@ struct Asset {
   std::array<std::uint8_t, 32> sha256{};
   bool operator==(const Asset&) const = default;
 };
-
-enum class Pace : std::uint8_t { real, free };
 
 // A process that was silent for too long or died: its role is free for another one, and its later messages are ignored.
 struct GivenUp {

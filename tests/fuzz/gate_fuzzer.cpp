@@ -14,15 +14,15 @@ using namespace slew;
 constexpr std::int64_t kMs = 1'000'000;
 const std::string kControllers[] = {"", "joystick", "pid", "supervisor"};
 
-std::vector<io::ChannelConfig> channels() {
-  io::ChannelConfig lever, loop, button;
+std::vector<io_node::ChannelConfig> channels() {
+  io_node::ChannelConfig lever, loop, button;
   lever.name = "lever";
   lever.scale = 10;
   lever.dead_zone = 0.05;
   lever.ramp = 0.2;
   lever.supervisor = "supervisor";
   loop.name = "loop";
-  loop.exchange = io::Exchange::lockstep;
+  loop.controller = scene::ControllerMode::lockstep;
   loop.delay = 3;
   loop.rate_limit = 5;
   loop.scale = -2;
@@ -35,9 +35,9 @@ std::vector<io::ChannelConfig> channels() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Choices choices(data, size);
-  io::GateConfig config;
+  io_node::GateConfig config;
   config.variables_every = 1 + static_cast<StepIndex>(choices.below(4));
-  io::InputGate gate(channels(), config, milliseconds(1));
+  io_node::InputGate gate(channels(), config, milliseconds(1));
   StepIndex step = 0;
   std::int64_t now_ns = 0;
   while (choices.has_more()) {
@@ -84,7 +84,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         ++step;
         now_ns += kMs;
         for (std::size_t i = 0; i < gate.size(); ++i) {
-          const io::ChannelConfig& one = gate.config(i);
+          const io_node::ChannelConfig& one = gate.config(i);
           fuzz::require(std::isfinite(gate.control(i)) && std::fabs(gate.control(i)) <= std::fabs(one.scale));
           fuzz::require(std::fabs(gate.raw(i)) <= 1 && (!one.is_digital || gate.raw(i) >= 0));
           fuzz::require(gate.based_on(i) < step);
@@ -92,7 +92,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
       }
     }
-    for (const io::Notice& notice : gate.take_notices()) fuzz::require(!notice.reason.empty());
+    for (const io_node::Notice& notice : gate.take_notices()) fuzz::require(!notice.reason.empty());
   }
   StateHash hash;
   gate.add_to(hash);

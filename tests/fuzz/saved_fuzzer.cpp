@@ -17,7 +17,7 @@ bool are_same(const node::Checkpoint& a, const node::Checkpoint& b) {
   return a.step == b.step && a.state_hash == b.state_hash && a.bytes == b.bytes;
 }
 
-bool are_same(const io::SavedSession& a, const io::SavedSession& b) {
+bool are_same(const io_node::SavedSession& a, const io_node::SavedSession& b) {
   bool is_same = a.build == b.build && a.session_name == b.session_name && a.scene_name == b.scene_name &&
                  a.scene_text == b.scene_text && a.assets == b.assets && a.communication_step == b.communication_step &&
                  a.step == b.step && a.states.size() == b.states.size();
@@ -27,7 +27,7 @@ bool are_same(const io::SavedSession& a, const io::SavedSession& b) {
   return is_same;
 }
 
-void give_in_parts(const io::SavedState& of_role) {
+void give_in_parts(const io_node::SavedState& of_role) {
   wire::Header header;
   header.step = of_role.state.step;
   node::CheckpointParts taken;
@@ -57,16 +57,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static fuzz::MemoryFile file;
   static const std::filesystem::path written = fuzz::written_file(".saved");
   file.write(data, size);
-  io::SavedSession saved, again;
-  const Status status = io::read_saved(file.path(), saved);
+  io_node::SavedSession saved, again;
+  const Status status = io_node::read_saved(file.path(), saved);
   fuzz::require(status.is_ok() || (status.code == ExitCode::bad_input && !status.text.empty()));
   if (!status.is_ok()) return 0;
-  for (const io::SavedState& of_role : saved.states) {
+  for (const io_node::SavedState& of_role : saved.states) {
     fuzz::require(of_role.state.step == saved.step && saved.find(of_role.role) != nullptr);
     give_in_parts(of_role);
   }
-  fuzz::require(io::write_saved(written, saved, io::Replace::existing).is_ok());
-  fuzz::require(io::read_saved(written, again).is_ok());
+  fuzz::require(io_node::write_saved(written, saved, io_node::Replace::existing).is_ok());
+  fuzz::require(io_node::read_saved(written, again).is_ok());
   fuzz::require(are_same(saved, again));
   std::error_code ignored;
   std::filesystem::remove(written, ignored);

@@ -101,9 +101,9 @@ class Machine {
  public:
   explicit Machine(const std::string& file)
       : scene_(load_scene(file)),
-        mechanics_(mechanics::make_mechanics_subsystem(scene_)),
-        hydraulics_(hydraulic_node::make_hydraulics_subsystem(scene_)) {
-    if (scene_.has_modes()) flex_ = flexible::make_flex_subsystem(scene_);
+        mechanics_(mechanics_node::make_mechanics_subsystem(scene_)),
+        hydraulics_(hydraulics_node::make_hydraulics_subsystem(scene_)) {
+    if (scene_.has_modes()) flex_ = flex_node::make_flex_subsystem(scene_);
     start();
     const std::vector<double> controls(scene_.inputs.size(), 0.3);
     coupling::OwnSample mechanics, hydraulics;
@@ -213,9 +213,9 @@ void try_physics(const Loaded& of, bool has_right_sums, fuzz::Choices& choices) 
 // ---- io
 // --------------------------------------------------------------------------------------------------------------
 
-io::IoConfig io_config() {
-  io::IoConfig config;
-  io::ChannelConfig lift, slew;
+io_node::IoConfig io_config() {
+  io_node::IoConfig config;
+  io_node::ChannelConfig lift, slew;
   lift.name = "Input_Lift";
   lift.ramp = 0.3;
   slew.name = "Input_Slew";
@@ -226,8 +226,8 @@ io::IoConfig io_config() {
 }
 
 void try_io(bool has_right_sums, fuzz::Choices& choices) {
-  static const io::IoConfig config = io_config();
-  io::TickFollower follower(config);
+  static const io_node::IoConfig config = io_config();
+  io_node::TickFollower follower(config);
   wire::Tick tick;
   tick.header.step = 0;
   tick.controls.resize(config.channels.size());

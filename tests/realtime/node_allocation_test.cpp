@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "core/allocation_guard.h"
-#include "flex_node/flex_subsystem.h"
-#include "hydraulics_node/hydraulics_subsystem.h"
+#include "io_node/io_node.h"
 #include "io_node/scene_config.h"
-#include "mechanics_node/mechanics_subsystem.h"
 #include "node/open_transport.h"
 #include "node/physics_node.h"
 #include "node/subsystem_factory.h"
+#include "session/monolithic_session.h"
 #include "support/crane_pair.h"
 #include "transport/cdr/codec.h"
 #include "transport/in_process/in_process_bus.h"
@@ -25,25 +24,20 @@ using wire::Role;
 // beyond the depth of the caches of sent messages
 constexpr StepIndex kWarmUp = static_cast<StepIndex>(node::kSentDepth) + 200;
 
-std::unique_ptr<coupling::Subsystem> make(Role role, const scene::Scene& scene) {
-  if (role == Role::mechanics) return mechanics::make_mechanics_subsystem(scene);
-  if (role == Role::flex) return flexible::make_flex_subsystem(scene);
-  return hydraulic_node::make_hydraulics_subsystem(scene);
-}
-
 class LockStep {
  public:
   LockStep(scene::Scene scene, StepIndex warm_up) : scene_(std::move(scene)) {
-    io::IoConfig config = io::make_config(scene_, {kSession, io::Operator::script, io::Recording::none});
+    io_node::IoConfig config = io_node::make_config(scene_, kSession, io_node::Recording::none);
     config.name_check = {};
-    config.pace = wire::Pace::free;
-    config.steps = warm_up + 1000;
+    config.session.pace = Pace::free;
+    config.session.duration = static_cast<double>(warm_up + 1000) * config.session.step;
     const std::uint32_t roles = config.required_roles;
     io_.emplace(endpoint(Role::io), std::move(config));
     for (const Role role : wire::kPhysicsRoles) {
       if ((roles & bit(role)) == 0) continue;
-      const auto factory = node::subsystem_factory([role](const scene::Scene& s) { return make(role, s); },
-                                                   SLEWRING_SOURCE_DIR "/scenes");
+      const auto factory =
+          node::subsystem_factory([role](const scene::Scene& s) { return session::SubsystemFamily().make(role, s); },
+                                  SLEWRING_SOURCE_DIR "/scenes");
       physics_.push_back(std::make_unique<node::PhysicsNode>(role, endpoint(role), factory));
     }
   }
@@ -104,7 +98,7 @@ class LockStep {
   const scene::Scene scene_;
   transport::InProcessBus bus_;
   std::vector<std::unique_ptr<transport::Transport>> ends_;
-  std::optional<io::IoNode> io_;
+  std::optional<io_node::IoNode> io_;
   std::vector<std::unique_ptr<node::PhysicsNode>> physics_;
   transport::Transport& controller_ = endpoint(Role::controller);
   StepIndex steered_ = kJoinStep;

@@ -1,5 +1,5 @@
-// Both physics subsystems of a scene stepped by hand inside a test: the exchange of samples written down a second time,
-// against which sessions are held.
+// Both physics subsystems of a scene stepped by hand inside a test: an independent exchange of samples, with which
+// sessions are compared.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ namespace slew::testing {
 class CranePair {
  public:
   explicit CranePair(const scene::Scene& scene)
-      : mechanics(std::make_unique<mechanics::MechanicsSubsystem>(scene)),
-        hydraulics(std::make_unique<hydraulic_node::HydraulicsSubsystem>(scene)) {}
+      : mechanics(std::make_unique<mechanics_node::MechanicsSubsystem>(scene)),
+        hydraulics(std::make_unique<hydraulics_node::HydraulicsSubsystem>(scene)) {}
 
   // Hash of the mechanics at INIT.
   std::uint64_t start() {
@@ -54,8 +54,8 @@ class CranePair {
     return scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml", overrides);
   }
 
-  std::unique_ptr<mechanics::MechanicsSubsystem> mechanics;
-  std::unique_ptr<hydraulic_node::HydraulicsSubsystem> hydraulics;
+  std::unique_ptr<mechanics_node::MechanicsSubsystem> mechanics;
+  std::unique_ptr<hydraulics_node::HydraulicsSubsystem> hydraulics;
   coupling::OwnSample mechanics_now, hydraulics_now;  // samples at t_n
   StepIndex n = 0;
 

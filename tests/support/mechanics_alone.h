@@ -44,7 +44,7 @@ class MechanicsAlone {
   }
 
   scene::Scene scene;
-  mechanics::MechanicsSubsystem subsystem;
+  mechanics_node::MechanicsSubsystem subsystem;
   coupling::OwnSample sample;
   StepReport report;
   StepIndex n = 0;

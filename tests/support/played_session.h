@@ -1,5 +1,5 @@
-// A session played by a test: one real node on the bus of one process, its partners spoken for by the test, and a clock
-// that is a number.
+// A session played by a test: one real node on the bus of one process; the test publishes the messages of its partners
+// and sets the time.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ class ObservedSubsystem final : public StillSubsystem {
   std::vector<ElementVariable> variables_{{"Bag.mass", Dimension::mass}};
 };
 
-// A transport that cannot send on one topic any more, once it is told so.
+// A transport that fails to send on a topic after break_down().
 class BreakableTransport final : public transport::Transport {
  public:
   explicit BreakableTransport(transport::Transport& transport) : transport_(transport) {}
@@ -98,13 +98,13 @@ class PlayedSession {
   }
 
   template <typename Message>
-  void say(wire::Topic topic, const Message& message) {
+  void publish(wire::Topic topic, const Message& message) {
     std::vector<std::byte> bytes;
     ASSERT_TRUE(transport::encode(message, bytes));
     ASSERT_TRUE(played_.publish(topic, bytes).is_ok());
   }
 
-  void say_bytes(wire::Topic topic, std::span<const std::byte> bytes) {
+  void publish_bytes(wire::Topic topic, std::span<const std::byte> bytes) {
     ASSERT_TRUE(played_.publish(topic, bytes).is_ok());
   }
 
@@ -117,51 +117,65 @@ class PlayedSession {
     status.started_ns = 1;
     return status;
   }
-  void say_status(wire::Role role, wire::NodeState state, StepIndex step = kJoinStep) {
-    say(wire::Topic::node_status, status(role, state, step));
+  void publish_status(wire::Role role, wire::NodeState state, StepIndex step = kJoinStep) {
+    publish(wire::Topic::node_status, status(role, state, step));
   }
   // Publishes that the role has received from the node under test on these topics.
-  void say_heard(wire::Role role, wire::NodeState state, const wire::Header& node,
-                 std::initializer_list<wire::Topic> topics) {
+  void acknowledge(wire::Role role, wire::NodeState state, const wire::Header& node,
+                   std::initializer_list<wire::Topic> topics) {
     wire::NodeStatus message = status(role, state);
     for (const wire::Topic topic : topics) {
       message.heard.push_back({node.role, node.incarnation, static_cast<std::uint8_t>(topic)});
     }
-    say(wire::Topic::node_status, message);
+    publish(wire::Topic::node_status, message);
   }
-  void say_tick(StepIndex step, std::uint32_t flags = 0) {
+  void publish_tick(StepIndex step, std::uint32_t flags = 0) {
     wire::Tick tick;
     tick.header = header(wire::Role::io, step);
     tick.flags = flags;
-    say(wire::Topic::tick, tick);
+    publish(wire::Topic::tick, tick);
   }
-  void say_mechanism(StepIndex step, wire::Phase phase = wire::Phase::running, std::uint32_t epoch = 0) {
+  void publish_mechanism(StepIndex step, wire::Phase phase = wire::Phase::running, std::uint32_t epoch = 0) {
     wire::MechanismMessage message;
     message.header = header(wire::Role::mechanics, step, phase, epoch);
-    say(wire::Topic::mechanism, message);
+    publish(wire::Topic::mechanism, message);
   }
-  void say_actuators(StepIndex step, wire::Phase phase = wire::Phase::running, std::uint32_t epoch = 0) {
+  void publish_actuators(StepIndex step, wire::Phase phase = wire::Phase::running, std::uint32_t epoch = 0) {
     wire::ActuatorMessage message;
     message.header = header(wire::Role::hydraulics, step, phase, epoch);
-    say(wire::Topic::actuators, message);
+    publish(wire::Topic::actuators, message);
+  }
+
+  // Takes the node under test through JOIN: every other required role acknowledges these topics in this state.
+  void join(node::Node& node, std::int64_t& now_ns, std::initializer_list<wire::Topic> topics,
+            wire::NodeState state = wire::NodeState::joining) {
+    publish(wire::Topic::session, session);
+    node.poll(now_ns);
+    const wire::Header own = node.member().header(wire::Phase::join, kJoinStep);
+    for (const wire::Role role : wire::kNodeRoles) {
+      const bool is_played = role != own.role && (session.required_roles & wire::bit(role)) != 0;
+      if (is_played) acknowledge(role, state, own, topics);
+    }
+    node.poll(now_ns += kMs);
+    node.poll(now_ns += kMs);
   }
 
   // Messages that the node under test has published on a topic since the last call.
   template <typename Message>
-  [[nodiscard]] std::vector<Message> said(wire::Topic topic) {
+  [[nodiscard]] std::vector<Message> received(wire::Topic topic) {
     listen();
     std::vector<Message> messages;
-    for (const std::vector<std::byte>& bytes : said_[topic]) {
+    for (const std::vector<std::byte>& bytes : received_[topic]) {
       messages.emplace_back();
       EXPECT_TRUE(transport::decode(bytes, messages.back()));
     }
-    said_[topic].clear();
+    received_[topic].clear();
     return messages;
   }
 
   void forget() {
     listen();
-    said_.clear();
+    received_.clear();
   }
 
   wire::SessionDescription session;
@@ -169,13 +183,13 @@ class PlayedSession {
  private:
   void listen() {
     transport::Received received;
-    while (played_.take(received)) said_[received.topic].emplace_back(received.bytes.begin(), received.bytes.end());
+    while (played_.take(received)) received_[received.topic].emplace_back(received.bytes.begin(), received.bytes.end());
   }
 
   transport::InProcessBus bus_;
   transport::InProcessEndpoint node_{bus_, {"node", transport::TopicSet::all(), transport::TopicSet::all()}};
   transport::InProcessEndpoint played_{bus_, {"played", transport::TopicSet::all(), transport::TopicSet::all()}};
-  std::map<wire::Topic, std::vector<std::vector<std::byte>>> said_;
+  std::map<wire::Topic, std::vector<std::vector<std::byte>>> received_;
 };
 
 }  // namespace slew::testing

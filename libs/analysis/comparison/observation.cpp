@@ -69,7 +69,7 @@ class SampleReader {
 class Mechanism {
  public:
   explicit Mechanism(const session::DirectSession& session)
-      : mechanics_(dynamic_cast<const mechanics::MechanicsSubsystem*>(session.subsystem(Role::mechanics))) {
+      : mechanics_(dynamic_cast<const mechanics_node::MechanicsSubsystem*>(session.subsystem(Role::mechanics))) {
     if (mechanics_ == nullptr) return;
     gauge_.emplace(mechanics_->model());
     ws_.emplace(mechanics_->model());
@@ -91,7 +91,7 @@ class Mechanism {
   }
 
  private:
-  const mechanics::MechanicsSubsystem* mechanics_;
+  const mechanics_node::MechanicsSubsystem* mechanics_;
   std::optional<multibody::JointGauge> gauge_;
   std::optional<multibody::Workspace> ws_;
 };

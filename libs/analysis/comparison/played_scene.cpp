@@ -1,33 +1,34 @@
 #include "analysis/comparison/played_scene.h"
 
+#include <utility>
+
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
+#include "io_node/scene_config.h"
 
 namespace slew::analysis {
 
 using wire::Role;
 
+namespace {
+
+io_node::SessionInputs inputs_of(const scene::Scene& scene) {
+  io_node::IoConfig config = io_node::make_config(scene, scene.name, io_node::Recording::none);
+  return {config, std::move(config.sources)};
+}
+
+}  // namespace
+
 PlayedScene::PlayedScene(const scene::Scene& scene)
-    : config_(io::make_config(scene, {.session_name = scene.name, .recording = io::Recording::none})),
-      H_(config_.step),
-      gate_(config_.channels, config_.gate, H_),
-      session_(scene),
-      script_(gate_.size()),
-      controls_(gate_.size()) {
+    : H_(scene.session.step_duration()), inputs_(inputs_of(scene)), session_(scene), controls_(inputs_.gate().size()) {
   set_floating_point_mode();
   require(session_.start());
 }
 
 void PlayedScene::advance() {
-  const SimTime t = time();
-  commands_.clear();
-  if (config_.source != nullptr) {
-    config_.source->courses(t, t + H_, script_);
-    config_.source->changes(t, t + H_, commands_);
-  }
-  // only the script moves a channel: the wall clock is never read
-  gate_.advance(n_, script_, 0);
-  for (std::size_t i = 0; i < controls_.size(); ++i) controls_[i] = gate_.control(i);
+  // no controller holds a channel: the wall clock is never read
+  inputs_.advance(n_, 0, commands_);
+  for (std::size_t i = 0; i < controls_.size(); ++i) controls_[i] = inputs_.gate().control(i);
   session_.step(n_, commands_, controls_);
   ++n_;
 }

@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "io_node/input_gate.h"
-#include "io_node/scene_config.h"
+#include "io_node/session_inputs.h"
 #include "scene/scene.h"
 #include "session/direct_session.h"
 
@@ -34,12 +33,10 @@ class PlayedScene {
   [[nodiscard]] StateHashes state_hashes() const noexcept;
 
  private:
-  io::IoConfig config_;
   SimDuration H_;
-  io::InputGate gate_;
+  io_node::SessionInputs inputs_;
   session::DirectSession session_;
   StepIndex n_ = 0;
-  std::vector<SignalCourse> script_;  // raw, by channel
   std::vector<double> controls_;
   std::vector<wire::Command> commands_;
 };

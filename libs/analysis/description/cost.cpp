@@ -114,17 +114,17 @@ class Measurement {
     const StepIndex every = std::max<StepIndex>(1, steps_ / kSampledStates);
     for (StepIndex n = 0; n < steps_; ++n) {
       played.advance();
-      if (const hydraulic_node::HydraulicsSubsystem* hydraulics = hydraulics_of(played)) {
+      if (const hydraulics_node::HydraulicsSubsystem* hydraulics = hydraulics_of(played)) {
         const math::StiffReport& report = hydraulics->integrator().last_report();
         accepted_ += report.accepted;
         rejected_ += report.rejected;
       }
       if (n % every != 0) continue;
       ++cost_.states;
-      if (const mechanics::MechanicsSubsystem* mechanics = mechanics_of(played)) {
+      if (const mechanics_node::MechanicsSubsystem* mechanics = mechanics_of(played)) {
         mechanics_states_.push_back(sample(*mechanics, scene_));
       }
-      if (const hydraulic_node::HydraulicsSubsystem* hydraulics = hydraulics_of(played)) {
+      if (const hydraulics_node::HydraulicsSubsystem* hydraulics = hydraulics_of(played)) {
         const std::span<const double> y = hydraulics->integrator().state();
         circuit_states_.push_back({{y.begin(), y.end()}, {played.controls().begin(), played.controls().end()}});
       }

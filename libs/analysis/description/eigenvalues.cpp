@@ -139,8 +139,8 @@ Eigenvalues find_eigenvalues(const scene::Scene& scene, double at, DryFriction f
   found.at = played.time().seconds();
   found.friction = friction;
   found.step = scene.session.step;
-  const mechanics::MechanicsSubsystem* mechanics = mechanics_of(played);
-  const hydraulic_node::HydraulicsSubsystem* hydraulics = hydraulics_of(played);
+  const mechanics_node::MechanicsSubsystem* mechanics = mechanics_of(played);
+  const hydraulics_node::HydraulicsSubsystem* hydraulics = hydraulics_of(played);
   if (mechanics == nullptr) {
     throw Failure(ExitCode::bad_input, "the scene has no bodies; eigenvalues are those of a machine with mechanics");
   }

@@ -27,12 +27,12 @@ void play_to(PlayedScene& played, double at) {
   }
 }
 
-const mechanics::MechanicsSubsystem* mechanics_of(const PlayedScene& played) {
-  return dynamic_cast<const mechanics::MechanicsSubsystem*>(played.session().subsystem(Role::mechanics));
+const mechanics_node::MechanicsSubsystem* mechanics_of(const PlayedScene& played) {
+  return dynamic_cast<const mechanics_node::MechanicsSubsystem*>(played.session().subsystem(Role::mechanics));
 }
 
-const hydraulic_node::HydraulicsSubsystem* hydraulics_of(const PlayedScene& played) {
-  return dynamic_cast<const hydraulic_node::HydraulicsSubsystem*>(played.session().subsystem(Role::hydraulics));
+const hydraulics_node::HydraulicsSubsystem* hydraulics_of(const PlayedScene& played) {
+  return dynamic_cast<const hydraulics_node::HydraulicsSubsystem*>(played.session().subsystem(Role::hydraulics));
 }
 
 }  // namespace slew::analysis

@@ -17,7 +17,7 @@ namespace slew::analysis {
 void play_to(PlayedScene& played, double at);
 
 // Null: the scene has none.
-[[nodiscard]] const mechanics::MechanicsSubsystem* mechanics_of(const PlayedScene& played);
-[[nodiscard]] const hydraulic_node::HydraulicsSubsystem* hydraulics_of(const PlayedScene& played);
+[[nodiscard]] const mechanics_node::MechanicsSubsystem* mechanics_of(const PlayedScene& played);
+[[nodiscard]] const hydraulics_node::HydraulicsSubsystem* hydraulics_of(const PlayedScene& played);
 
 }  // namespace slew::analysis

@@ -81,20 +81,20 @@ class Finder {
   void find_static_forces(LiftableLoad& result) {
     PlayedScene played(scene_);
     play_to(played, pose_.at);
-    const mechanics::MechanicsSubsystem& mechanics = *mechanics_of(played);
+    const mechanics_node::MechanicsSubsystem& mechanics = *mechanics_of(played);
     multibody::Model model = mechanics.model();
     multibody::State state = mechanics.state();
     std::fill(state.u.begin(), state.u.end(), 0.0);
     for (const std::string& joint : pose_.joints) put(joint, model, state);
-    const int payload = mechanics::payload_of(scene_.mechanics, model);
+    const int payload = mechanics_node::payload_of(scene_.mechanics, model);
     if (payload == 0) return;
     multibody::Workspace ws(model);
     const std::size_t m = scene_.ports.size();
     std::vector<double> ratio, F(m), slope(m);
     for (const scene::PortDef& port : scene_.ports) ratio.push_back(port.ratio);
     result.payload = model.bodies[static_cast<std::size_t>(payload)].name;
-    result.mass = mechanics::mass_of(model, payload);
-    if (!mechanics::static_line_forces(model, state, ws, ratio, payload, result.mass, F)) {
+    result.mass = mechanics_node::mass_of(model, payload);
+    if (!mechanics_node::static_line_forces(model, state, ws, ratio, payload, result.mass, F)) {
       result.refusal = "no forces of the cylinders hold the machine in this pose";
       return;
     }
@@ -103,7 +103,7 @@ class Finder {
       result.ports.push_back(
           {.name = port.name, .stroke = port.offset + port.ratio * ws.row_x[i], .static_force = F[i]});
     }
-    mechanics::payload_slopes(model, state, ws, ratio, payload, result.mass, slope);
+    mechanics_node::payload_slopes(model, state, ws, ratio, payload, result.mass, slope);
     for (std::size_t i = 0; i < m; ++i) {
       if (std::fabs(slope[i]) >= kNoShare) result.ports[i].force_per_kg = slope[i];
     }

@@ -36,7 +36,7 @@ multibody::State state_of(const multibody::Model& model, const multibody::Model&
 
 }  // namespace
 
-MechanicsSample sample(const mechanics::MechanicsSubsystem& mechanics, const scene::Scene& scene) {
+MechanicsSample sample(const mechanics_node::MechanicsSubsystem& mechanics, const scene::Scene& scene) {
   MechanicsSample sample{mechanics.state(), {}};
   std::vector<double> values(mechanics.variables().size());
   mechanics.read_variables(values);

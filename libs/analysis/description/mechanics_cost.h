@@ -15,7 +15,7 @@ struct MechanicsSample {
   multibody::State state;
   std::vector<double> port_force;  // N or N m, on the rows of the ports
 };
-[[nodiscard]] MechanicsSample sample(const mechanics::MechanicsSubsystem& mechanics, const scene::Scene& scene);
+[[nodiscard]] MechanicsSample sample(const mechanics_node::MechanicsSubsystem& mechanics, const scene::Scene& scene);
 
 // The mechanism without a part of it. scene: one with the same bodies and joints; modes that it lacks are left out.
 struct MechanicsVariant {

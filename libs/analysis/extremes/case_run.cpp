@@ -151,12 +151,12 @@ class Stepper {
         ceiling_(scene),
         H_(scene.session.step_duration()) {
     if (const auto* mechanics =
-            dynamic_cast<const mechanics::MechanicsSubsystem*>(session_.subsystem(Role::mechanics))) {
+            dynamic_cast<const mechanics_node::MechanicsSubsystem*>(session_.subsystem(Role::mechanics))) {
       mechanics_ = mechanics;
       gauge_.emplace(mechanics->model());
       ws_.emplace(mechanics->model());
     }
-    hydraulics_ = dynamic_cast<const hydraulic_node::HydraulicsSubsystem*>(session_.subsystem(Role::hydraulics));
+    hydraulics_ = dynamic_cast<const hydraulics_node::HydraulicsSubsystem*>(session_.subsystem(Role::hydraulics));
     if (hydraulics_ == nullptr) return;
     ceiling_.set_actuators(hydraulics_->circuit().actuators());
     values_.resize(hydraulics_->variables().size());
@@ -318,8 +318,8 @@ class Stepper {
   session::DirectSession session_;
   Ceiling ceiling_;
   SimDuration H_;
-  const mechanics::MechanicsSubsystem* mechanics_ = nullptr;
-  const hydraulic_node::HydraulicsSubsystem* hydraulics_ = nullptr;
+  const mechanics_node::MechanicsSubsystem* mechanics_ = nullptr;
+  const hydraulics_node::HydraulicsSubsystem* hydraulics_ = nullptr;
   std::optional<multibody::JointGauge> gauge_;
   std::optional<multibody::Workspace> ws_;
   std::vector<double> values_;

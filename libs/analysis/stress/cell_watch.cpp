@@ -26,17 +26,17 @@ std::int64_t process_cpu_ns(std::uint32_t pid) noexcept {
 }
 
 StepIndex slices_of(const YardstickRules& rules, StepIndex steps) {
-  const double seconds = rules.step.seconds() * static_cast<double>(steps);
+  const double seconds = rules.step().seconds() * static_cast<double>(steps);
   return std::max<StepIndex>(1, std::llround(std::ceil(seconds / kLongestSlice)));
 }
 
 }  // namespace
 
-void SessionWork::look(const session::SessionView& view, StepIndex step) noexcept {
+void SessionWork::look(const observer::SessionView& view, StepIndex step) noexcept {
   Looked& at = first_.step == kJoinStep ? first_ : last_;
   at.step = step;
   for (const Role role : wire::kNodeRoles) {
-    const session::NodeView& node = view.node(role);
+    const observer::NodeView& node = view.node(role);
     at.cpu_ns[static_cast<std::size_t>(role)] = node.is_known ? process_cpu_ns(node.status.pid) : 0;
   }
 }
@@ -52,11 +52,11 @@ CellWatch::CellWatch(const YardstickRules& rules, StepIndex steps, SimDuration g
       cell_(cell),
       slices_(slices_of(rules, steps)),
       steps_(steps),
-      first_slice_(std::min((grace.ns + kJudgedFirst.ns) / rules.step.ns, steps - kLeftAfterwards.ns / rules.step.ns)) {
-}
+      first_slice_(
+          std::min((grace.ns + kJudgedFirst.ns) / rules.step().ns, steps - kLeftAfterwards.ns / rules.step().ns)) {}
 
-void CellWatch::look(session::Observer& observer, std::int64_t now_ns) {
-  const session::SessionView& view = observer.view();
+void CellWatch::look(observer::Observer& observer, std::int64_t now_ns) {
+  const observer::SessionView& view = observer.view();
   if (!view.has_session() || view.step() <= 0) return;
   follow(view);
   watch_activity(view, now_ns);
@@ -99,7 +99,7 @@ void CellWatch::finish() {
   if (!yardstick_.problem().empty()) cell_.books = "yardstick: " + yardstick_.problem();
 }
 
-bool CellWatch::is_slice_due(const session::SessionView& view) const noexcept {
+bool CellWatch::is_slice_due(const observer::SessionView& view) const noexcept {
   if (done_ == slices_ || view.is_over()) return false;
   if (done_ > 0) return view.step() >= steps_ * (done_ + 1) / (slices_ + 1);
   if (view.step() < std::max(first_slice_, steps_ / (slices_ + 1))) return false;
@@ -110,34 +110,34 @@ bool CellWatch::is_slice_due(const session::SessionView& view) const noexcept {
   });
 }
 
-SimDuration CellWatch::computing_of(const session::SessionView& view, Role role) const noexcept {
+SimDuration CellWatch::computing_of(const observer::SessionView& view, Role role) const noexcept {
   return std::min(work_.of_step(role), duration_of_seconds(view.node(role).health.execution.p50));
 }
 
-void CellWatch::measure(const session::SessionView& view) {
+void CellWatch::measure(const observer::SessionView& view) {
   if (done_ == 0) {
     for (YardstickLoop& loop : rules_.loops) {
       loop.work = work_.of_step(loop.role);
       if (loop.ends_step) loop.computing = computing_of(view, loop.role);
     }
   }
-  const double session = rules_.step.seconds() * static_cast<double>(steps_);
+  const double session = rules_.step().seconds() * static_cast<double>(steps_);
   around_yardstick_.begin();
   yardstick_.start(rules_, duration_of_seconds(kYardstickShare * session / static_cast<double>(slices_)));
 }
 
-void CellWatch::follow(const session::SessionView& view) {
+void CellWatch::follow(const observer::SessionView& view) {
   const wire::Health& io = view.node(Role::io).health;
   if (io.header.step <= followed_) return;
   followed_ = io.header.step;
   if (done_ == 0) work_.look(view, followed_);
   if (io.response.count == 0) return;
-  cell_.response.time.push_back(static_cast<double>(followed_) * rules_.step.seconds());
+  cell_.response.time.push_back(static_cast<double>(followed_) * rules_.step().seconds());
   cell_.response.values.push_back(io.response_recent * 1e6);
 }
 
 // Measures from the end of the grace on, pauses apart.
-void CellWatch::watch_activity(const session::SessionView& view, std::int64_t now_ns) {
+void CellWatch::watch_activity(const observer::SessionView& view, std::int64_t now_ns) {
   if (view.is_over()) around_session_.end();
   if (stage_ == Stage::stepping && !view.is_over() && view.node(Role::io).health.response.count > 0) {
     around_session_.look(now_ns);
@@ -145,14 +145,14 @@ void CellWatch::watch_activity(const session::SessionView& view, std::int64_t no
   if (stage_ == Stage::measuring && yardstick_.is_running()) around_yardstick_.look(now_ns);
 }
 
-void CellWatch::request(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
+void CellWatch::request(observer::Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
   wire::ControlRequest request;
   request.action = action;
   observer.send(request);
   request_ns_ = now_ns;
 }
 
-void CellWatch::request_again(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
+void CellWatch::request_again(observer::Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
   if (now_ns - request_ns_ > kRequestIntervalNs) request(observer, action, now_ns);
 }
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "analysis/stress/stress.h"
-#include "session/observer.h"
+#include "observer/observer.h"
 
 namespace slew::analysis {
 
@@ -12,7 +12,7 @@ namespace slew::analysis {
 class SessionWork {
  public:
   // Called when io's health has reported that the session is at this step.
-  void look(const session::SessionView& view, StepIndex step) noexcept;
+  void look(const observer::SessionView& view, StepIndex step) noexcept;
   // CPU time of a role's process, between the first look and the last one; 0: there was only one.
   [[nodiscard]] SimDuration of_step(wire::Role role) const noexcept;
 
@@ -30,19 +30,19 @@ class CellWatch {
   CellWatch(const YardstickRules& rules, StepIndex steps, SimDuration grace, StressCell& cell);
 
   // Called some 50 times a second.
-  void look(session::Observer& observer, std::int64_t now_ns);
+  void look(observer::Observer& observer, std::int64_t now_ns);
   void finish();
 
  private:
   enum class Stage : std::uint8_t { stepping, pausing, measuring, resuming };
 
-  [[nodiscard]] bool is_slice_due(const session::SessionView& view) const noexcept;
-  [[nodiscard]] SimDuration computing_of(const session::SessionView& view, wire::Role role) const noexcept;
-  void measure(const session::SessionView& view);
-  void follow(const session::SessionView& view);
-  void watch_activity(const session::SessionView& view, std::int64_t now_ns);
-  void request(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns);
-  void request_again(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns);
+  [[nodiscard]] bool is_slice_due(const observer::SessionView& view) const noexcept;
+  [[nodiscard]] SimDuration computing_of(const observer::SessionView& view, wire::Role role) const noexcept;
+  void measure(const observer::SessionView& view);
+  void follow(const observer::SessionView& view);
+  void watch_activity(const observer::SessionView& view, std::int64_t now_ns);
+  void request(observer::Observer& observer, wire::ControlAction action, std::int64_t now_ns);
+  void request_again(observer::Observer& observer, wire::ControlAction action, std::int64_t now_ns);
 
   YardstickRules rules_;
   SessionWork work_;

@@ -17,10 +17,10 @@
 #include "io_node/scene_config.h"
 #include "io_node/session_scene.h"
 #include "node/identity.h"
+#include "observer/observer.h"
 #include "scene/cpu_places.h"
 #include "session/distributed_run.h"
 #include "session/interrupts.h"
-#include "session/observer.h"
 #include "transport/roles.h"
 
 namespace slew::analysis {
@@ -31,14 +31,14 @@ using wire::Role;
 // Measures a cell in each round of its run.
 class CellWatcher final : public session::RunWatcher {
  public:
-  explicit CellWatcher(std::function<bool(session::Observer&, std::int64_t now_ns)> measure)
+  explicit CellWatcher(std::function<bool(observer::Observer&, std::int64_t now_ns)> measure)
       : measure_(std::move(measure)) {}
-  bool update(session::Observer& observer, std::int64_t now_ns, bool /*is_ending*/) override {
+  bool update(observer::Observer& observer, std::int64_t now_ns, bool /*is_ending*/) override {
     return measure_(observer, now_ns);
   }
 
  private:
-  std::function<bool(session::Observer&, std::int64_t)> measure_;
+  std::function<bool(observer::Observer&, std::int64_t)> measure_;
 };
 
 bool fifo_is_allowed() {
@@ -70,10 +70,10 @@ std::vector<YardstickLoop> loops_of(Scheduling scheduling, std::uint32_t roles, 
 
 YardstickRules rules_of(const scene::Scene& scene, std::vector<YardstickLoop> loops) {
   YardstickRules rules;
-  rules.step = scene.session.step_duration();
+  rules.session.step = scene.session.step;
   rules.loops = std::move(loops);
-  rules.overrun.lag = duration_of_seconds(scene.session.overrun_lag);
-  rules.overrun.grace = kYardstickGrace;
+  rules.session.overrun_lag = scene.session.overrun_lag;
+  rules.session.start_grace = kYardstickGrace.seconds();
   return rules;
 }
 
@@ -139,19 +139,20 @@ void conclude(const session::RunOutcome& outcome, StepIndex wanted, const Status
   cell.code = load.code;
 }
 
-void run_cell(const StressOptions& options, const io::SessionScene& session, const std::string& folder,
+void run_cell(const StressOptions& options, const io_node::SessionScene& session, const std::string& folder,
               StressCell& cell, bool& is_refusal_reported, const std::function<bool(double)>& progress) {
   const scene::Scene& scene = session.scene;
   const std::string runs = folder + "/recordings";
   session::RunOptions run = options_of(options, cell, runs);
   run.is_refusal_reported = is_refusal_reported;
   const std::string places = options.cpus.empty() ? scene.session.cpus : options.cpus;
-  const auto recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
-  const YardstickRules rules = rules_of(scene, loops_of(cell.scheduling, io::required_roles(scene, recording), places));
+  const auto recording = options.scene.is_recording ? io_node::Recording::required : io_node::Recording::none;
+  const YardstickRules rules =
+      rules_of(scene, loops_of(cell.scheduling, io_node::required_roles(scene, recording), places));
   CellWatch watch(rules, scene.session.steps(), duration_of_seconds(scene.session.start_grace), cell);
   Status of_load;
   std::optional<LoadProcesses> load;
-  CellWatcher watcher([&](session::Observer& observer, std::int64_t now_ns) {
+  CellWatcher watcher([&](observer::Observer& observer, std::int64_t now_ns) {
     watch.look(observer, now_ns);
     if (of_load.is_ok()) of_load = load->check();
     if (!of_load.is_ok()) return false;
@@ -168,7 +169,7 @@ void run_cell(const StressOptions& options, const io::SessionScene& session, con
   cell.step = scene.session.step;
   if (outcome.view.has_session()) cell.roles = outcome.view.session().required_roles;
   for (const Role role : wire::kNodeRoles) cell.nodes[static_cast<std::size_t>(role)] = outcome.view.node(role).health;
-  const std::string of_session = io::problem_of_books(outcome.view.node(Role::io).health, rules.step);
+  const std::string of_session = io_node::problem_of_books(outcome.view.node(Role::io).health, rules.step());
   if (has_stepped(cell) && !of_session.empty()) cell.books = "session: " + of_session;
   std::error_code ignored;
   std::filesystem::remove_all(runs, ignored);
@@ -206,7 +207,7 @@ double missed(const wire::Health& health) noexcept {
 }
 
 std::uint64_t given_up(const wire::Health& health) noexcept {
-  return io::judged_steps_given_up(health);
+  return io_node::judged_steps_given_up(health);
 }
 
 BrokenBounds broken_bounds(const wire::Health& health, const StressBounds& bounds) noexcept {
@@ -237,7 +238,7 @@ Stress run_stress(const StressOptions& options, const StressBounds& bounds, cons
   stress.options = options;
   stress.bounds = bounds;
   stress.machine = this_machine();
-  const io::SessionScene session = io::load_session_scene(options.scene);
+  const io_node::SessionScene session = io_node::load_session_scene(options.scene);
   const scene::Scene& scene = session.scene;
   stress.scene = scene.name;
   if (stress.options.session.session.empty()) {

@@ -69,14 +69,16 @@ void Yardstick::lead(const YardstickRules& rules, SimDuration slice) {
   }
   take_place(rules.loops.front());
   wait_for(placed_, static_cast<std::int32_t>(followers.size()));
-  io::SessionClock clock(rules.step, rules.overrun, *timing_);
-  const StepIndex not_judged = (rules.overrun.grace.ns + rules.step.ns - 1) / rules.step.ns;
-  const StepIndex steps = not_judged + slice.ns / rules.step.ns;
+  io_node::SessionClock clock(rules.session, *timing_);
+  const SimDuration step = rules.step();
+  const std::int64_t grace_ns = duration_of_seconds(rules.session.start_grace).ns;
+  const StepIndex not_judged = (grace_ns + step.ns - 1) / step.ns;
+  const StepIndex steps = not_judged + slice.ns / step.ns;
   std::int64_t last_ns = monotonic_ns();
-  clock.begin(0, last_ns + rules.step.ns);
+  clock.begin(0, last_ns + step.ns);
   StepIndex n = 0;
   for (; n < steps && !is_stopped_; ++n) {
-    const std::int64_t due_ns = std::max(clock.due_ns(n), last_ns + rules.step.ns / 2);
+    const std::int64_t due_ns = std::max(clock.due_ns(n), last_ns + step.ns / 2);
     release(static_cast<std::int32_t>(n + 1), due_ns);
     sleep_until_monotonic(due_ns);
     last_ns = monotonic_ns();
@@ -91,7 +93,7 @@ void Yardstick::lead(const YardstickRules& rules, SimDuration slice) {
   clock.close(n, monotonic_ns());
   release(kNoMore, 0);
   followers.clear();
-  if (problem_.empty()) problem_ = io::problem_of_books(timing_->books.read(), rules.step);
+  if (problem_.empty()) problem_ = io_node::problem_of_books(timing_->books.read(), step);
   steps_ += static_cast<std::uint64_t>(n);
   skipped_ += clock.skipped();
   slip_ns_ += clock.slip_ns();

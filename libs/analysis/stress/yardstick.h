@@ -16,6 +16,7 @@
 #include "core/time.h"
 #include "io_node/session_clock.h"
 #include "node/step_timing.h"
+#include "scene/defs.h"
 
 namespace slew::analysis {
 
@@ -31,9 +32,9 @@ struct YardstickLoop {
 inline constexpr SimDuration kYardstickGrace = milliseconds(100);  // at the start of a slice
 
 struct YardstickRules {
-  SimDuration step;
+  scene::SessionDef session;         // step, overrun policy and grace
   std::vector<YardstickLoop> loops;  // the first leads: it keeps the time
-  io::OverrunRules overrun;
+  [[nodiscard]] SimDuration step() const noexcept { return session.step_duration(); }
 };
 
 // The loops, in slices; the results of all slices together.

@@ -90,7 +90,7 @@ class Trader {
   [[nodiscard]] std::string payload_name() const {
     if (!base_.has_mechanics()) return "";
     const multibody::Model model = multibody::build_model(base_.mechanics);
-    const int payload = mechanics::payload_of(base_.mechanics, model);
+    const int payload = mechanics_node::payload_of(base_.mechanics, model);
     return payload > 0 ? model.bodies[static_cast<std::size_t>(payload)].name : base_.mechanics.bodies.back().name;
   }
 

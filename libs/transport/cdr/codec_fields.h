@@ -101,7 +101,7 @@ inline constexpr std::uint32_t kEnumerators<coupling::Quality> = 4;
 template <>
 inline constexpr std::uint32_t kEnumerators<coupling::MobilityKind> = 2;
 template <>
-inline constexpr std::uint32_t kEnumerators<wire::Pace> = 2;
+inline constexpr std::uint32_t kEnumerators<Pace> = 2;
 template <>
 inline constexpr std::uint32_t kEnumerators<wire::NodeState> = 8;
 template <>

@@ -403,7 +403,7 @@ TEST_F(Keys, AProcessWithWrongOnesOrNoneIsIgnoredAndReported) {
   EXPECT_NE(unknown.err.find("has no keys of 'absent'"), std::string::npos) << unknown.err;
   const CommandResult ended = session.wait();
   EXPECT_EQ(ended.code, 1) << ended.err;
-  EXPECT_NE(ended.err.find("no hydraulics node has been heard"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("no hydraulics node has joined session"), std::string::npos) << ended.err;
   // the one that came with a certificate is named
   EXPECT_NE(ended.err.find("/O=Slewring/CN=hydraulics"), std::string::npos) << ended.err;
 }

@@ -122,7 +122,7 @@ TEST_F(Program, EveryProgramPrintsTheSameBuild) {
   }
 }
 
-TEST_F(Program, UsageErrorsSayWhatWhereAndWhatToDoAndExitWith2) {
+TEST_F(Program, UsageErrorsReportWhatWhereAndWhatToDoAndExitWith2) {
   struct Case {
     std::vector<std::string> arguments;
     const char* sentence;

@@ -7,13 +7,12 @@
 
 #include "build_paths.h"
 #include "core/arithmetic_self_test.h"
-#include "flex_node/flex_subsystem.h"
-#include "hydraulics_node/hydraulics_subsystem.h"
+#include "io_node/io_node.h"
 #include "io_node/scene_config.h"
-#include "mechanics_node/mechanics_subsystem.h"
 #include "node/identity.h"
 #include "node/open_transport.h"
 #include "node/subsystem_factory.h"
+#include "session/monolithic_session.h"
 
 namespace slew::testing {
 namespace {
@@ -24,12 +23,6 @@ using wire::Topic;
 constexpr std::int64_t kRound = kMs / 4;
 constexpr int kMostPolls = 10'000;  // at one instant: a node that never comes to rest is a failure of its own
 
-node::MakeSubsystem maker_of(Role role) {
-  if (role == Role::mechanics) return mechanics::make_mechanics_subsystem;
-  if (role == Role::flex) return flexible::make_flex_subsystem;
-  return hydraulic_node::make_hydraulics_subsystem;
-}
-
 }  // namespace
 
 // ---- auditor ---------------------------------------------------------------------------------------------------
@@ -39,7 +32,7 @@ Auditor::Auditor(transport::InProcessBus& bus)
           bus, transport::InProcessOptions{"auditor", {}, transport::TopicSet::all()})) {}
 
 template <typename Message>
-void Auditor::hear(const transport::Received& message) {
+void Auditor::receive(const transport::Received& message) {
   Message decoded;
   if (!transport::decode(message.bytes, decoded)) {
     contradiction_ = fmt::format("{} publishes a message that cannot be decoded", node::to_text(message.topic));
@@ -77,16 +70,16 @@ void Auditor::listen() {
   while (transport_->take(message)) {
     switch (message.topic) {
       case Topic::tick:
-        hear<wire::Tick>(message);
+        receive<wire::Tick>(message);
         break;
       case Topic::mechanism:
-        hear<wire::MechanismMessage>(message);
+        receive<wire::MechanismMessage>(message);
         break;
       case Topic::actuators:
-        hear<wire::ActuatorMessage>(message);
+        receive<wire::ActuatorMessage>(message);
         break;
       case Topic::elastic:
-        hear<wire::ElasticMessage>(message);
+        receive<wire::ElasticMessage>(message);
         break;
       case Topic::session: {
         wire::SessionDescription session;
@@ -104,11 +97,9 @@ void Auditor::listen() {
 VirtualSession::VirtualSession(const scene::Scene& scene, const std::string& runs, FaultPlan plan)
     : plan_(std::move(plan)), auditor_(bus_), kills_(plan_.kills) {
   set_floating_point_mode();
-  io::SessionWish wish;
-  wish.session_name = "faults";
-  io::IoConfig config = io::make_config(scene, wish);
+  io_node::IoConfig config = io_node::make_config(scene, "faults", io_node::Recording::required);
   config.name_check = {};
-  auto io_node = std::make_unique<io::IoNode>(place_for(Role::io), std::move(config));
+  auto io_node = std::make_unique<io_node::IoNode>(place_for(Role::io), std::move(config));
   io_ = io_node.get();
   places_.back().node = std::move(io_node);
   for (const Role role : roles_of(scene)) {
@@ -117,16 +108,16 @@ VirtualSession::VirtualSession(const scene::Scene& scene, const std::string& run
       add_physics(role);
     }
   }
-  recorder::RecorderConfig recording;
+  recorder_node::RecorderConfig recording;
   recording.runs_directory = runs;
-  auto recorder_node = std::make_unique<recorder::RecorderNode>(place_for(Role::recorder), std::move(recording));
+  auto recorder_node = std::make_unique<recorder_node::RecorderNode>(place_for(Role::recorder), std::move(recording));
   recorder_ = recorder_node.get();
   places_.back().node = std::move(recorder_node);
   for (Place& place : places_) place.health = std::make_unique<node::HealthReport>(*place.node);
 }
 
 std::vector<Role> VirtualSession::roles_of(const scene::Scene& scene) {
-  const std::uint32_t required = io::required_roles(scene, io::Recording::required);
+  const std::uint32_t required = io_node::required_roles(scene, io_node::Recording::required);
   std::vector<Role> roles;
   for (const Role role : wire::kNodeRoles) {
     if ((required & wire::bit(role)) != 0) roles.push_back(role);
@@ -148,8 +139,9 @@ void VirtualSession::add_physics(Role role) {
 }
 
 std::unique_ptr<node::Node> VirtualSession::make_physics(const Place& place) {
-  return std::make_unique<node::PhysicsNode>(
-      place.role, *place.transport, node::subsystem_factory(maker_of(place.role), SLEWRING_SOURCE_DIR "/scenes"));
+  const auto make = [role = place.role](const scene::Scene& s) { return session::SubsystemFamily().make(role, s); };
+  return std::make_unique<node::PhysicsNode>(place.role, *place.transport,
+                                             node::subsystem_factory(make, SLEWRING_SOURCE_DIR "/scenes"));
 }
 
 // A process that has died publishes no more; the process in its place receives the kept messages.

@@ -33,7 +33,7 @@ class Auditor {
 
  private:
   template <typename Message>
-  void hear(const transport::Received& message);
+  void receive(const transport::Received& message);
 
   std::unique_ptr<transport::Transport> transport_;
   Chain chain_;
@@ -101,8 +101,8 @@ class VirtualSession {
   Auditor auditor_;
   transport::InProcessEndpoint impostor_{bus_, {"impostor", {wire::Topic::node_status}, {}}};
   std::vector<Place> places_;
-  io::IoNode* io_ = nullptr;
-  recorder::RecorderNode* recorder_ = nullptr;
+  io_node::IoNode* io_ = nullptr;
+  recorder_node::RecorderNode* recorder_ = nullptr;
   std::int64_t next_health_ns_ = 0;
   std::vector<Kill> kills_;  // to come
   std::size_t restarts_ = 0;

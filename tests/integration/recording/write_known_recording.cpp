@@ -138,7 +138,7 @@ void write_session(KnownRecording& recording) {
   session.build = "test";
   session.self_test = std::numeric_limits<std::uint64_t>::max();
   session.step_ns = kStep.ns;
-  session.pace = wire::Pace::free;
+  session.pace = Pace::free;
   session.window = 4;
   session.required_roles = 0b10111;
   session.host = "bench";

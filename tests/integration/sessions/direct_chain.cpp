@@ -4,9 +4,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "hydraulics_node/hydraulics_subsystem.h"
+#include "io_node/io_node.h"
 #include "io_node/scene_config.h"
-#include "mechanics_node/mechanics_subsystem.h"
 #include "node/driver.h"
 #include "node/open_transport.h"
 #include "node/physics_node.h"
@@ -14,21 +13,13 @@
 #include "program.h"
 #include "recorder_node/recorder_node.h"
 #include "scene/scene_options.h"
+#include "session/monolithic_session.h"
 #include "support/crane_pair.h"
 #include "transport/in_process/in_process_bus.h"
 
 namespace slew::testing {
 
 using wire::Role;
-
-namespace {
-
-std::unique_ptr<coupling::Subsystem> make_subsystem(Role role, const scene::Scene& scene) {
-  return role == Role::mechanics ? mechanics::make_mechanics_subsystem(scene)
-                                 : hydraulic_node::make_hydraulics_subsystem(scene);
-}
-
-}  // namespace
 
 scene::Scene load_scene(const std::string& file, const std::string& duration,
                         const std::vector<std::string>& overrides) {
@@ -61,26 +52,26 @@ HashChain chain_of_ticks(const scene::Scene& scene, const std::map<StepIndex, wi
 
 RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesystem::path& runs) {
   transport::InProcessBus bus;
-  std::array<std::unique_ptr<transport::Transport>, 4> ends;
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    constexpr std::array<Role, 4> kRoles = {Role::io, Role::mechanics, Role::hydraulics, Role::recorder};
-    ends[i] = node::open_transport(kRoles[i], bus);
-  }
-  io::IoConfig config = io::make_config(scene, {"in_process", io::Operator::script, io::Recording::required});
-  config.name_check = {};
-  io::IoNode io(*ends[0], std::move(config));
-  const auto physics = [](Role role) {
-    return node::subsystem_factory([role](const scene::Scene& s) { return make_subsystem(role, s); }, ".");
+  std::vector<std::unique_ptr<transport::Transport>> ends;
+  const auto endpoint = [&](Role role) -> transport::Transport& {
+    return *ends.emplace_back(node::open_transport(role, bus));
   };
-  node::PhysicsNode mechanics(Role::mechanics, *ends[1], physics(Role::mechanics));
-  node::PhysicsNode hydraulics(Role::hydraulics, *ends[2], physics(Role::hydraulics));
-  recorder::RecorderConfig recording;
+  io_node::IoConfig config = io_node::make_config(scene, "in_process", io_node::Recording::required);
+  config.name_check = {};
+  io_node::IoNode io(endpoint(Role::io), std::move(config));
+  const auto physics = [&](Role role) {
+    const auto make = [role](const scene::Scene& s) { return session::SubsystemFamily().make(role, s); };
+    return std::make_unique<node::PhysicsNode>(role, endpoint(role), node::subsystem_factory(make, "."));
+  };
+  const auto mechanics = physics(Role::mechanics), hydraulics = physics(Role::hydraulics);
+  recorder_node::RecorderConfig recording;
   recording.runs_directory = runs;
-  recorder::RecorderNode recorder(*ends[3], std::move(recording));
-  const std::array<node::Node*, 4> nodes = {&io, &mechanics, &hydraulics, &recorder};
+  recorder_node::RecorderNode recorder(endpoint(Role::recorder), std::move(recording));
+  const std::array<node::Node*, 4> nodes = {&io, mechanics.get(), hydraulics.get(), &recorder};
   const ExitCode code = node::run_together(nodes, {});
-  if (code != ExitCode::ok)
+  if (code != ExitCode::ok) {
     throw std::runtime_error("the run in one process ended with an error: " + io.member().reason());
+  }
   return read_session(runs);
 }
 

@@ -370,7 +370,7 @@ TEST(MissingNode, IsNamedWhenJoinDoesNotComeAbout) {
   EXPECT_EQ(codes.at(Role::recorder), 1) << session.errors();
   const std::string errors = session.node(Role::io).err();
   EXPECT_NE(errors.find("JOIN did not come about within 1 s"), std::string::npos) << errors;
-  EXPECT_NE(errors.find("no hydraulics node has been heard"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("no hydraulics node has joined session"), std::string::npos) << errors;
   EXPECT_NE(errors.find("slewring/actuators, type slewring::ActuatorMessage; found no writer of it"), std::string::npos)
       << errors;
   EXPECT_EQ(errors.find("no mechanics node"), std::string::npos) << errors;

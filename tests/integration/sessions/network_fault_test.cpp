@@ -142,11 +142,11 @@ TEST_F(FaultyCable, ThatCarriesOneWayLetsNoNodeJoin) {
   for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 1) << node::to_text(role) << session.errors();
   EXPECT_GT(cable.lost(cable.right()), 0u);
   const std::string errors = session.node(Role::io).err();
-  EXPECT_NE(errors.find("JOIN did not come about within 2 s: no mechanics node has been heard in session 's' (expected "
+  EXPECT_NE(errors.find("JOIN did not come about within 2 s: no mechanics node has joined session 's' (expected "
                         "topic slewring/mechanism, type slewring::MechanismMessage; found no writer of it)"),
             std::string::npos)
       << errors;
-  EXPECT_NE(errors.find("no recorder node has been heard"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("no recorder node has joined session"), std::string::npos) << errors;
   EXPECT_EQ(errors.find("no hydraulics node"), std::string::npos) << errors;
   EXPECT_NE(session.node(Role::mechanics).err().find("no session was found within 4 s"), std::string::npos)
       << session.errors();
@@ -165,7 +165,7 @@ TEST_F(FaultyCable, ThatCarriesDataOneWayLetsNoNodeJoinAndIoNamesTheWriterWithou
   for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 1) << node::to_text(role) << session.errors();
   EXPECT_GT(cable.lost(cable.right()), 0u);
   const std::string errors = session.node(Role::io).err();
-  EXPECT_NE(errors.find("no mechanics node has been heard in session 's' (expected topic slewring/mechanism, type "
+  EXPECT_NE(errors.find("no mechanics node has joined session 's' (expected topic slewring/mechanism, type "
                         "slewring::MechanismMessage; found "),
             std::string::npos)
       << errors;

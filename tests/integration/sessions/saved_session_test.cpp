@@ -66,7 +66,7 @@ class SavedSession : public ::testing::Test {
     // to save is no disturbance
     const HashChain chain = session.recorded().chain();
     expect_undisturbed_from(kJoinStep, chain);
-    ASSERT_EQ(io::read_saved(file(), saved_).text, "");
+    ASSERT_EQ(io_node::read_saved(file(), saved_).text, "");
     EXPECT_GE(saved_.step, 500);
     EXPECT_LT(saved_.step, chain.rbegin()->first);
     EXPECT_EQ(saved_.states.size(), 3u);
@@ -97,7 +97,7 @@ class SavedSession : public ::testing::Test {
   [[nodiscard]] std::string file() const { return (folder_.path() / "crane.saved").string(); }
 
   ScratchFolder folder_;
-  io::SavedSession saved_;
+  io_node::SavedSession saved_;
   int runs_ = 0;
 };
 
@@ -125,7 +125,7 @@ TEST_F(SavedSession, GoesOnToTheSameBitsAndTakesChangesOfLiveParametersAlone) {
   with = from;
   with.insert(with.end(), {"--duration", "0.1s"});
   EXPECT_EQ(slewring(with, folder_.path() / "run", &errors), 2);
-  EXPECT_NE(errors.find("say a longer --duration"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("choose a longer --duration"), std::string::npos) << errors;
   with = {"run", kScene, "--from", file()};
   EXPECT_EQ(slewring(with, folder_.path() / "run", &errors), 2);
 }
@@ -181,9 +181,9 @@ TEST_F(SavedSession, IsMadeOfARecordingAndGoesOnLive) {
   std::string errors;
   ASSERT_EQ(slewring({"replay", recording, "--until", "0.8s", "--save", file()}, folder_.path() / "until", &errors), 0)
       << errors;
-  ASSERT_EQ(io::read_saved(file(), saved_).text, "");
+  ASSERT_EQ(io_node::read_saved(file(), saved_).text, "");
   EXPECT_EQ(saved_.step, 800);
-  for (const io::SavedState& of_role : saved_.states) {
+  for (const io_node::SavedState& of_role : saved_.states) {
     const StepHashes& at = undisturbed().at(800);
     if (of_role.role == Role::io) continue;
     EXPECT_EQ(of_role.state.state_hash, of_role.role == Role::mechanics ? at.mechanics : at.hydraulics);
@@ -325,7 +325,7 @@ TEST_F(LateRecording, BeginsWithTheStatesOfAStepAndReplays) {
   expect_undisturbed_from(begin, recorded.chain());
 }
 
-TEST_F(LateRecording, OfASessionThatCanSayAllAgainIsWhole) {
+TEST_F(LateRecording, OfASessionThatCanResendAllIsWhole) {
   ASSERT_TRUE(session_.observer().wait_for_step(20)) << session_.errors();
   const RecordedSession recorded = record_the_rest();
   // INIT was published before the recorder came; on a slow machine where the pause came late the recording begins with
@@ -365,7 +365,7 @@ TEST_F(SavedSession, IsNeverHalfAFileAndReplacesOneOnRequestOnly) {
   std::vector<std::string> forced = save;
   forced.emplace_back("--force");
   EXPECT_EQ(slewring(forced, folder_.path() / "save", &errors), 0) << errors;
-  EXPECT_EQ(io::read_saved(file(), saved_).text, "");
+  EXPECT_EQ(io_node::read_saved(file(), saved_).text, "");
   EXPECT_TRUE(session.observer().request(wire::ControlAction::stop).is_accepted);
   EXPECT_EQ(session.wait_all(), all_ok()) << session.errors();
   // cut and changed files are reported

@@ -15,7 +15,7 @@ class Mechanisms : public ::testing::TestWithParam<Case> {
   const Sample sample{GetParam(), ForceDummies::without};
 };
 
-TEST_P(Mechanisms, AccelerateAsMujocoSays) {
+TEST_P(Mechanisms, AccelerateLikeMujoco) {
   const double difference = accelerations_differ_by<MujocoPeer>(sample, sample.def);
   record("difference", difference);
   EXPECT_LT(difference, kTolerance);

@@ -45,7 +45,7 @@ class Mechanisms : public ::testing::TestWithParam<Case> {
   const double tolerance = has_loops(GetParam()) ? kLoopTolerance : kTolerance;
 };
 
-TEST_P(Mechanisms, AccelerateAsSimbodySays) {
+TEST_P(Mechanisms, AccelerateLikeSimbody) {
   if (Mechanism(sample.def).model.degrees_of_freedom() == 0) GTEST_SKIP() << "nothing moves";
   const double difference = accelerations_differ_by<SimbodyPeer>(sample, sample.def);
   record("difference", difference);
@@ -57,7 +57,7 @@ TEST_P(Mechanisms, ShowTheRowsThatSimbodySees) {
   expect_same_rows(rows_differ_by<SimbodyPeer>(sample), tolerance);
 }
 
-TEST_P(Mechanisms, LoadTheirJointsAsSimbodySays) {
+TEST_P(Mechanisms, LoadTheirJointsLikeSimbody) {
   MechanicsDef def = sample.def;
   // no motion determines the axis of a rotational spring between two welded bodies
   for (RotationalForceDef& force : def.rotational_forces) force.spring_constant = 0;

@@ -169,7 +169,7 @@ TEST_F(FrictionProperty, HasTheSlopeOverNormalForceWhereItIsCut) {
 }
 
 // (4) against many small explicit steps of (2)
-TEST_F(FrictionProperty, BendsAsItsEquationSays) {
+TEST_F(FrictionProperty, BendsByItsEquation) {
   for (int i = 0; i < 200; ++i) {
     Draw d = draw();
     const double s = norm(d.contact.v_W);

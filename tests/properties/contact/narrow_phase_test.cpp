@@ -10,7 +10,7 @@
 #include "contact/kernels.h"
 #include "contact/overlap.h"
 #include "core/allocation_guard.h"
-#include "support/fcl/fcl_border.h"
+#include "sensors/fcl_border.h"
 #include "support/random_shapes.h"
 
 namespace slew::contact {
@@ -19,6 +19,7 @@ namespace narrow_phase_test {
 using math::Mat3;
 using math::Vec3;
 using namespace testing;
+namespace fcl_border = sensors::fcl_border;
 using enum ShapeType;
 
 constexpr ShapeType kOwn[][2] = {{sphere, sphere},     {sphere, capsule},  {sphere, box},     {sphere, plane},

@@ -13,6 +13,8 @@
 namespace slew::testing {
 namespace damaged_state_test {
 
+using wire::Role;
+
 constexpr std::size_t kHeader = 32, kLength = 16, kCheck = 24;  // offsets in the layout of core/state_bytes.h
 
 class DamagedState : public ::testing::TestWithParam<const char*> {
@@ -23,13 +25,13 @@ class DamagedState : public ::testing::TestWithParam<const char*> {
     saved = chain.save();
   }
   // a copy with its own end: a sanitizer detects reads beyond
-  [[nodiscard]] Status load(Part part, std::span<const std::byte> bytes) {
+  [[nodiscard]] Status load(Role part, std::span<const std::byte> bytes) {
     const std::vector<std::byte> copy(bytes.begin(), bytes.end());
     return chain.part(part)->load(copy, chain.sample(part));
   }
-  [[nodiscard]] std::vector<Part> parts() const {
-    std::vector<Part> present;
-    for (const Part part : {kMechanics, kHydraulics, kFlex}) {
+  [[nodiscard]] std::vector<Role> parts() const {
+    std::vector<Role> present;
+    for (const Role part : {Role::mechanics, Role::hydraulics, Role::flex}) {
       if (chain.part(part) != nullptr) present.push_back(part);
     }
     return present;
@@ -38,11 +40,11 @@ class DamagedState : public ::testing::TestWithParam<const char*> {
   const scene::Scene scene = scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + GetParam());
   const Drive drive{.changes = small_changes(scene)};
   SessionChain chain{scene, drive};
-  SessionChain::Saved saved;
+  SavedParts saved;
 };
 
 TEST_P(DamagedState, IsRefusedWhereverItIsCut) {
-  for (const Part part : parts()) {
+  for (const Role part : parts()) {
     const std::span<const std::byte> bytes(saved[part]);
     const std::size_t stride = rounds<std::size_t>(bytes.size() / 60 + 1, 1);
     for (std::size_t length = 0; length < bytes.size(); length += length < kHeader ? 1 : stride) {
@@ -59,7 +61,7 @@ TEST_P(DamagedState, IsRefusedWhereverItIsCut) {
 
 TEST_P(DamagedState, IsRefusedWithAnyFlippedBit) {
   std::mt19937_64 random(1);
-  for (const Part part : parts()) {
+  for (const Role part : parts()) {
     for (int i = 0; i < rounds(60, 3000); ++i) {
       std::vector<std::byte> bytes = saved[part];
       const std::size_t at = random() % bytes.size();
@@ -72,7 +74,7 @@ TEST_P(DamagedState, IsRefusedWithAnyFlippedBit) {
 // with a matching checksum: any values may be loaded, and values that do not fit the model are refused
 TEST_P(DamagedState, NeverLeadsOutOfTheModel) {
   std::mt19937_64 random(2);
-  for (const Part part : parts()) {
+  for (const Role part : parts()) {
     for (int i = 0; i < rounds(60, 3000); ++i) {
       std::vector<std::byte> bytes = saved[part];
       if (random() % 4 == 0) bytes.resize(kHeader + random() % (bytes.size() - kHeader + 1));
@@ -105,11 +107,11 @@ TEST_P(DamagedState, NeverLeadsOutOfTheModel) {
 TEST_P(DamagedState, LeavesTheSubsystemAsAfterReset) {
   SessionChain fresh(scene, drive);
   fresh.start();
-  for (const Part part : parts()) {
+  for (const Role part : parts()) {
     ASSERT_FALSE(load(part, std::span(saved[part]).first(saved[part].size() / 2)).is_ok());
   }
   SessionChain again(scene, drive);
-  for (const Part part : parts()) {
+  for (const Role part : parts()) {
     std::vector<std::byte> bytes = saved[part];
     bytes.back() ^= std::byte{1};
     ASSERT_FALSE(again.part(part)->load(bytes, again.sample(part)).is_ok());
@@ -123,7 +125,7 @@ TEST_P(DamagedState, LeavesTheSubsystemAsAfterReset) {
 }
 
 TEST_P(DamagedState, OfAnotherLayoutIsRefusedWithBothNumbers) {
-  for (const Part part : parts()) {
+  for (const Role part : parts()) {
     std::vector<std::byte> bytes = saved[part];
     bytes[4] = std::byte{99};
     const Status status = load(part, bytes);
@@ -147,21 +149,21 @@ TEST(StateOfAnotherScene, IsRefusedByEveryPart) {
   const Drive drive;
   SessionChain chain(crane, drive);
   chain.start();
-  const SessionChain::Saved saved = chain.save();
+  const SavedParts saved = chain.save();
   for (const scene::Scene& scene :
        {load("two_dof_crane.yaml"), load("truck_crane.yaml", {"session.step=2 ms"}), load("truck_crane_flexible.yaml"),
         load("truck_crane.yaml", {"session.exchange_every=2"})}) {
     SessionChain other(scene, drive);
-    for (const Part part : {kMechanics, kHydraulics}) {
+    for (const Role part : {Role::mechanics, Role::hydraulics}) {
       // the flexible crane has the same circuit
-      if (scene.has_modes() && part == kHydraulics) continue;
-      const Status status = other.part(part)->load(saved[part], other.sample(part));
+      if (scene.has_modes() && part == Role::hydraulics) continue;
+      const Status status = other.part(part)->load(saved.at(part), other.sample(part));
       EXPECT_EQ(status.code, ExitCode::bad_input);
       EXPECT_NE(status.text.find("is of another scene"), std::string::npos) << status.text;
     }
   }
   // one part's for another's
-  EXPECT_FALSE(chain.part(kMechanics)->load(saved[kHydraulics], chain.sample(kMechanics)).is_ok());
+  EXPECT_FALSE(chain.part(Role::mechanics)->load(saved.at(Role::hydraulics), chain.sample(Role::mechanics)).is_ok());
 }
 
 }  // namespace damaged_state_test

@@ -11,11 +11,14 @@
 #include "build_paths.h"
 #include "core/allocation_guard.h"
 #include "mechanics_node/mechanics_subsystem.h"
+#include "node/identity.h"
 #include "session_chain.h"
 #include "support/nightly.h"
 
 namespace slew::testing {
 namespace saved_state_test {
+
+using wire::Role;
 
 scene::Scene load(const std::string& file, const std::vector<std::string>& overrides = {}) {
   return scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + file, overrides);
@@ -26,7 +29,7 @@ void expect_goes_on(const scene::Scene& scene, const Drive& drive, StepIndex at,
   SessionChain chain(scene, drive), other(scene, drive);
   chain.start();
   chain.run_to(at);
-  const SessionChain::Saved saved = chain.save();
+  const SavedParts saved = chain.save();
   ASSERT_NO_FATAL_FAILURE(other.go_on(saved, chain));
   EXPECT_EQ(other.save(), saved) << "saved again";
   ASSERT_TRUE(other.is_same_as(chain)) << "as loaded";
@@ -99,7 +102,7 @@ void expect_contacts(const scene::Scene& scene, const Drive& drive, StepIndex at
   SessionChain chain(scene, drive);
   chain.start();
   chain.run_to(at);
-  const auto& mechanics = dynamic_cast<const mechanics::MechanicsSubsystem&>(*chain.part(kMechanics));
+  const auto& mechanics = dynamic_cast<const mechanics_node::MechanicsSubsystem&>(*chain.part(Role::mechanics));
   EXPECT_FALSE(mechanics.state().contacts.states().empty());
 }
 
@@ -220,17 +223,17 @@ TEST(SavedState, HoldsTheLevelsThatWereChangedLive) {
 TEST(SavedState, HoldsASessionThatHasFailed) {
   const scene::Scene scene = load(kCrane);
   const Drive drive;
-  for (const Part part : {kMechanics, kHydraulics}) {
+  for (const Role part : {Role::mechanics, Role::hydraulics}) {
     SessionChain chain(scene, drive), other(scene, drive);
     chain.start();
     chain.run_to(50);
-    auto& sample = chain.sample(part == kMechanics ? kHydraulics : kMechanics);
+    auto& sample = chain.sample(part == Role::mechanics ? Role::hydraulics : Role::mechanics);
     sample.actuators.F[0] = sample.mechanism.x[0] = std::numeric_limits<double>::quiet_NaN();
     chain.step();
     ASSERT_TRUE(chain.report(part).has(StepFlag::non_finite));
     ASSERT_NO_FATAL_FAILURE(other.go_on(chain.save(), chain));
     for (int i = 0; i < 5; ++i) {
-      ASSERT_TRUE(other.is_same_as(chain)) << part;
+      ASSERT_TRUE(other.is_same_as(chain)) << node::to_text(part);
       chain.step();
       other.step();
     }
@@ -260,13 +263,13 @@ TEST(SavedState, OfCvodeIsRefusedByName) {
   const Drive drive;
   SessionChain chain(scene, drive);
   chain.start();
-  const Status status = chain.part(kHydraulics)->can_save();
+  const Status status = chain.part(Role::hydraulics)->can_save();
   EXPECT_EQ(status.code, ExitCode::bad_input);
   EXPECT_NE(status.text.find("hydraulics.solver: cvode"), std::string::npos) << status.text;
   std::vector<std::byte> bytes;
-  chain.part(kHydraulics)->save(bytes);
+  chain.part(Role::hydraulics)->save(bytes);
   EXPECT_TRUE(bytes.empty());
-  EXPECT_EQ(chain.part(kHydraulics)->load(bytes, chain.sample(kHydraulics)).text, status.text);
+  EXPECT_EQ(chain.part(Role::hydraulics)->load(bytes, chain.sample(Role::hydraulics)).text, status.text);
 }
 
 // ---- cost -------------------------------------------------------------------------------------------------------
@@ -279,15 +282,13 @@ TEST(SavedState, IsWrittenWithoutAllocation) {
     SessionChain chain(scene, drive);
     chain.start();
     chain.run_to(30);
-    SessionChain::Saved saved = chain.save();
-    const SessionChain::Saved before = saved;
-    for (std::size_t i = 0; i < kParts; ++i) {
-      const coupling::Subsystem* part = chain.part(static_cast<Part>(i));
-      if (part == nullptr) continue;
-      saved[i].clear();
+    SavedParts saved = chain.save();
+    const SavedParts before = saved;
+    for (auto& [role, bytes] : saved) {
+      bytes.clear();
       const AllocationGuard guard;
-      part->save(saved[i]);
-      EXPECT_EQ(guard.allocations(), 0u) << file << " " << i;
+      chain.part(role)->save(bytes);
+      EXPECT_EQ(guard.allocations(), 0u) << file << " " << node::to_text(role);
     }
     EXPECT_EQ(saved, before);
   }

@@ -6,16 +6,11 @@
 #include <cstring>
 
 #include "core/state_hash.h"
-#include "flex_node/flex_subsystem.h"
-#include "hydraulics_node/hydraulics_subsystem.h"
-#include "mechanics_node/mechanics_subsystem.h"
+#include "node/identity.h"
 #include "scene/parameters.h"
 
 namespace slew::testing {
 namespace {
-
-constexpr std::size_t kKept = 128;
-constexpr std::array<const char*, kParts> kPartNames = {"mechanics", "hydraulics", "flex"};
 
 std::uint64_t digest(const coupling::OwnSample& sample) {
   StateHash hash;
@@ -65,58 +60,9 @@ std::vector<ChainChange> small_changes(const scene::Scene& scene) {
   return changes;
 }
 
-SessionChain::SessionChain(const scene::Scene& scene, const Drive& drive)
-    : scene_(scene), drive_(drive), exchanged_(kKept), controls_(scene.inputs.size()) {
-  if (scene.has_mechanics()) parts_[kMechanics] = mechanics::make_mechanics_subsystem(scene);
-  if (scene.has_hydraulics()) parts_[kHydraulics] = hydraulic_node::make_hydraulics_subsystem(scene);
-  if (scene.has_modes()) parts_[kFlex] = flexible::make_flex_subsystem(scene);
-}
-
-// as libs/session/direct_session.cpp
 void SessionChain::start() {
-  coupling::OwnSample init;
-  if (part(kMechanics) != nullptr) static_cast<void>(part(kMechanics)->first_sample(init));
-  const auto require = [](const Status& status) { ASSERT_TRUE(status.is_ok()) << status.text; };
-  if (part(kHydraulics) != nullptr) {
-    coupling::PartnerSamples partners;
-    if (part(kMechanics) != nullptr) partners.mechanism = &init.mechanism;
-    require(part(kHydraulics)->start(partners, now_[kHydraulics]));
-  }
-  if (part(kMechanics) == nullptr) return;
-  coupling::PartnerSamples partners;
-  if (part(kHydraulics) != nullptr) partners.actuators = &now_[kHydraulics].actuators;
-  if (part(kFlex) != nullptr) {
-    static_cast<void>(part(kFlex)->first_sample(now_[kFlex]));
-    partners.elastic = &now_[kFlex].elastic;
-  }
-  require(part(kMechanics)->start(partners, now_[kMechanics]));
-  if (part(kFlex) == nullptr) return;
-  partners = {};
-  partners.flexible = &now_[kMechanics].flexible;
-  require(part(kFlex)->start(partners, now_[kFlex]));
-}
-
-coupling::PartnerSamples SessionChain::partners_of(Part which) noexcept {
-  coupling::PartnerSamples partners;
-  const StepIndex age = drive_.ages ? drive_.ages(n_) : n_ % scene_.session.exchange_every;
-  const Exchanged& last = exchanged_[static_cast<std::size_t>(n_ - age) % kKept];
-  if (which == kMechanics) {
-    if (part(kHydraulics) != nullptr) partners.actuators = &last.actuators;
-    partners.actuators_age = age;
-    const bool is_stated_anew = scene_.session.flexible != coupling::ElasticExchange::once;
-    if (part(kFlex) != nullptr && is_stated_anew) partners.elastic = &now_[kFlex].elastic;
-  } else if (part(kMechanics) != nullptr) {
-    partners.mechanism = &last.mechanism;
-    partners.mechanism_age = age;
-  }
-  return partners;
-}
-
-void SessionChain::advance(Part which, const coupling::PartnerSamples& partners, coupling::OwnSample& next) {
-  for (const ChainChange& change : drive_.changes) {
-    if (change.at == n_) parts_[which]->change_parameter(n_, {change.path, change.value, change.over});
-  }
-  reports_[which] = parts_[which]->step(n_, partners, controls_, next);
+  const Status started = DirectSession::start();
+  ASSERT_TRUE(started.is_ok()) << started.text;
 }
 
 void SessionChain::step() {
@@ -124,62 +70,57 @@ void SessionChain::step() {
     const double raw = drive_.held_sticks.empty() ? stick(i, n_) : drive_.held_sticks[i];
     controls_[i] = scene_.inputs[i].scale * raw;
   }
-  exchanged_[static_cast<std::size_t>(n_) % kKept] = {now_[kMechanics].mechanism, now_[kHydraulics].actuators};
-  for (const Part which : {kMechanics, kHydraulics}) {
-    if (part(which) != nullptr) advance(which, partners_of(which), next_[which]);
+  std::vector<wire::Command> commands;
+  for (const ChainChange& change : drive_.changes) {
+    if (change.at == n_) commands.push_back({0, change.path, change.value, change.over.ns});
   }
-  for (const Part which : {kMechanics, kHydraulics}) now_[which] = next_[which];
-  if (part(kFlex) != nullptr && (n_ + 1) % static_cast<StepIndex>(scene_.flexible_every()) == 0) {
-    coupling::PartnerSamples partners;
-    partners.flexible = &now_[kMechanics].flexible;
-    advance(kFlex, partners, now_[kFlex]);
-  }
-  ++n_;
+  DirectSession::step(n_++, commands, controls_);
 }
 
-SessionChain::Saved SessionChain::save() const {
-  Saved saved;
-  for (std::size_t i = 0; i < kParts; ++i) {
-    if (parts_[i] == nullptr) continue;
-    EXPECT_TRUE(parts_[i]->can_save().is_ok());
-    parts_[i]->save(saved[i]);
+SavedParts SessionChain::save() const {
+  SavedParts saved;
+  for (const wire::Role role : wire::kPhysicsRoles) {
+    if (part(role) == nullptr) continue;
+    EXPECT_TRUE(part(role)->can_save().is_ok());
+    part(role)->save(saved[role]);
   }
   return saved;
 }
 
-void SessionChain::go_on(const Saved& saved, const SessionChain& from) {
-  for (std::size_t i = 0; i < kParts; ++i) {
-    if (parts_[i] == nullptr) continue;
+void SessionChain::go_on(const SavedParts& saved, const SessionChain& from) {
+  for (const auto& [role, bytes] : saved) {
     // old contents of the sample are not taken for the state's
-    now_[i].mechanism.W_kind = coupling::MobilityKind::step;
-    now_[i].actuators.flags = 77;
-    const Status status = parts_[i]->load(saved[i], now_[i]);
-    ASSERT_TRUE(status.is_ok()) << kPartNames[i] << ": " << status.text;
+    sample(role).mechanism.W_kind = coupling::MobilityKind::step;
+    sample(role).actuators.flags = 77;
+    const Status status = part(role)->load(bytes, sample(role));
+    ASSERT_TRUE(status.is_ok()) << node::to_text(role) << ": " << status.text;
   }
   n_ = from.n_;
   reports_ = from.reports_;
-  exchanged_ = from.exchanged_;
+  history_ = from.history_;
 }
 
 bool SessionChain::is_same_as(const SessionChain& other) const {
-  for (std::size_t i = 0; i < kParts; ++i) {
-    if (parts_[i] == nullptr) continue;
+  for (const wire::Role role : wire::kPhysicsRoles) {
+    const coupling::Subsystem* const mine = part(role);
+    const coupling::Subsystem* const theirs = other.part(role);
+    if (mine == nullptr) continue;
     const auto differs = [&](const std::string& what) {
-      ADD_FAILURE() << what << " of " << kPartNames[i] << " differs at step " << n_;
+      ADD_FAILURE() << what << " of " << node::to_text(role) << " differs at step " << n_;
       return false;
     };
-    if (parts_[i]->state_hash() != other.parts_[i]->state_hash()) return differs("the hash");
-    if (digest(now_[i]) != digest(other.now_[i])) return differs("the sample");
-    if (!are_same(reports_[i], other.reports_[i])) return differs("the report");
-    if (parts_[i]->level() != other.parts_[i]->level()) return differs("the level");
-    if (parts_[i]->failure_text() != other.parts_[i]->failure_text()) return differs("the failure");
-    const std::span<const ElementVariable> variables = parts_[i]->variables();
-    std::vector<double> own(variables.size()), theirs(variables.size());
-    parts_[i]->read_variables(own);
-    other.parts_[i]->read_variables(theirs);
-    for (std::size_t k = 0; k < own.size(); ++k) {
-      if (!same_bits(own[k], theirs[k])) {
-        return differs(variables[k].name + " (" + std::to_string(own[k]) + ", " + std::to_string(theirs[k]) + ")");
+    if (mine->state_hash() != theirs->state_hash()) return differs("the hash");
+    if (digest(now_[index(role)]) != digest(other.now_[index(role)])) return differs("the sample");
+    if (!are_same(report(role), other.report(role))) return differs("the report");
+    if (mine->level() != theirs->level()) return differs("the level");
+    if (mine->failure_text() != theirs->failure_text()) return differs("the failure");
+    const std::span<const ElementVariable> variables = mine->variables();
+    std::vector<double> a(variables.size()), b(variables.size());
+    mine->read_variables(a);
+    theirs->read_variables(b);
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      if (!same_bits(a[k], b[k])) {
+        return differs(variables[k].name + " (" + std::to_string(a[k]) + ", " + std::to_string(b[k]) + ")");
       }
     }
   }

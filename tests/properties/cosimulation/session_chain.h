@@ -1,16 +1,14 @@
-// The physics subsystems of a scene stepped by hand under inputs that move, to be saved and continued by another chain.
+// The physics of a scene stepped by hand under inputs that move, to be saved and continued by another chain.
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <memory>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "coupling/subsystem.h"
 #include "scene/scene.h"
+#include "session/direct_session.h"
 
 namespace slew::testing {
 
@@ -28,19 +26,21 @@ struct Drive {
   // Raw value -1..1 of every channel; none: to and fro, each at its own pace.
   std::vector<double> held_sticks{};
   // How old the newest samples of mechanics and hydraulics are at a step; none: as the scene exchanges.
-  std::function<StepIndex(StepIndex)> ages{};
+  session::SampleAges ages{};
 };
 
 // Small changes of every number of the scene that may be changed live, ten steps from the start and of different
 // lengths: at step 100 some have arrived and some are under way.
 [[nodiscard]] std::vector<ChainChange> small_changes(const scene::Scene& scene);
 
-enum Part : std::size_t { kMechanics, kHydraulics, kFlex, kParts };
+// States by role, without the frame of a checkpoint.
+using SavedParts = std::map<wire::Role, std::vector<std::byte>>;
 
-class SessionChain {
+class SessionChain : private session::DirectSession {
  public:
   // scene and drive outlive the chain.
-  SessionChain(const scene::Scene& scene, const Drive& drive);
+  SessionChain(const scene::Scene& scene, const Drive& drive)
+      : DirectSession(scene, drive.ages), scene_(scene), drive_(drive), controls_(scene.inputs.size()) {}
 
   void start();
   void step();
@@ -48,34 +48,23 @@ class SessionChain {
     while (n_ < n) step();
   }
 
-  using Saved = std::array<std::vector<std::byte>, kParts>;
-  [[nodiscard]] Saved save() const;
-  // In the place of start(): from what another chain saved now; its samples that are still to be exchanged with it.
-  void go_on(const Saved& saved, const SessionChain& from);
+  [[nodiscard]] SavedParts save() const;
+  // Replaces start(): continues from the states that another chain saved now, with its samples that are still to be
+  // exchanged.
+  void go_on(const SavedParts& saved, const SessionChain& from);
 
-  // Fails the test, and gives false, where anything differs in a bit: samples, reports, hashes, variables.
+  // Fails the test, and returns false, if anything differs in a bit: samples, reports, hashes, variables.
   [[nodiscard]] bool is_same_as(const SessionChain& other) const;
 
   [[nodiscard]] StepIndex n() const noexcept { return n_; }
   // Null: the scene has no such part.
-  [[nodiscard]] coupling::Subsystem* part(Part part) const noexcept { return parts_[part].get(); }
-  [[nodiscard]] coupling::OwnSample& sample(Part part) noexcept { return now_[part]; }
-  [[nodiscard]] const StepReport& report(Part part) const noexcept { return reports_[part]; }
+  using DirectSession::part;
+  using DirectSession::report;
+  [[nodiscard]] coupling::OwnSample& sample(wire::Role role) noexcept { return now_[index(role)]; }
 
  private:
-  struct Exchanged {
-    coupling::MechanismSample mechanism;
-    coupling::ActuatorSample actuators;
-  };
-  [[nodiscard]] coupling::PartnerSamples partners_of(Part part) noexcept;
-  void advance(Part part, const coupling::PartnerSamples& partners, coupling::OwnSample& next);
-
   const scene::Scene& scene_;
   const Drive& drive_;
-  std::array<std::unique_ptr<coupling::Subsystem>, kParts> parts_;
-  std::array<coupling::OwnSample, kParts> now_, next_;
-  std::array<StepReport, kParts> reports_{};
-  std::vector<Exchanged> exchanged_;  // samples of the last steps, by step
   std::vector<double> controls_;
   StepIndex n_ = 0;
 };

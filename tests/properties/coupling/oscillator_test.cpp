@@ -78,7 +78,7 @@ TEST(LevelTlm, NeverGrowsAtAnyStep) {
   }
 }
 
-TEST(LevelTlm, SlowsAndDampsTheSwingAsTheStudySays) {
+TEST(LevelTlm, SlowsAndDampsTheSwingAsInTheStudy) {
   // its parasitic mass K H^2; study: damping ratio 2e-4 and 4e-3, frequency lower by 8e-3 and 5e-2. The hundredth of
   // the chamber that is charged in steps adds its share, Omega / 400
   const auto damping = [](double Omega) {

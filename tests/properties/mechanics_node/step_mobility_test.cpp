@@ -1,4 +1,4 @@
-// A second mass on a spring behind the port of a mechanism: what the hydraulics has to know of it.
+// A second mass on a spring behind the port of a mechanism: its part in the published mobility.
 //
 //   oil spring K, lambda -- port -- m1 -- k_s -- m2,   omega = sqrt(K / m1),   Omega = omega H,   d = 2 zeta omega m1
 //   on m1
@@ -16,7 +16,7 @@
 #include "multibody/formulations/dynamics.h"
 #include "scene/scene.h"
 
-namespace slew::mechanics {
+namespace slew::mechanics_node {
 namespace step_mobility_test {
 
 constexpr double kOmega = 100, kMass = 2, kOil = kMass * kOmega * kOmega;  // rad/s, kg, N/m
@@ -206,4 +206,4 @@ TEST(StepMobility, IsThatOfBothMassesWhereTheSpringIsFast) {
 }
 
 }  // namespace step_mobility_test
-}  // namespace slew::mechanics
+}  // namespace slew::mechanics_node

@@ -25,7 +25,7 @@ TreeOptions options_of(std::uint32_t seed) {
   return with_modes_of(seed, {.bodies = 1 + static_cast<int>(seed) % 9, .two_coordinates = true});
 }
 
-TEST(RandomTrees, AccelerateAsTheAssembledEquationsSay) {
+TEST(RandomTrees, AccelerateAsInTheAssembledEquations) {
   for_each_seed(kSeeds, [](std::uint32_t seed) {
     const RandomTree random = random_tree(seed, options_of(seed));
     Mechanism mechanism(random.def, random.rows);
@@ -67,7 +67,7 @@ TEST(RandomTrees, RowsAgreeWithTheAssembledEquations) {
   });
 }
 
-TEST(RandomTrees, RowForcesActAsTheirColumnsSay) {
+TEST(RandomTrees, RowForcesActAsInTheirColumns) {
   for_each_seed(kSeeds, [](std::uint32_t seed) {
     const RandomTree random = random_tree(seed, options_of(seed));
     Mechanism mechanism(random.def, random.rows);

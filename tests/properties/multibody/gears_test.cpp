@@ -77,7 +77,7 @@ bool is_fitting(const Model& model, const State& state) {
   return true;
 }
 
-TEST(GearedTrees, AccelerateAsTheAssembledEquationsWithMultipliersSay) {
+TEST(GearedTrees, AccelerateAsInTheAssembledEquationsWithMultipliers) {
   int tested = 0;
   for_each_seed(seeds({{1, 24}}), [&](std::uint32_t seed) {
     RandomTree tree = geared_tree(seed);

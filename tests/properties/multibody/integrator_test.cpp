@@ -313,7 +313,7 @@ TEST_P(LightLinks, CarryAMillionfoldInShortSteps) {
 // longer ones may lose the motion, but an implicit rule reports it and holds a diverged state
 class ImplicitLightLinks : public LightLinks {};
 
-TEST_P(ImplicitLightLinks, TellWhenAMillionfoldIsTooMuch) {
+TEST_P(ImplicitLightLinks, ReportWhenAMillionfoldIsTooMuch) {
   const Swing coarse = swing(3, 1e6, 0.15, 1e-3);
   EXPECT_TRUE(coarse.unsettled > 0 || std::fabs(coarse.energy) < 0.1) << coarse.energy;
   EXPECT_TRUE(coarse.stayed_finite);

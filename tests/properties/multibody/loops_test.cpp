@@ -116,7 +116,7 @@ TEST(RandomLoops, MoveAlongTheirJoints) {
   });
 }
 
-TEST(RandomLoops, AccelerateAsTheAssembledEquationsSay) {
+TEST(RandomLoops, AccelerateAsInTheAssembledEquations) {
   for_each_mechanism([](MovingLoops& loops) {
     const Vector expected = loops.solve(loops.reference.forces(loops.q, loops.u), -loops.bias);
     EXPECT_LT(difference(to_vector(loops.mechanism.ws.udot_free), expected), kTolerance);

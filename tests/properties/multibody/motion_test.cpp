@@ -106,7 +106,7 @@ Expected solve(const Assembled& reference, const Model& model, const Vector& q, 
   return expected;
 }
 
-TEST(DrivenTrees, AccelerateAndLoadTheirDrivesAsTheAssembledEquationsSay) {
+TEST(DrivenTrees, AccelerateAndLoadTheirDrivesAsInTheAssembledEquations) {
   for_each_seed(kSeeds, [](std::uint32_t seed) {
     RandomTree tree = driven_tree(seed);
     Mechanism mechanism(tree.def, tree.rows);

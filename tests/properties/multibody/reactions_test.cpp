@@ -80,7 +80,7 @@ std::vector<Vec3> momenta(const Mechanism& mechanism) {
 }
 
 // joints and weight only: the joints' load on each body equals the rate of its momenta, by differences in time
-TEST(Reactions, MoveEveryBodyAsNewtonAndEulerSay) {
+TEST(Reactions, MoveEveryBodyAsInNewtonAndEuler) {
   slew::testing::for_each_seed(slew::testing::seeds({{1, 360}}, kGateSeeds), [&](std::uint32_t seed) {
     MechanicsDef def = random_mechanism(seed);
     def.translational_forces.clear();

@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(In, SegmentsStart,
                          ::testing::Values(Formulation::recursive, Formulation::lagrange, Formulation::augmented),
                          [](const auto& tested) { return name_of(tested.param); });
 
-TEST(SegmentsStart, HangsByMoreThanItsRootStraightAndSaysSo) {
+TEST(SegmentsStart, HangsByMoreThanItsRootStraightAndReportsIt) {
   MechanicsDef def = level(5, 0.1);
   def.joints[1] = {
       .name = "Hook", .type = JointType::spherical, .point1 = {1, 0, 0}, .body2 = "Bar", .point2 = {1, 0, 0}};

@@ -19,7 +19,7 @@ TEST(CouplingLamp, GreenNeedsNoWord) {
   EXPECT_EQ(usual_force_error(4.9e-4), "");
 }
 
-TEST(CouplingLamp, AmberAndRedSayHowLargeAndWhatHelps) {
+TEST(CouplingLamp, AmberAndRedShowHowLargeAndWhatHelps) {
   EXPECT_EQ(usual_force_error(2e-3), "0.8 %");
   EXPECT_EQ(explain_lamp(2e-3, 0, boom({})),
             "force off by about 0.8 % of its range, stroke by 0.26 % (5 % and 2.4 % in one run of 20); better with a "

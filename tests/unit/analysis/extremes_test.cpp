@@ -120,7 +120,7 @@ TEST(ExtremeCases, InputsHoldTheirLastPoint) {
   EXPECT_EQ(raw_at(points, 5.0), -1);
 }
 
-TEST(ExtremeCases, SceneWithoutACircuitHasCasesThatSayWhyTheyDoNotApply) {
+TEST(ExtremeCases, SceneWithoutACircuitHasCasesWithTheReasonWhyTheyDoNotApply) {
   const scene::Scene scene = scene_of("first_steps.yaml");
   const std::vector<ExtremeCase> cases = extreme_cases(scene);
   EXPECT_TRUE(named(cases, "zero_gravity").obstacle.empty());

@@ -12,7 +12,8 @@ constexpr SimDuration kStep{100'000};
 
 YardstickRules rules(SimDuration work) {
   YardstickRules rules;
-  rules.step = kStep;
+  rules.session.step = kStep.seconds();
+  rules.session.start_grace = 0;
   rules.loops.resize(2);
   for (YardstickLoop& loop : rules.loops) loop.work = loop.computing = work;
   return rules;
@@ -28,7 +29,7 @@ wire::Health run(const YardstickRules& rules, StepIndex steps) {
 
 TEST(Yardstick, TheFirstStepsOfASliceAreNotJudged) {
   YardstickRules with_grace = rules({1000});
-  with_grace.overrun.grace = {2 * kStep.ns + 1};
+  with_grace.session.start_grace = SimDuration{2 * kStep.ns + 1}.seconds();
   const wire::Health health = run(with_grace, 20);
   EXPECT_EQ(health.steps_done, 23u) << "three more than were requested";
   EXPECT_EQ(health.response.count - given_up(health), 20u);
@@ -36,7 +37,7 @@ TEST(Yardstick, TheFirstStepsOfASliceAreNotJudged) {
 
 TEST(Yardstick, StepsThatItGivesUpAreMisses) {
   YardstickRules slow = rules({4 * kStep.ns});
-  slow.overrun.lag = kStep;
+  slow.session.overrun_lag = kStep.seconds();
   const wire::Health health = run(slow, 10);
   EXPECT_GE(health.steps_skipped, 20u) << "three of four";
   EXPECT_EQ(given_up(health), health.steps_skipped);

@@ -56,7 +56,7 @@ TEST(Levers, IgnoreOtherKeysAndCutSequences) {
   for (std::size_t i = 0; i < levers.size(); ++i) EXPECT_DOUBLE_EQ(levers.value(i), 0.0);
 }
 
-TEST(Levers, TellWhichKeysMoveWhat) {
+TEST(Levers, ListTheKeysOfEachInput) {
   EXPECT_EQ(two_levers_and_a_button().help(), "keyboard: q/a Slew  w/s Lift  e/d Horn  space neutral  Ctrl-C end");
 }
 

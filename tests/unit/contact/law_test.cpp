@@ -44,7 +44,7 @@ TEST(DampingNumber, HasTheRightLimits) {
 }
 
 // a free mass on its way in, in steps of a thousandth of the way
-TEST(NormalForce, IsNeverSteeperOnAFreeImpactThanSaidBefore) {
+TEST(NormalForce, IsNeverSteeperOnAFreeImpactThanItsBound) {
   for (const double e : {0.01, 0.1, 0.5, 1.0}) {
     for (const double n : {1.0, 1.5, 3.0}) {
       for (const double speed : {1e-3, 0.05, 3.0}) {

@@ -25,7 +25,7 @@ ProcessEnd end_of(ChildProcess& child) {
   return *child.poll_end();
 }
 
-TEST(ChildProcess, TellsItsExitCode) {
+TEST(ChildProcess, ReportsItsExitCode) {
   ChildProcess child("seven", "/bin/sh", {"-c", "exit 7"});
   const ProcessEnd end = end_of(child);
   EXPECT_EQ(end.exit_code, 7);
@@ -33,7 +33,7 @@ TEST(ChildProcess, TellsItsExitCode) {
   EXPECT_EQ(end.text(), "exited with code 7");
 }
 
-TEST(ChildProcess, TellsTheSignalThatKilledIt) {
+TEST(ChildProcess, ReportsTheSignalThatKilledIt) {
   ChildProcess child("sleeper", "/bin/sleep", {"100"});
   child.send_signal(SIGKILL);
   const ProcessEnd end = end_of(child);
@@ -58,7 +58,7 @@ TEST(ChildProcess, ReadsNothingFromTheTerminal) {
   EXPECT_EQ(end_of(child).exit_code, 0);
 }
 
-TEST(ChildProcess, SaysWhyAProgramCannotBeStarted) {
+TEST(ChildProcess, ReportsWhyAProgramCannotBeStarted) {
   ChildProcess child("nothing", "/nowhere/at_all", {});
   EXPECT_EQ(end_of(child).exit_code, static_cast<int>(ExitCode::resources));
   const std::vector<std::string> lines = child.take_lines();

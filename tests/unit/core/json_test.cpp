@@ -56,7 +56,7 @@ TEST(Json, ACopyIsAValueOfItsOwn) {
   EXPECT_EQ(json.dump(), R"({"a":[1,2]})");
 }
 
-TEST(Json, ReadingSaysWhatIsWrong) {
+TEST(Json, ReadingReportsWhatIsWrong) {
   const Json json = Json::parse(R"({"name": "x", "list": [1, 2], "no": false})").value();
   EXPECT_EQ(json.at("name").text(), "x");
   EXPECT_EQ(json.at("list").items().size(), 2u);

@@ -16,7 +16,7 @@ OwnPast with_steps(StepIndex count) {
   return past;
 }
 
-TEST(OwnPast, KnowsTheLastStepsOnly) {
+TEST(OwnPast, HasTheLastStepsOnly) {
   const OwnPast past = with_steps(kRememberedSteps + 5);
   EXPECT_FALSE(past.has(4));
   EXPECT_TRUE(past.has(5));
@@ -41,9 +41,9 @@ TEST(OwnPast, CorrectsFromTheStepToNowAndNothingBefore) {
 // the same news twice corrects once
 TEST(OwnPast, LearnsNothingFromWhatItHasLearned) {
   OwnPast past = with_steps(10);
-  const double said = 65;
-  past.correct(6, 1, said - past.first(6, 1), 0);
-  EXPECT_EQ(said - past.first(6, 1), 0);
+  const double stated = 65;
+  past.correct(6, 1, stated - past.first(6, 1), 0);
+  EXPECT_EQ(stated - past.first(6, 1), 0);
   EXPECT_EQ(past.first(9, 1), 95);
 }
 

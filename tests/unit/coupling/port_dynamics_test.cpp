@@ -279,7 +279,7 @@ TEST(PortDynamics, MeanAndSlopeReproduceTheMotion) {
   EXPECT_GT(std::log2(position_error(2e-3) / position_error(1e-3)), 2.5);
 }
 
-TEST(PortDynamics, SaysThatANumberWasLost) {
+TEST(PortDynamics, ReportsThatANumberWasLost) {
   PortDynamics ports(1);
   ports.W()[0] = 1;
   ports.a_free()[0] = std::numeric_limits<double>::quiet_NaN();

@@ -186,7 +186,7 @@ TEST_F(FaultyFiles, EveryCutIsNoticed) {
   }
 }
 
-TEST_F(FaultyFiles, ModelsThatShareTheirFilesNamesAreToldApart) {
+TEST_F(FaultyFiles, ModelsThatShareTheirFilesNamesAreDistinguished) {
   const Reduction r = small_reduction();
   const FlexibleFileSet own{folder_.path(), "a", "b_c"}, other{folder_.path(), "a_b", "c"};
   write_flexible_files(own, r);

@@ -46,7 +46,7 @@ TEST(ReductionReport, EffectiveMassesOfAllModesAreTheMassThatMoves) {
   }
 }
 
-TEST(ReductionReport, TextTellsWhatIsKeptAndReached) {
+TEST(ReductionReport, TextListsWhatIsKeptAndReached) {
   const FeModel model = build_beam(jib_boom());
   const ReductionDef def = with_modes(4);
   const std::vector<int> kept = {1, 2};
@@ -87,7 +87,7 @@ TEST(ReductionReport, ASelectionOfFilesWithoutRotationsHasNoCompliance) {
   EXPECT_TRUE(report_files(all, {}).compliance.empty());
 }
 
-TEST(ReductionReport, SummaryTellsWhatTheLowestModesReach) {
+TEST(ReductionReport, SummaryListsWhatTheLowestModesReach) {
   const FeModel model = build_beam(jib_boom());
   const Reduction all = reduce(model, with_modes(10));
   const std::string text = summary_of(all, tip_compliance(model, all));
@@ -120,7 +120,7 @@ TEST(AttachmentComparison, IsTheSameFromBothSides) {
   EXPECT_NEAR((*a.rows[3].free)[0], 1, 1e-9);
 }
 
-TEST(AttachmentComparison, SaysWhyThereIsNone) {
+TEST(AttachmentComparison, ReportsWhyThereIsNone) {
   const FeModel model = build_beam(jib_boom(4));
   ReductionDef def = with_modes(2, Attachment::free);
   def.modes.interface_nodes = {2};

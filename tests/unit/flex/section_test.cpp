@@ -52,7 +52,7 @@ TEST(Section, ThickBoxComesNearTheSolidSquare) {
 }
 
 // Timoshenko & Goodier, table in art. 109: J = k1 h t^3, tau = T/(k2 h t^2) in the middle of the long side
-TEST(Section, SolidRectangleTwistsAsTheTableSays) {
+TEST(Section, SolidRectangleTwistsAsInTheTable) {
   struct Row {
     double ratio, k1, k2;
   };

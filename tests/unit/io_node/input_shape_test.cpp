@@ -8,7 +8,7 @@
 
 #include "tests/support/nightly.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace input_shape_test {
 
 ShapedStep held(double raw, double dead_zone, double most, double start) {
@@ -103,4 +103,4 @@ TEST(InputShape, IsTheLawInManySmallSteps) {
 }
 
 }  // namespace input_shape_test
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -1,9 +1,9 @@
-// What io_node says about a parameter is what the nodes compute with.
+// The values that io_node publishes of a parameter are those with which the nodes compute.
 #include "io_node/live_parameters.h"
 
 #include <gtest/gtest.h>
 
-namespace slew::io {
+namespace slew::io_node {
 namespace live_parameters_test {
 
 class Parameters : public ::testing::Test {
@@ -46,4 +46,4 @@ TEST_F(Parameters, AreTheScenesAgainAfterAReset) {
 }
 
 }  // namespace live_parameters_test
-}  // namespace slew::io
+}  // namespace slew::io_node

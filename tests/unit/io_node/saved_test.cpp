@@ -1,4 +1,4 @@
-// A session that is saved, goes on from there, or is put there, with the nodes and the clock played by the test.
+// A session that is saved, continued or loaded; the test plays the nodes and the clock.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include "tests/support/played_session.h"
 #include "tests/support/temporary_folder.h"
 
-namespace slew::io {
+namespace slew::io_node {
 namespace saved_test {
 
 using testing::kMs;
@@ -20,26 +20,29 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-// moves the stick to and fro, so that the ramp is never at rest
+// Moves the stick back and forth, so that the ramp is never at rest.
 class Swinging final : public InputSource {
  public:
-  void courses(SimTime from, SimTime, std::span<SignalCourse> raw) override {
+  [[nodiscard]] std::span<const std::string> channels() const noexcept override { return names_; }
+  void read(std::size_t, SimTime from, SimTime, SignalCourse& raw) const override {
     const double value = (from.ns / (70 * kMs)) % 2 == 0 ? 1.0 : -0.5;
-    raw[0].assign({{1, value, value}});
+    raw.assign({{1, value, value}});
   }
   [[nodiscard]] std::size_t most_pieces(SimDuration) const noexcept override { return 1; }
-  void changes(SimTime from, SimTime to, std::vector<wire::Command>& due) override {
-    const std::int64_t at = 95 * kMs;
-    if (from.ns <= at && at < to.ns) due.push_back({0, "Bag.mass", 1500, 40 * kMs});
-  }
+
+ private:
+  std::vector<std::string> names_{"Input_Lift"};
 };
 
-// One io_node and those it talks to.
+// One io_node and its partners.
 class World {
  public:
   static IoConfig config(StepIndex unit = 1) {
     IoConfig config;
     config.session_name = "s";
+    config.session.duration = 0;  // until it is stopped
+    config.session.start_grace = 0;
+    config.session.controller_timeout = 0.2;
     config.scene_name = "still";
     config.required_roles = bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics);
     config.name_check = {};
@@ -49,66 +52,67 @@ class World {
     lift.scale = 0.7;
     config.channels.push_back(lift);
     config.parameters = {{"Bag.mass", 1000}};
-    config.source = std::make_unique<Swinging>();
-    config.save_unit = unit;
+    config.sources.push_back(std::make_unique<Swinging>());
+    config.changes.push_back({SimTime{95 * kMs}, {0, "Bag.mass", 1500, 40 * kMs}});
+    config.exchange_unit = unit;
     return config;
   }
   void poll(std::int64_t after_ns = 0) { node->poll(now_ns += after_ns); }
 
   void get_running(IoConfig with) {
-    const StepIndex begin = with.beginning ? with.beginning->step : 0;
+    const StepIndex begin = with.resume ? with.resume->step : 0;
     node = std::make_unique<IoNode>(played.transport(), std::move(with));
     poll();
-    const auto sessions = played.said<wire::SessionDescription>(Topic::session);
+    const auto sessions = played.received<wire::SessionDescription>(Topic::session);
     ASSERT_FALSE(sessions.empty());
     played.session.header = sessions.back().header;
     EXPECT_EQ(sessions.back().header.step, begin == 0 ? kJoinStep : begin);
     for (const Role role : {Role::mechanics, Role::hydraulics}) {
-      played.say_heard(role, NodeState::joining, node->member().header(Phase::join, kJoinStep), {Topic::tick});
+      played.acknowledge(role, NodeState::joining, node->member().header(Phase::join, kJoinStep), {Topic::tick});
     }
     poll(kMs);
     for (const Role role : {Role::mechanics, Role::hydraulics}) {
       wire::NodeStatus ready = played.status(role, NodeState::ready, begin);
-      played.say(Topic::node_status, ready);
+      played.publish(Topic::node_status, ready);
     }
     poll(kMs);
-    say_samples(begin);
+    publish_samples(begin);
     poll(kMs);
     ASSERT_EQ(node->next_step(), begin + 1);
   }
-  void say_samples(StepIndex step) {
-    played.say_mechanism(step, Phase::running, node->member().epoch());
-    played.say_actuators(step, Phase::running, node->member().epoch());
+  void publish_samples(StepIndex step) {
+    played.publish_mechanism(step, Phase::running, node->member().epoch());
+    played.publish_actuators(step, Phase::running, node->member().epoch());
   }
   void run_to(StepIndex step) {
     for (int i = 0; node->next_step() < step && i < 1000; ++i) {
-      say_samples(node->next_step());
+      publish_samples(node->next_step());
       poll(kMs);
     }
   }
   void collect(std::map<StepIndex, wire::Tick>& ticks) {
-    for (wire::Tick& tick : played.said<wire::Tick>(Topic::tick)) {
+    for (wire::Tick& tick : played.received<wire::Tick>(Topic::tick)) {
       if (tick.header.phase == Phase::running) ticks[tick.header.step] = tick;
     }
   }
-  void ask(ControlAction action, std::uint64_t number) {
+  void control(ControlAction action, std::uint64_t number) {
     wire::ControlRequest request;
     request.session = "s";
     request.request = number;
     request.action = action;
-    played.say(Topic::control_request, request);
+    played.publish(Topic::control_request, request);
     poll();
   }
-  // to requests; events are told without one
+  // replies to requests, without events
   std::vector<wire::ControlReply> replies() {
-    std::vector<wire::ControlReply> all = played.said<wire::ControlReply>(Topic::control_reply);
+    std::vector<wire::ControlReply> all = played.received<wire::ControlReply>(Topic::control_reply);
     std::erase_if(all, [](const wire::ControlReply& reply) { return reply.request == 0; });
     return all;
   }
 
-  // what io asks of the nodes is answered
+  // the nodes answer io's requests
   void give_states() {
-    for (const auto& asked : played.said<wire::ResendRequest>(Topic::resend)) {
+    for (const auto& asked : played.received<wire::ResendRequest>(Topic::resend)) {
       if (asked.topic != static_cast<std::uint8_t>(Topic::checkpoint)) continue;
       wire::StatePart part;
       part.header = played.header(asked.role, asked.header.step, Phase::running, node->member().epoch());
@@ -116,13 +120,13 @@ class World {
       part.state_hash = 7;
       part.total = 3;
       part.bytes.resize(3);
-      played.say(Topic::checkpoint, part);
+      played.publish(Topic::checkpoint, part);
     }
     poll();
   }
   std::vector<SavedState> states_of(std::uint64_t request) {
     std::map<Role, node::CheckpointParts> parts;
-    for (const auto& part : played.said<wire::StatePart>(Topic::state)) {
+    for (const auto& part : played.received<wire::StatePart>(Topic::state)) {
       EXPECT_EQ(part.request, request);
       parts[part.role].take(part);
     }
@@ -143,10 +147,10 @@ TEST(Saved, AsOneRequestHoweverOftenItIsSent) {
   World world;
   world.get_running(World::config());
   world.run_to(110);
-  world.ask(ControlAction::save, 9);
-  world.say_samples(110);
+  world.control(ControlAction::save, 9);
+  world.publish_samples(110);
   world.poll(kMs);
-  world.ask(ControlAction::save, 9);
+  world.control(ControlAction::save, 9);
   EXPECT_TRUE(world.replies().empty());
   world.give_states();
   for (int copy = 0; copy < 3; ++copy) {
@@ -154,7 +158,7 @@ TEST(Saved, AsOneRequestHoweverOftenItIsSent) {
     ASSERT_EQ(answers.size(), 1u) << copy;
     EXPECT_TRUE(answers[0].is_accepted) << answers[0].reason;
     EXPECT_EQ(answers[0].header.step, 110);
-    world.ask(ControlAction::save, 9);
+    world.control(ControlAction::save, 9);
   }
   EXPECT_EQ(world.states_of(9).size(), 3u);
   world.run_to(120);
@@ -165,9 +169,9 @@ TEST(Saved, AtAStepBoundaryWithTheStatesOfAllAndGoesOnToTheSameTicks) {
   World world;
   world.get_running(World::config());
   world.run_to(110);
-  world.ask(ControlAction::save, 9);
+  world.control(ControlAction::save, 9);
   EXPECT_TRUE(world.replies().empty());
-  world.say_samples(110);
+  world.publish_samples(110);
   world.poll(kMs);
   EXPECT_EQ(world.node->next_step(), 110) << "a tick went out before the states were there";
   world.give_states();
@@ -184,7 +188,7 @@ TEST(Saved, AtAStepBoundaryWithTheStatesOfAllAndGoesOnToTheSameTicks) {
   // another io goes on from there: the ramps of channel and parameter, and the script
   World other;
   IoConfig next = World::config();
-  next.beginning = Beginning{110, states, {}};
+  next.resume = ResumeState{110, states, {}};
   other.get_running(std::move(next));
   other.run_to(200);
   other.collect(again);
@@ -199,7 +203,7 @@ TEST(Saved, AtAStepBoundaryWithTheStatesOfAllAndGoesOnToTheSameTicks) {
   get.request = 3;
   get.action = ControlAction::get_parameter;
   get.path = "Bag.mass";
-  other.played.say(Topic::control_request, get);
+  other.played.publish(Topic::control_request, get);
   other.poll();
   EXPECT_EQ(other.replies().back().value, 1500);
 }
@@ -208,18 +212,18 @@ TEST(Saved, OnlyWhereAllNodesHaveExchanged) {
   World world;
   world.get_running(World::config(4));
   world.run_to(9);
-  world.ask(ControlAction::pause, 1);
-  world.ask(ControlAction::save, 2);
+  world.control(ControlAction::pause, 1);
+  world.control(ControlAction::save, 2);
   const auto refused = world.replies();
   ASSERT_EQ(refused.size(), 2u);
   EXPECT_FALSE(refused[1].is_accepted);
   EXPECT_NE(refused[1].reason.find("go on to step 12 first ('slewring control step 3')"), std::string::npos)
       << refused[1].reason;
-  world.ask(ControlAction::resume, 3);
-  world.ask(ControlAction::save, 4);
+  world.control(ControlAction::resume, 3);
+  world.control(ControlAction::save, 4);
   static_cast<void>(world.replies());
   world.run_to(12);
-  world.say_samples(12);
+  world.publish_samples(12);
   world.poll(kMs);
   EXPECT_EQ(world.node->next_step(), 12);
   world.give_states();
@@ -232,11 +236,11 @@ TEST(Saved, NotWithoutTheStateOfANodeAndTheSessionGoesOn) {
   World world;
   world.get_running(World::config());
   world.run_to(20);
-  world.ask(ControlAction::save, 2);
+  world.control(ControlAction::save, 2);
   for (int i = 0; i < 60; ++i) {
-    world.played.say_status(Role::mechanics, NodeState::running, 20);
-    world.played.say_status(Role::hydraulics, NodeState::running, 20);
-    world.say_samples(20);
+    world.played.publish_status(Role::mechanics, NodeState::running, 20);
+    world.played.publish_status(Role::hydraulics, NodeState::running, 20);
+    world.publish_samples(20);
     world.poll(100 * kMs);
   }
   const auto answers = world.replies();
@@ -245,24 +249,24 @@ TEST(Saved, NotWithoutTheStateOfANodeAndTheSessionGoesOn) {
   EXPECT_NE(answers[0].reason.find("has not given its state of step 20 within 5 s"), std::string::npos)
       << answers[0].reason;
   EXPECT_GT(world.node->next_step(), 20);
-  // one that says that it has none
-  world.ask(ControlAction::save, 3);
+  // a node that reports that it has none
+  world.control(ControlAction::save, 3);
   wire::StatePart nothing;
   nothing.header = world.played.header(Role::hydraulics, world.node->next_step());
   nothing.role = Role::hydraulics;
-  world.played.say(Topic::checkpoint, nothing);
+  world.played.publish(Topic::checkpoint, nothing);
   world.poll(kMs);
   const auto more = world.replies();
   ASSERT_EQ(more.size(), 1u);
   EXPECT_NE(more[0].reason.find("the hydraulics node's state cannot be saved"), std::string::npos) << more[0].reason;
-  // a scene that says so itself
+  // a scene whose state cannot be saved
   World other;
   IoConfig config = World::config();
   config.save_obstacle = "its clock decides";
   other.get_running(std::move(config));
-  other.ask(ControlAction::save, 4);
+  other.control(ControlAction::save, 4);
   EXPECT_NE(other.replies().back().reason.find("cannot be saved: its clock decides"), std::string::npos);
-  other.ask(ControlAction::load, 5);
+  other.control(ControlAction::load, 5);
   EXPECT_NE(other.replies().back().reason.find("takes no saved state: its clock decides"), std::string::npos);
 }
 
@@ -270,7 +274,7 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
   World world;
   world.get_running(World::config());
   world.run_to(110);
-  world.ask(ControlAction::save, 9);
+  world.control(ControlAction::save, 9);
   world.give_states();
   const std::vector<SavedState> states = world.states_of(9);
   std::map<StepIndex, wire::Tick> ticks, again;
@@ -281,14 +285,14 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
     wire::Header header = world.played.header(Role::observer, 110);
     for (std::size_t i = 0; i < count; ++i) {
       for (const auto& part : node::parts_of(states[i].state, header, states[i].role, request)) {
-        world.played.say(Topic::state, part);
+        world.played.publish(Topic::state, part);
       }
     }
     world.poll();
   };
   // one state is missing
   upload(20, 2);
-  world.ask(ControlAction::load, 20);
+  world.control(ControlAction::load, 20);
   EXPECT_TRUE(world.replies().empty());
   for (int i = 0; i < 25; ++i) {
     world.run_to(world.node->next_step() + 1);
@@ -301,14 +305,14 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
   EXPECT_EQ(world.node->member().epoch(), 0u);
   // all of them
   upload(21, 3);
-  world.ask(ControlAction::load, 21);
+  world.control(ControlAction::load, 21);
   answers = world.replies();
   ASSERT_EQ(answers.size(), 1u);
   EXPECT_TRUE(answers[0].is_accepted) << answers[0].reason;
   EXPECT_EQ(answers[0].header.step, 110);
   EXPECT_EQ(world.node->member().epoch(), 1u);
   bool has_begun = false;
-  for (const auto& tick : world.played.said<wire::Tick>(Topic::tick)) {
+  for (const auto& tick : world.played.received<wire::Tick>(Topic::tick)) {
     if (tick.header.phase != Phase::init) continue;
     has_begun = true;
     EXPECT_EQ(tick.header.step, 110);
@@ -321,18 +325,18 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
   request.role = Role::hydraulics;
   request.topic = static_cast<std::uint8_t>(Topic::state);
   request.last_step = kJoinStep;
-  world.played.say(Topic::resend, request);
+  world.played.publish(Topic::resend, request);
   world.poll();
-  const auto given = world.played.said<wire::StatePart>(Topic::state);
+  const auto given = world.played.received<wire::StatePart>(Topic::state);
   ASSERT_EQ(given.size(), 1u);
   EXPECT_EQ(given[0].role, Role::hydraulics);
   EXPECT_EQ(given[0].header.step, 110);
   for (const Role role : {Role::mechanics, Role::hydraulics}) {
     wire::NodeStatus ready = world.played.status(role, NodeState::ready, 110);
     ready.header.epoch = 1;
-    world.played.say(Topic::node_status, ready);
+    world.played.publish(Topic::node_status, ready);
   }
-  world.say_samples(110);
+  world.publish_samples(110);
   world.poll(kMs);
   world.run_to(140);
   world.collect(again);
@@ -341,19 +345,19 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
   }
 }
 
-TEST(Saved, TicksOfARecordingTellWhereIoIs) {
+TEST(Saved, TheTicksOfARecordingGiveTheStateOfIo) {
   World world;
   world.get_running(World::config());
   world.run_to(120);
   std::map<StepIndex, wire::Tick> ticks;
   world.collect(ticks);
-  world.ask(ControlAction::save, 9);
+  world.control(ControlAction::save, 9);
   world.give_states();
   const IoConfig config = World::config();
   TickFollower follower(config);
   for (StepIndex step = 0; step < 120; ++step) follower.take(ticks.at(step));
-  Beginning beginning{120, world.states_of(9), {}};
-  std::vector<SavedState> followed = beginning.states;
+  ResumeState resume{120, world.states_of(9), {}};
+  std::vector<SavedState> followed = resume.states;
   for (SavedState& state : followed) {
     if (state.role == Role::io) state.state = follower.state(120);
   }
@@ -362,7 +366,7 @@ TEST(Saved, TicksOfARecordingTellWhereIoIs) {
   world.collect(live);
   World other;
   IoConfig next = World::config();
-  next.beginning = Beginning{120, followed, {}};
+  next.resume = ResumeState{120, followed, {}};
   other.get_running(std::move(next));
   other.run_to(160);
   other.collect(again);
@@ -412,7 +416,7 @@ TEST_F(SavedFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(read.find(Role::flex), nullptr);
 }
 
-// found by a fuzzer: to copy no bytes to nowhere is undefined (the sanitizers tell)
+// found by a fuzzer: a copy of no bytes to a null pointer is undefined (a sanitizer reports it)
 TEST_F(SavedFile, OfANodeWithoutBytesComesBackToo) {
   SavedSession saved = some();
   saved.states.push_back({Role::flex, {1234, 7, {}}});
@@ -450,7 +454,7 @@ TEST_F(SavedFile, CutOrChangedAnywhereIsRefused) {
   EXPECT_EQ(read_saved(folder_.path() / "none", read).code, ExitCode::bad_input);
 }
 
-TEST_F(SavedFile, ReplacesAnotherOnlyWhenAskedAndLeavesNothingBeside) {
+TEST_F(SavedFile, ReplacesAnotherOnlyOnRequestAndLeavesNoOtherFile) {
   std::ofstream(path_) << "mine";
   EXPECT_EQ(write_saved(path_, some(), Replace::never).code, ExitCode::bad_input);
   EXPECT_EQ(std::filesystem::file_size(path_), 4u);
@@ -463,4 +467,4 @@ TEST_F(SavedFile, ReplacesAnotherOnlyWhenAskedAndLeavesNothingBeside) {
 }
 
 }  // namespace saved_test
-}  // namespace slew::io
+}  // namespace slew::io_node

@@ -1,4 +1,4 @@
-// The books of a paced session on a clock that is a number.
+// Books of a paced session, with a number as the clock.
 #include "io_node/session_clock.h"
 
 #include <gtest/gtest.h>
@@ -7,26 +7,32 @@
 #include <memory>
 #include <random>
 
-namespace slew::io {
+namespace slew::io_node {
 namespace session_clock_test {
+
+using scene::OverrunPolicy;
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr SimDuration kStep = milliseconds(1);
 
 class Clock : public ::testing::Test {
  protected:
-  void rules(Overrun policy, std::int64_t after = 0, SimDuration grace = {}) {
-    clock = std::make_unique<SessionClock>(kStep, OverrunRules{policy, after, milliseconds(50), grace}, *timing);
+  void rules(OverrunPolicy policy, std::int64_t after = 0, SimDuration grace = {}) {
+    scene::SessionDef session;
+    session.overrun = policy;
+    session.overrun_after = after;
+    session.start_grace = grace.seconds();
+    clock = std::make_unique<SessionClock>(session, *timing);
     clock->begin(0, now_ns);
   }
   // does the next step, which takes so long, and is not before its time
-  std::optional<Verdict> step(std::int64_t response_ns) {
+  std::optional<OverrunAction> step(std::int64_t response_ns) {
     now_ns = std::max(now_ns, clock->due_ns(n));
-    std::optional<Verdict> verdict = clock->keep_time(n, now_ns);
+    std::optional<OverrunAction> verdict = clock->keep_time(n, now_ns);
     clock->ran(n, now_ns);
     now_ns += response_ns;
     ++n;
-    if (std::optional<Verdict> later = clock->completed(n, n, now_ns)) verdict = later;
+    if (std::optional<OverrunAction> later = clock->completed(n, n, now_ns)) verdict = later;
     return verdict;
   }
   [[nodiscard]] std::string problem() {
@@ -41,7 +47,7 @@ class Clock : public ::testing::Test {
 };
 
 TEST_F(Clock, AStepLongerThanHOverrunsAndSoDoThoseThatItDelays) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   for (int i = 0; i < 10; ++i) step(kMs / 10);
   EXPECT_EQ(timing->overruns, 0u);
   step(kMs);  // in time to the nanosecond
@@ -60,12 +66,12 @@ TEST_F(Clock, AStepLongerThanHOverrunsAndSoDoThoseThatItDelays) {
 }
 
 TEST_F(Clock, GivesUpWholeStepsOfALagBeyondItsLimit) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   step(kMs / 10);
   step(60 * kMs + kMs / 3);
-  const std::optional<Verdict> verdict = step(kMs / 10);
+  const std::optional<OverrunAction> verdict = step(kMs / 10);
   ASSERT_TRUE(verdict);
-  EXPECT_EQ(verdict->what, Overrun::slip);
+  EXPECT_EQ(verdict->what, OverrunPolicy::slip);
   EXPECT_EQ(
       verdict->why,
       "session.overrun: slip: at step 2 the session was 59.3 ms behind the wall clock; 59 steps of wall time were "
@@ -73,15 +79,15 @@ TEST_F(Clock, GivesUpWholeStepsOfALagBeyondItsLimit) {
   EXPECT_EQ(clock->skipped(), 59u);
   EXPECT_EQ(clock->slip_ns(), 59 * kMs);
   EXPECT_EQ(problem(), "");
-  // told once while it goes on, and again when it is over
+  // reported once while it lasts, and again when it is over
   step(100 * kMs);
-  const std::optional<Verdict> again = step(kMs / 10);
+  const std::optional<OverrunAction> again = step(kMs / 10);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->why, "");
   EXPECT_EQ(timing->transitions, 1u);
   std::string over;
   for (int i = 0; i < 1200; ++i) {
-    if (const std::optional<Verdict> told = step(kMs / 10)) over += told->why;
+    if (const std::optional<OverrunAction> told = step(kMs / 10)) over += told->why;
   }
   EXPECT_NE(over.find("has kept up with the wall clock for 1 s again"), std::string::npos) << over;
   EXPECT_EQ(timing->transitions, 2u);
@@ -89,7 +95,7 @@ TEST_F(Clock, GivesUpWholeStepsOfALagBeyondItsLimit) {
 }
 
 TEST_F(Clock, AStepThatWasGivenUpIsAMissWithTheTimeForWhichItWasDue) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   for (int i = 0; i < 100; ++i) step(kMs / 10);
   step(800 * kMs + kMs / 2);
   for (int i = 0; i < 100; ++i) step(kMs / 10);
@@ -111,7 +117,7 @@ TEST_F(Clock, AStepThatWasGivenUpIsAMissWithTheTimeForWhichItWasDue) {
 }
 
 TEST_F(Clock, AStepThatWasGivenUpInTheGraceIsNoMiss) {
-  rules(Overrun::slip, 0, milliseconds(20));
+  rules(OverrunPolicy::slip, 0, milliseconds(20));
   step(kMs / 10);
   step(800 * kMs);
   for (; n < 60;) step(kMs / 10);
@@ -119,7 +125,7 @@ TEST_F(Clock, AStepThatWasGivenUpInTheGraceIsNoMiss) {
   EXPECT_EQ(timing->overruns, 0u);
   EXPECT_EQ(timing->response.count(), 40u);
   // a hold counts what it gives up, and goes on with none in a row
-  rules(Overrun::hold);
+  rules(OverrunPolicy::hold);
   n = 0;
   step(60 * kMs);
   EXPECT_TRUE(step(kMs / 10));
@@ -128,12 +134,12 @@ TEST_F(Clock, AStepThatWasGivenUpInTheGraceIsNoMiss) {
 }
 
 TEST_F(Clock, WhatWasGivenUpInTheGraceIsAnEventAtItsEnd) {
-  rules(Overrun::stop, 0, milliseconds(20));
+  rules(OverrunPolicy::stop, 0, milliseconds(20));
   step(800 * kMs);
-  for (; n < 20;) EXPECT_EQ(step(kMs / 10).value_or(Verdict{}).why, "");
-  const std::optional<Verdict> verdict = step(kMs / 10);
+  for (; n < 20;) EXPECT_EQ(step(kMs / 10).value_or(OverrunAction{}).why, "");
+  const std::optional<OverrunAction> verdict = step(kMs / 10);
   ASSERT_TRUE(verdict);
-  EXPECT_EQ(verdict->what, Overrun::slip);
+  EXPECT_EQ(verdict->what, OverrunPolicy::slip);
   EXPECT_EQ(verdict->why,
             "session.overrun: slip: at step 20 the start-up grace (session.start_grace) is over, in which 799 steps of "
             "wall time were given up");
@@ -143,7 +149,7 @@ TEST_F(Clock, WhatWasGivenUpInTheGraceIsAnEventAtItsEnd) {
 }
 
 TEST_F(Clock, AProcessThatTakesAPlaceOverHasAGraceToo) {
-  rules(Overrun::slip, 0, milliseconds(20));
+  rules(OverrunPolicy::slip, 0, milliseconds(20));
   for (; n < 100;) step(kMs / 10);
   EXPECT_EQ(timing->response.count(), 80u);
   clock->begin_grace(n);
@@ -155,7 +161,7 @@ TEST_F(Clock, AProcessThatTakesAPlaceOverHasAGraceToo) {
 }
 
 TEST_F(Clock, ATickThatDidNotGoOutUpsetsTheBooks) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   for (; n < 10;) step(kMs / 10);
   EXPECT_EQ(problem(), "");
   ++n;
@@ -164,23 +170,23 @@ TEST_F(Clock, ATickThatDidNotGoOutUpsetsTheBooks) {
 }
 
 TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
-  for (const Overrun policy : {Overrun::hold, Overrun::stop}) {
+  for (const OverrunPolicy policy : {OverrunPolicy::hold, OverrunPolicy::stop}) {
     rules(policy);
     step(51 * kMs + kMs);
-    const std::optional<Verdict> verdict = step(kMs / 10);
+    const std::optional<OverrunAction> verdict = step(kMs / 10);
     ASSERT_TRUE(verdict);
     EXPECT_EQ(verdict->what, policy);
     EXPECT_NE(
         verdict->why.find("at step 1 the session was 51.0 ms behind the wall clock (session.overrun_lag 50.0 ms)"),
         std::string::npos)
         << verdict->why;
-    EXPECT_EQ(clock->skipped(), policy == Overrun::hold ? 51u : 0u);
+    EXPECT_EQ(clock->skipped(), policy == OverrunPolicy::hold ? 51u : 0u);
     EXPECT_EQ(problem(), "");
     n = 0;
     rules(policy, 3);
     EXPECT_FALSE(step(kMs + 1));
     EXPECT_FALSE(step(kMs));
-    const std::optional<Verdict> third = step(kMs);
+    const std::optional<OverrunAction> third = step(kMs);
     ASSERT_TRUE(third);
     EXPECT_EQ(third->what, policy);
     EXPECT_NE(third->why.find("the last 3 steps were longer than 1.0 ms (session.overrun_after)"), std::string::npos)
@@ -190,12 +196,12 @@ TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
 }
 
 TEST_F(Clock, JudgesNothingInTheStartUpGrace) {
-  rules(Overrun::stop, 2, milliseconds(20));
+  rules(OverrunPolicy::stop, 2, milliseconds(20));
   for (int i = 0; i < 10; ++i) {
-    const std::optional<Verdict> verdict = step(30 * kMs);
+    const std::optional<OverrunAction> verdict = step(30 * kMs);
     // time is given up, which no policy can help
     if (verdict) {
-      EXPECT_EQ(verdict->what, Overrun::slip);
+      EXPECT_EQ(verdict->what, OverrunPolicy::slip);
       EXPECT_EQ(verdict->why, "");
     }
   }
@@ -209,18 +215,18 @@ TEST_F(Clock, JudgesNothingInTheStartUpGrace) {
 }
 
 TEST_F(Clock, ALagInTheGraceIsForTheRecordingAndALaterOneForTheUserToo) {
-  rules(Overrun::slip, 0, milliseconds(200));
+  rules(OverrunPolicy::slip, 0, milliseconds(200));
   step(60 * kMs);
   std::string told;
   for (int i = 0; i < 1500; ++i) {
-    const std::optional<Verdict> verdict = step(kMs / 10);
+    const std::optional<OverrunAction> verdict = step(kMs / 10);
     if (verdict && !verdict->is_for_recording_alone) told += verdict->why;
   }
   EXPECT_EQ(told, "");
   EXPECT_EQ(timing->transitions, 1u);
   EXPECT_EQ(clock->skipped(), 59u);
   step(60 * kMs);
-  const std::optional<Verdict> verdict = step(kMs / 10);
+  const std::optional<OverrunAction> verdict = step(kMs / 10);
   ASSERT_TRUE(verdict);
   EXPECT_NE(verdict->why.find("steps of wall time were given up"), std::string::npos) << verdict->why;
   EXPECT_FALSE(verdict->is_for_recording_alone);
@@ -229,7 +235,7 @@ TEST_F(Clock, ALagInTheGraceIsForTheRecordingAndALaterOneForTheUserToo) {
   now_ns += 5000 * kMs;
   clock->excuse(n, now_ns);
   for (int i = 0; i < 500; ++i) {
-    if (const std::optional<Verdict> again = step(kMs / 10)) {
+    if (const std::optional<OverrunAction> again = step(kMs / 10)) {
       EXPECT_EQ(again->why, "");
     }
   }
@@ -237,7 +243,7 @@ TEST_F(Clock, ALagInTheGraceIsForTheRecordingAndALaterOneForTheUserToo) {
 }
 
 TEST_F(Clock, HoldsAgainWhenItIsStillTooSlowAfterAResume) {
-  rules(Overrun::hold, 3);
+  rules(OverrunPolicy::hold, 3);
   for (int round = 1; round <= 3; ++round) {
     EXPECT_FALSE(step(kMs + 1));
     EXPECT_FALSE(step(kMs + 1));
@@ -251,7 +257,7 @@ TEST_F(Clock, HoldsAgainWhenItIsStillTooSlowAfterAResume) {
 }
 
 TEST_F(Clock, BeginsAtALaterStepWithTheSameBooksAndAGraceOfItsOwn) {
-  rules(Overrun::slip, 0, milliseconds(20));
+  rules(OverrunPolicy::slip, 0, milliseconds(20));
   n = 5000;
   clock->begin(n, now_ns);
   EXPECT_EQ(problem(), "");
@@ -268,7 +274,7 @@ TEST_F(Clock, BeginsAtALaterStepWithTheSameBooksAndAGraceOfItsOwn) {
 }
 
 TEST_F(Clock, APauseIsNoLag) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   for (int i = 0; i < 10; ++i) step(kMs / 10);
   now_ns += 3'600'000 * kMs;
   clock->excuse(n, now_ns);
@@ -282,7 +288,7 @@ TEST_F(Clock, BooksBalanceWhateverTheStepsTake) {
   std::mt19937_64 random(7);
   for (int session = 0; session < 50; ++session) {
     n = 0;
-    rules(Overrun::slip);
+    rules(OverrunPolicy::slip);
     for (int i = 0; i < 300; ++i) {
       const auto dice = random() % 100;
       const auto part = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(kMs));
@@ -311,7 +317,7 @@ TEST_F(Clock, BooksThatDoNotBalanceAreNamed) {
 }
 
 TEST_F(Clock, AControllersValueIsMeasuredToTheFirstSamplesThatUsedIt) {
-  rules(Overrun::slip);
+  rules(OverrunPolicy::slip);
   step(kMs / 10);
   now_ns = clock->due_ns(1);
   const std::int64_t came_ns = now_ns - kMs / 4;
@@ -323,4 +329,4 @@ TEST_F(Clock, AControllersValueIsMeasuredToTheFirstSamplesThatUsedIt) {
 }
 
 }  // namespace session_clock_test
-}  // namespace slew::io
+}  // namespace slew::io_node

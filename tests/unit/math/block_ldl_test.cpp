@@ -250,13 +250,13 @@ TEST(BlockLdl, HasTheDeterminantsOfADefiniteMatrix) {
   EXPECT_NEAR(system.ldl().root_of_determinant(1), std::sqrt(11), 1e-14);
 }
 
-TEST(BlockLdl, SaysThatADefiniteNodeIsNot) {
+TEST(BlockLdl, ReportsThatADefiniteNodeIsNot) {
   System system = sprung(2, 10);
   system.add(1, 1, -1e3 * Matrix::identity(6));
   EXPECT_FALSE(system.ldl().factorize(kTolerance));
 }
 
-TEST(BlockLdl, SaysThatANodeIsSingular) {
+TEST(BlockLdl, ReportsThatANodeIsSingular) {
   System system(chain(2, 5));
   system.hang(0, 5, -1);
   system.hang(1, 5, 0, 0.0);

@@ -59,7 +59,7 @@ TEST(MonotoneCubic, IntegratesAStraightLineToAParabola) {
   }
 }
 
-TEST(MonotoneCubic, GoesOnBeyondItsEndsAsAsked) {
+TEST(MonotoneCubic, GoesOnBeyondItsEndsAsSet) {
   const MonotoneCubic held = monotone_cubic(kHill, Ends::hold);
   EXPECT_EQ(value_at(held, -7), 1);
   EXPECT_EQ(value_at(held, 9), -1);

@@ -64,7 +64,7 @@ TEST(Eigenmodes, EachModeBelongsToItsOwnBlock) {
   EXPECT_NEAR(found.modes[2].participation[0] + found.modes[2].participation[1], 1, 1e-9);
 }
 
-TEST(Eigenmodes, EqualOnesAreToldTogether) {
+TEST(Eigenmodes, EqualOnesAreReportedTogether) {
   // three spools of one time constant, of which one drives an oscillator
   const std::vector<double> A = {-30, 0, 0, 0, 0, 0, -30, 0, 0, 0, 0, 0, -30, 0, 0, 0, 0, 0, 0, 1, 4, 0, 0, -900, -1};
   const Eigenmodes found = eigenmodes(A, 5);

@@ -35,8 +35,8 @@ const SceneMode& oscillation_of(const SceneModes& modes, const std::string& name
 // of the boom turns it by less than a part in a thousand.
 TEST(Linearisation, TheOilColumnSwingsWithTheSquareRootOfKW) {
   const scene::Scene scene = scene::load_file(kScenes + "single_cylinder.yaml");
-  mechanics::MechanicsSubsystem mechanics(scene);
-  hydraulic_node::HydraulicsSubsystem hydraulics(scene);
+  mechanics_node::MechanicsSubsystem mechanics(scene);
+  hydraulics_node::HydraulicsSubsystem hydraulics(scene);
   coupling::OwnSample m, h;
   ASSERT_TRUE(mechanics.first_sample(m));
   ASSERT_TRUE(hydraulics.start({&m.mechanism, nullptr}, h).is_ok());
@@ -64,8 +64,8 @@ TEST(Linearisation, TheOilColumnSwingsWithTheSquareRootOfKW) {
 
 TEST(Linearisation, TheStartOfTheEquationsIsTheStartThatIsTaken) {
   const scene::Scene scene = scene::load_file(kScenes + "truck_crane.yaml");
-  mechanics::MechanicsSubsystem mechanics(scene);
-  hydraulic_node::HydraulicsSubsystem hydraulics(scene);
+  mechanics_node::MechanicsSubsystem mechanics(scene);
+  hydraulics_node::HydraulicsSubsystem hydraulics(scene);
   coupling::OwnSample m, h;
   ASSERT_TRUE(mechanics.first_sample(m));
   ASSERT_TRUE(hydraulics.start({&m.mechanism, nullptr}, h).is_ok());

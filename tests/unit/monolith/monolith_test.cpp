@@ -25,8 +25,8 @@ double mechanical_energy(Monolith& monolith) {
 
 void expect_same_start(const std::string& file, const scene::Overrides& overrides) {
   const scene::Scene scene = scene::load_file(kScenes + file, overrides);
-  mechanics::MechanicsSubsystem mechanics(scene);
-  hydraulic_node::HydraulicsSubsystem hydraulics(scene);
+  mechanics_node::MechanicsSubsystem mechanics(scene);
+  hydraulics_node::HydraulicsSubsystem hydraulics(scene);
   coupling::OwnSample first, start;
   ASSERT_TRUE(mechanics.first_sample(first));
   coupling::PartnerSamples partners;
@@ -48,7 +48,7 @@ TEST(Monolith, StartsWhereTheSubsystemsStart) {
   expect_same_start("single_cylinder.yaml", {});
 }
 
-double mechanics_variable(const mechanics::MechanicsSubsystem& mechanics, std::string_view name) {
+double mechanics_variable(const mechanics_node::MechanicsSubsystem& mechanics, std::string_view name) {
   std::vector<double> values(mechanics.variables().size());
   mechanics.read_variables(values);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -60,7 +60,7 @@ double mechanics_variable(const mechanics::MechanicsSubsystem& mechanics, std::s
 
 TEST(Monolith, ShowsTheMechanismAsTheSubsystemDoes) {
   const scene::Scene scene = scene::load_file(kScenes + "truck_crane.yaml");
-  mechanics::MechanicsSubsystem mechanics(scene);
+  mechanics_node::MechanicsSubsystem mechanics(scene);
   coupling::OwnSample first;
   ASSERT_TRUE(mechanics.first_sample(first));
   Monolith monolith(scene);
@@ -77,8 +77,8 @@ TEST(Monolith, ShowsTheMechanismAsTheSubsystemDoes) {
 
 TEST(MechanicsSubsystem, StaticForcePerKilogramFollowsLiveChanges) {
   const scene::Scene scene = scene::load_file(kScenes + "truck_crane.yaml");
-  mechanics::MechanicsSubsystem mechanics(scene);
-  hydraulic_node::HydraulicsSubsystem hydraulics(scene);
+  mechanics_node::MechanicsSubsystem mechanics(scene);
+  hydraulics_node::HydraulicsSubsystem hydraulics(scene);
   coupling::OwnSample sample, start;
   ASSERT_TRUE(mechanics.first_sample(sample));
   ASSERT_TRUE(hydraulics.start({&sample.mechanism, nullptr}, start).is_ok());
@@ -107,7 +107,7 @@ forces:
   Damper: {type: rotational, body1: Ground, body2: Bag, damping_constant: 50 Nms/rad}
 )",
                                               "bag");
-  mechanics::MechanicsSubsystem mechanics(scene);
+  mechanics_node::MechanicsSubsystem mechanics(scene);
   coupling::OwnSample sample;
   ASSERT_TRUE(mechanics.first_sample(sample));
   ASSERT_TRUE(mechanics.start({}, sample).is_ok());

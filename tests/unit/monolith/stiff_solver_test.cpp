@@ -70,7 +70,7 @@ TEST(StiffSolver, NamesTheStateThatTheErrorTestIsAbout) {
   }
 }
 
-TEST(StiffSolver, SaysThatASolutionEscapes) {
+TEST(StiffSolver, ReportsThatASolutionEscapes) {
   // y = 1 / (1 - t) has no value at 1
   Growth equation;
   StiffSolver solver(equation, std::array<double, 1>{1e-9}, 1e-9);

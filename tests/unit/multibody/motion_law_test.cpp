@@ -69,7 +69,7 @@ TEST(MotionLaw, KeepsTheDigitsOfItsPhaseAtFarTimes) {
   EXPECT_NEAR(evaluate(law, t + 0.2).position, evaluate(law, 0.2).position, 1e-7);
 }
 
-TEST(MotionLaw, EndsItsTableAsAsked) {
+TEST(MotionLaw, EndsItsTableAsSet) {
   MotionDef def = def_of(MotionShape::table);
   EXPECT_EQ(evaluate(motion_law(def, 0.5), 9).position, 0.3);
   EXPECT_EQ(evaluate(motion_law(def, 0.5), 9).speed, 0);

@@ -165,7 +165,7 @@ MechanicsDef bodies_on_bushings() {
   return def;
 }
 
-TEST(StepRows, BodiesOnBushingsAreAsDenseAlgebraSays) {
+TEST(StepRows, BodiesOnBushingsAreAsInDenseAlgebra) {
   Mechanism m(bodies_on_bushings(), {"Cyl", "Other", "Pin"});
   set_speeds(m);
   expect_same(m, kH);
@@ -189,7 +189,7 @@ MechanicsDef flexible_arm(ModalBody modes) {
   return def;
 }
 
-TEST(StepRows, ModesAreAsDenseAlgebraSays) {
+TEST(StepRows, ModesAreAsInDenseAlgebra) {
   for (const unsigned seed : {1U, 2U, 5U}) {
     std::mt19937 random(seed);
     std::vector<MassPoint> points;

@@ -1,4 +1,4 @@
-// States as parts, and the node that takes one over, with io, the partner and the clock played by the test.
+// States in parts, and a node that takes one over, with io, the partner and the clock played by the test.
 #include "node/checkpoint.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-// Its state is a number that every step and its partner's force change, and rubbish of three parts.
+// Its state is a number that changes with every step and with its partner's force, and ballast of three parts.
 class CountingSubsystem final : public testing::StillSubsystem {
  public:
   static constexpr std::size_t kBytes = 2 * wire::kMaxStatePart + 100;
@@ -27,7 +27,7 @@ class CountingSubsystem final : public testing::StillSubsystem {
                   coupling::OwnSample& sample) noexcept override {
     const double F = partners.actuators != nullptr && !partners.actuators->F.empty() ? partners.actuators->F[0] : 0;
     sum_ = 31 * sum_ + static_cast<std::uint64_t>(n) + static_cast<std::uint64_t>(F);
-    say(sample);
+    publish(sample);
     return {};
   }
   void reset() override { sum_ = 0; }
@@ -43,12 +43,12 @@ class CountingSubsystem final : public testing::StillSubsystem {
   Status load(std::span<const std::byte> state, coupling::OwnSample& sample) override {
     if (state.size() != kBytes) return Status::error(ExitCode::bad_input, "cut");
     std::memcpy(&sum_, state.data(), sizeof sum_);
-    say(sample);
+    publish(sample);
     return Status::ok();
   }
 
  private:
-  void say(coupling::OwnSample& sample) const {
+  void publish(coupling::OwnSample& sample) const {
     sample.mechanism.x.clear();
     sample.mechanism.x.push_back(static_cast<double>(sum_ % 1000));
   }
@@ -120,14 +120,14 @@ TEST(StateParts, ThatDoNotFitAreLeftOut) {
   part = parts_of(some_checkpoint(128, 9000))[1];
   part.total = 0xffffffff;
   EXPECT_FALSE(taken.take(part));
-  EXPECT_LT(taken.checkpoint().bytes.capacity(), 10'000u) << "memory for what nobody sends";
+  EXPECT_LT(taken.checkpoint().bytes.capacity(), 10'000u) << "no memory for parts that are not sent";
 }
 
 TEST(StateParts, WithoutAPlaceInTheirOwnStateChangeNothing) {
   const auto parts = parts_of(some_checkpoint(128, 9000));
   CheckpointParts taken;
   EXPECT_FALSE(taken.take(parts[0]));
-  // of a later state, beside its places, too short, of no length, of a step that there is not
+  // a part of a later state, beside its places, too short, empty, with a negative step
   wire::StatePart other = parts_of(some_checkpoint(256, 9000))[0];
   other.first = 8;
   EXPECT_FALSE(taken.take(other));
@@ -139,7 +139,7 @@ TEST(StateParts, WithoutAPlaceInTheirOwnStateChangeNothing) {
   other = parts_of(some_checkpoint(256, 100))[0];
   other.header.step = kJoinStep;
   EXPECT_FALSE(taken.take(other));
-  // what lies beside a place that has come is no part that has come
+  // a part beside a received place has not been received
   wire::StatePart beside = parts[0];
   beside.first = 8;
   EXPECT_TRUE(taken.has(parts[0]));
@@ -161,32 +161,32 @@ TEST(StateParts, OfTheLastFourStatesAreKept) {
   EXPECT_EQ(kept.newest(up_to(511))->step, 384);
   EXPECT_EQ(kept.newest(up_to(512))->step, 512);
   EXPECT_EQ(kept.newest(up_to(127)), nullptr);
-  // one that was computed again changes nothing
+  // a state that was computed again changes nothing
   for (const wire::StatePart& part : parts_of(some_checkpoint(0, 9000))) kept.take(part);
   EXPECT_EQ(kept.oldest(any)->step, 128);
   kept.clear();
   EXPECT_EQ(kept.oldest(any), nullptr);
 }
 
-TEST(NodeState, ComesBackWithWhatItsSampleSaid) {
+TEST(NodeState, IsRestoredWithTheStateInItsSample) {
   CountingSubsystem subsystem, other;
   coupling::OwnSample sample, again;
   for (StepIndex n = 0; n < 5; ++n) static_cast<void>(subsystem.step(n, {}, {}, sample));
-  wire::SampleState said;
-  said.used_step = 4;
-  said.flags = 9;
-  said.offender = 2;
-  said.substeps = 17;
-  said.lost = 3;
-  said.state_hash = subsystem.state_hash();
+  wire::SampleState published;
+  published.used_step = 4;
+  published.flags = 9;
+  published.offender = 2;
+  published.substeps = 17;
+  published.lost = 3;
+  published.state_hash = subsystem.state_hash();
   Checkpoint checkpoint;
-  save_node(subsystem, said, 5, checkpoint);
+  save_node(subsystem, published, 5, checkpoint);
   wire::SampleState loaded;
   ASSERT_EQ(load_node(checkpoint, other, loaded, again).text, "");
-  EXPECT_EQ(loaded, said);
+  EXPECT_EQ(loaded, published);
   EXPECT_EQ(other.state_hash(), subsystem.state_hash());
   EXPECT_EQ(again.mechanism.x[0], sample.mechanism.x[0]);
-  // a state of another hash than the one that was saved
+  // a state whose hash differs from that of the saved one
   Checkpoint foreign = checkpoint;
   foreign.state_hash += 1;
   EXPECT_EQ(load_node(foreign, other, loaded, again).code, ExitCode::bad_input);
@@ -212,7 +212,7 @@ TEST(NodeState, ComesBackWithWhatItsSampleSaid) {
   EXPECT_TRUE(load_node(checkpoint, other, loaded, again).is_ok());
 }
 
-// ---- a node that says its state -------------------------------------------------------------------------------
+// ---- a node that publishes its state --------------------------------------------------------------------------
 
 class Rejoining : public ::testing::Test {
  protected:
@@ -221,35 +221,28 @@ class Rejoining : public ::testing::Test {
     return Status::ok();
   }
   void poll(std::int64_t after_ns = 0) { node.poll(now_ns += after_ns); }
-  void say_actuators(StepIndex step) {
+  static void publish_force(PlayedSession& session, StepIndex step) {
     wire::ActuatorMessage message;
-    message.header = played.header(Role::hydraulics, step);
+    message.header = session.header(Role::hydraulics, step);
     message.sample.F.push_back(static_cast<double>(step % 17));
-    played.say(Topic::actuators, message);
+    session.publish(Topic::actuators, message);
   }
-  void join() {
-    played.say(Topic::session, played.session);
-    poll();
-    const wire::Header own = node.member().header(Phase::join, kJoinStep);
-    played.say_heard(Role::io, NodeState::running, own, {Topic::mechanism});
-    played.say_heard(Role::hydraulics, NodeState::running, own, {Topic::mechanism});
-    poll(kMs);
-    poll(kMs);
-  }
+  void publish_actuators(StepIndex step) { publish_force(played, step); }
+  void join() { played.join(node, now_ns, {Topic::mechanism}, NodeState::running); }
   void get_ready() {
     join();
-    say_actuators(0);
+    publish_actuators(0);
     poll(kMs);
     ASSERT_EQ(node.member().state(), NodeState::ready);
   }
   void step(StepIndex n) {
-    played.say_tick(n);
-    if (n > 0) say_actuators(n);
+    played.publish_tick(n);
+    if (n > 0) publish_actuators(n);
     poll(kMs);
   }
-  // state hashes by step, of what the node has said
+  // state hashes of the node's samples, by step
   void collect() {
-    for (const auto& sample : played.said<wire::MechanismMessage>(Topic::mechanism)) {
+    for (const auto& sample : played.received<wire::MechanismMessage>(Topic::mechanism)) {
       if (sample.header.phase == Phase::running) hashes[sample.header.step] = sample.state.state_hash;
     }
   }
@@ -257,7 +250,7 @@ class Rejoining : public ::testing::Test {
     for (wire::StatePart part : parts_of(checkpoint)) {
       part.header = played.header(Role::io, checkpoint.step, Phase::running, node.member().epoch());
       part.role = Role::mechanics;
-      played.say(Topic::state, part);
+      played.publish(Topic::state, part);
     }
     poll(kMs);
   }
@@ -268,39 +261,37 @@ class Rejoining : public ::testing::Test {
   std::map<StepIndex, std::uint64_t> hashes;
 };
 
-TEST_F(Rejoining, SaysItsStateAtTheStartAndInPartsAfterEveryIntervalAndNothingWithoutRejoin) {
+TEST_F(Rejoining, PublishesItsStateAtTheStartAndInPartsAfterEveryIntervalAndNothingWithoutRejoin) {
   get_ready();
   for (StepIndex n = 0; n < 300; ++n) step(n);
-  EXPECT_TRUE(played.said<wire::StatePart>(Topic::checkpoint).empty());
+  EXPECT_TRUE(played.received<wire::StatePart>(Topic::checkpoint).empty());
 
   PlayedSession other{bit(Role::io) | bit(Role::mechanics)};
   other.session.rejoin_ns = 1000 * kMs;
   PhysicsNode saving{Role::mechanics, other.transport(), build};
-  other.say(Topic::session, other.session);
-  saving.poll(now_ns);
-  other.say_heard(Role::io, NodeState::joining, saving.member().header(Phase::join, kJoinStep), {Topic::mechanism});
-  for (int i = 0; i < 4; ++i) saving.poll(now_ns += kMs);
-  auto parts = other.said<wire::StatePart>(Topic::checkpoint);
+  other.join(saving, now_ns, {Topic::mechanism});
+  for (int i = 0; i < 2; ++i) saving.poll(now_ns += kMs);
+  auto parts = other.received<wire::StatePart>(Topic::checkpoint);
   ASSERT_EQ(parts.size(), 3u);  // the first one at once
   EXPECT_EQ(parts[0].header.step, 0);
   for (StepIndex n = 0; n < kCheckpointEvery; ++n) {
-    other.say_tick(n);
+    other.publish_tick(n);
     saving.poll(now_ns += kMs);
   }
-  parts = other.said<wire::StatePart>(Topic::checkpoint);
+  parts = other.received<wire::StatePart>(Topic::checkpoint);
   ASSERT_EQ(parts.size(), 1u);  // one with each step
   EXPECT_EQ(parts[0].header.step, kCheckpointEvery);
   for (StepIndex n = kCheckpointEvery; n < kCheckpointEvery + 2; ++n) {
-    other.say_tick(n);
+    other.publish_tick(n);
     saving.poll(now_ns += kMs);
-    EXPECT_EQ(other.said<wire::StatePart>(Topic::checkpoint).size(), 1u);
+    EXPECT_EQ(other.received<wire::StatePart>(Topic::checkpoint).size(), 1u);
   }
-  other.say_tick(kCheckpointEvery + 2);
+  other.publish_tick(kCheckpointEvery + 2);
   saving.poll(now_ns += kMs);
-  EXPECT_TRUE(other.said<wire::StatePart>(Topic::checkpoint).empty());
+  EXPECT_TRUE(other.received<wire::StatePart>(Topic::checkpoint).empty());
 }
 
-TEST_F(Rejoining, SaysItsWholeStateAtTheStepThatIoAsksFor) {
+TEST_F(Rejoining, PublishesItsWholeStateAtTheStepThatIoRequests) {
   get_ready();
   for (StepIndex n = 0; n < 3; ++n) step(n);
   wire::ResendRequest request;
@@ -308,23 +299,23 @@ TEST_F(Rejoining, SaysItsWholeStateAtTheStepThatIoAsksFor) {
   request.role = Role::mechanics;
   request.topic = static_cast<std::uint8_t>(Topic::checkpoint);
   request.last_step = 5;
-  played.say(Topic::resend, request);
+  played.publish(Topic::resend, request);
   step(3);
-  EXPECT_TRUE(played.said<wire::StatePart>(Topic::checkpoint).empty());
+  EXPECT_TRUE(played.received<wire::StatePart>(Topic::checkpoint).empty());
   step(4);
-  const auto parts = played.said<wire::StatePart>(Topic::checkpoint);
+  const auto parts = played.received<wire::StatePart>(Topic::checkpoint);
   ASSERT_EQ(parts.size(), 3u);
   collect();
   EXPECT_EQ(parts[0].header.step, 5);
   EXPECT_EQ(parts[0].state_hash, hashes.at(5));
-  // and again when it asks again
-  played.say(Topic::resend, request);
+  // and again on a second request
+  played.publish(Topic::resend, request);
   poll(kMs);
-  EXPECT_EQ(played.said<wire::StatePart>(Topic::checkpoint).size(), 3u);
+  EXPECT_EQ(played.received<wire::StatePart>(Topic::checkpoint).size(), 3u);
 }
 
-TEST_F(Rejoining, WithTheStateOfAnEarlierStepSaysTheSameBitsAgainAndGoesOn) {
-  // the run that nobody disturbs
+TEST_F(Rejoining, WithTheStateOfAnEarlierStepPublishesTheSameBitsAgainAndGoesOn) {
+  // the undisturbed run
   get_ready();
   for (StepIndex n = 0; n < 130; ++n) step(n);
   collect();
@@ -339,68 +330,60 @@ TEST_F(Rejoining, WithTheStateOfAnEarlierStepSaysTheSameBitsAgainAndGoesOn) {
     static_cast<void>(until.step(n, partners, {}, sample));
   }
   ASSERT_EQ(until.state_hash(), expected.at(40));
-  wire::SampleState said;
-  said.state_hash = until.state_hash();
-  said.used_step = 39;
+  wire::SampleState published;
+  published.state_hash = until.state_hash();
+  published.used_step = 39;
   Checkpoint checkpoint;
-  save_node(until, said, 40, checkpoint);
+  save_node(until, published, 40, checkpoint);
 
-  // a second process comes when ticks up to 119 are out
+  // a second process joins after tick 119
   PlayedSession other{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
   other.session.rejoin_ns = 1000 * kMs;
   other.session.header.step = 120;
   PhysicsNode second{Role::mechanics, other.transport(), build};
-  other.say(Topic::session, other.session);
+  other.publish(Topic::session, other.session);
   second.poll(now_ns);
   const wire::Header own = second.member().header(Phase::join, kJoinStep);
-  other.say_heard(Role::io, NodeState::running, own, {Topic::mechanism});
+  other.acknowledge(Role::io, NodeState::running, own, {Topic::mechanism});
   second.poll(now_ns += kMs);
-  EXPECT_TRUE(other.said<wire::ResendRequest>(Topic::resend).empty()) << "before everybody has heard it";
-  other.say_heard(Role::hydraulics, NodeState::holding, own, {Topic::mechanism});
+  EXPECT_TRUE(other.received<wire::ResendRequest>(Topic::resend).empty()) << "before every node has acknowledged it";
+  other.acknowledge(Role::hydraulics, NodeState::holding, own, {Topic::mechanism});
   second.poll(now_ns += kMs);
   second.poll(now_ns += kMs);
-  auto asked = other.said<wire::ResendRequest>(Topic::resend);
-  ASSERT_FALSE(asked.empty());
-  EXPECT_EQ(asked[0].topic, static_cast<std::uint8_t>(Topic::state));
-  EXPECT_EQ(asked[0].role, Role::mechanics);
+  auto requests = other.received<wire::ResendRequest>(Topic::resend);
+  ASSERT_FALSE(requests.empty());
+  EXPECT_EQ(requests[0].topic, static_cast<std::uint8_t>(Topic::state));
+  EXPECT_EQ(requests[0].role, Role::mechanics);
   for (wire::StatePart part : parts_of(checkpoint)) {
     part.header = other.header(Role::io, 40);
     part.role = Role::hydraulics;
-    other.say(Topic::state, part);  // of somebody else
+    other.publish(Topic::state, part);  // a part of another role
     part.role = Role::mechanics;
-    other.say(Topic::state, part);
+    other.publish(Topic::state, part);
   }
   second.poll(now_ns += kMs);
   EXPECT_EQ(second.member().state(), NodeState::ready);
-  // asks for what has been said since, many at once
+  // requests the messages published since, many at once
   std::map<StepIndex, std::uint64_t> again;
   int rounds = 0;
   for (; rounds < 400 && again.size() < 91; ++rounds) {
-    for (const auto& request : other.said<wire::ResendRequest>(Topic::resend)) {
+    for (const auto& request : other.received<wire::ResendRequest>(Topic::resend)) {
       if (request.topic == static_cast<std::uint8_t>(Topic::tick)) {
-        for (StepIndex n = request.header.step; n <= request.last_step; ++n) other.say_tick(n);
+        for (StepIndex n = request.header.step; n <= request.last_step; ++n) other.publish_tick(n);
       } else {
         EXPECT_EQ(request.topic, static_cast<std::uint8_t>(Topic::actuators));
-        for (StepIndex n = request.header.step; n <= request.last_step; ++n) {
-          wire::ActuatorMessage message;
-          message.header = other.header(Role::hydraulics, n);
-          message.sample.F.push_back(static_cast<double>(n % 17));
-          other.say(Topic::actuators, message);
-        }
+        for (StepIndex n = request.header.step; n <= request.last_step; ++n) publish_force(other, n);
       }
     }
     second.poll(now_ns += kMs);
-    for (const auto& message : other.said<wire::MechanismMessage>(Topic::mechanism)) {
+    for (const auto& message : other.received<wire::MechanismMessage>(Topic::mechanism)) {
       if (message.header.phase == Phase::running) again[message.header.step] = message.state.state_hash;
     }
     // the others go on with it
     if (again.size() == 81) {
       for (StepIndex n = 120; n < 130; ++n) {
-        other.say_tick(n);
-        wire::ActuatorMessage message;
-        message.header = other.header(Role::hydraulics, n);
-        message.sample.F.push_back(static_cast<double>(n % 17));
-        other.say(Topic::actuators, message);
+        other.publish_tick(n);
+        publish_force(other, n);
       }
     }
   }
@@ -416,19 +399,19 @@ TEST_F(Rejoining, BeginsAnEpochFromTheStateThatItsInitTickNames) {
   CountingSubsystem saved;
   coupling::OwnSample sample;
   static_cast<void>(saved.step(3, {}, {}, sample));
-  wire::SampleState said;
-  said.state_hash = saved.state_hash();
+  wire::SampleState published;
+  published.state_hash = saved.state_hash();
   Checkpoint checkpoint;
-  save_node(saved, said, 77, checkpoint);
+  save_node(saved, published, 77, checkpoint);
   wire::Tick init;
   init.header = played.header(Role::io, 77, Phase::init, 1);
-  played.say(Topic::tick, init);
+  played.publish(Topic::tick, init);
   poll(kMs);
   EXPECT_EQ(node.member().epoch(), 1u);
-  static_cast<void>(played.said<wire::MechanismMessage>(Topic::mechanism));
+  static_cast<void>(played.received<wire::MechanismMessage>(Topic::mechanism));
   give_state(checkpoint);
   poll(kMs);
-  const auto samples = played.said<wire::MechanismMessage>(Topic::mechanism);
+  const auto samples = played.received<wire::MechanismMessage>(Topic::mechanism);
   ASSERT_EQ(samples.size(), 1u);
   EXPECT_EQ(samples[0].header.step, 77);
   EXPECT_EQ(samples[0].header.epoch, 1u);
@@ -454,14 +437,14 @@ TEST_F(Rejoining, ANodeThatCannotBeSavedTakesNoPartInASessionThatHoldsPlaces) {
   PlayedSession other{bit(Role::io) | bit(Role::mechanics)};
   other.session.rejoin_ns = 1000 * kMs;
   PhysicsNode forgetful{Role::mechanics, other.transport(), build_other};
-  other.say(Topic::session, other.session);
+  other.publish(Topic::session, other.session);
   forgetful.poll(now_ns);
   EXPECT_TRUE(forgetful.is_finished());
   EXPECT_EQ(forgetful.member().exit_code(), ExitCode::bad_input);
   EXPECT_NE(forgetful.member().reason().find("its solver forgets"), std::string::npos) << forgetful.member().reason();
 }
 
-// ---- who was given up -----------------------------------------------------------------------------------------
+// ---- nodes that were given up ---------------------------------------------------------------------------------
 
 TEST_F(Rejoining, AProcessThatWasGivenUpEndsWithItsOwnWords) {
   played.session.rejoin_ns = 1000 * kMs;
@@ -469,12 +452,13 @@ TEST_F(Rejoining, AProcessThatWasGivenUpEndsWithItsOwnWords) {
   played.forget();
   played.session.given_up.push_back({Role::mechanics, node.member().header(Phase::join, 0).incarnation});
   played.session.header.step = 3;
-  played.say(Topic::session, played.session);
+  played.publish(Topic::session, played.session);
   poll(kMs);
   EXPECT_TRUE(node.is_finished());
   EXPECT_EQ(node.member().exit_code(), ExitCode::node_lost);
   EXPECT_NE(node.member().reason().find("was given to another process"), std::string::npos) << node.member().reason();
-  EXPECT_TRUE(played.said<wire::NodeStatus>(Topic::node_status).empty()) << "it has no part in the session any more";
+  EXPECT_TRUE(played.received<wire::NodeStatus>(Topic::node_status).empty())
+      << "it has no part in the session any more";
 }
 
 TEST_F(Rejoining, WaitsForAPartnerThatIsGoneAndFollowsTheOneThatTookItsPlace) {
@@ -484,21 +468,21 @@ TEST_F(Rejoining, WaitsForAPartnerThatIsGoneAndFollowsTheOneThatTookItsPlace) {
   step(1);
   // the partner is silent, io lives
   for (int i = 0; i < 30; ++i) {
-    played.say_status(Role::io, NodeState::running, 2);
+    played.publish_status(Role::io, NodeState::running, 2);
     poll(100 * kMs);
   }
   EXPECT_EQ(node.member().state(), NodeState::holding);
   EXPECT_NE(node.member().reason().find("hydraulics"), std::string::npos);
-  // its second process speaks before io's word about the first one comes
+  // its second process publishes before io's update about the first one arrives
   wire::NodeStatus second = played.status(Role::hydraulics, NodeState::joining);
   second.header.incarnation = 99;
   second.started_ns = 2;
-  played.say(Topic::node_status, second);
+  played.publish(Topic::node_status, second);
   wire::ActuatorMessage message;
   message.header = played.header(Role::hydraulics, 2);
   message.header.incarnation = 99;
-  played.say(Topic::actuators, message);
-  played.say_tick(2);
+  played.publish(Topic::actuators, message);
+  played.publish_tick(2);
   poll(kMs);
   collect();
   EXPECT_EQ(hashes.rbegin()->first, 2);
@@ -506,17 +490,17 @@ TEST_F(Rejoining, WaitsForAPartnerThatIsGoneAndFollowsTheOneThatTookItsPlace) {
   EXPECT_GE(refused, 1u);
   played.session.given_up.push_back({Role::hydraulics, PlayedSession::incarnation(Role::hydraulics)});
   played.session.header.step = 3;
-  played.say(Topic::session, played.session);
+  played.publish(Topic::session, played.session);
   poll(kMs);
-  played.say(Topic::actuators, message);
+  played.publish(Topic::actuators, message);
   poll(kMs);
   collect();
   EXPECT_EQ(hashes.rbegin()->first, 3);
   EXPECT_EQ(node.member().state(), NodeState::running);
-  // what the first one still says is counted
+  // later messages of the first process are counted
   const std::uint64_t before = node.member().refusals().unexpected_writer;
-  played.say_status(Role::hydraulics, NodeState::running, 3);
-  say_actuators(3);
+  played.publish_status(Role::hydraulics, NodeState::running, 3);
+  publish_actuators(3);
   poll(kMs);
   EXPECT_EQ(node.member().refusals().unexpected_writer, before + 2);
 }
@@ -525,12 +509,12 @@ TEST_F(Rejoining, GivesUpWhenNeitherThePartnerNorIosWordComes) {
   played.session.rejoin_ns = 5000 * kMs;
   get_ready();
   for (int i = 0; i < 80 && node.member().state() != NodeState::fault; ++i) {
-    played.say_status(Role::io, NodeState::running, 0);
+    played.publish_status(Role::io, NodeState::running, 0);
     poll(100 * kMs);
     EXPECT_TRUE(i > 85 || node.member().state() != NodeState::fault || i >= 70) << i;
   }
   for (int i = 0; i < 20; ++i) {
-    played.say_status(Role::io, NodeState::running, 0);
+    played.publish_status(Role::io, NodeState::running, 0);
     poll(100 * kMs);
   }
   EXPECT_EQ(node.member().state(), NodeState::fault);

@@ -12,7 +12,7 @@
 #include "build_paths.h"
 #include "flex/recovery.h"
 
-namespace slew::flexible {
+namespace slew::flex_node {
 namespace flex_subsystem_test {
 
 class Flex : public ::testing::Test {
@@ -59,7 +59,7 @@ TEST_F(Flex, StatesALinearLawOnceAboutTheUndeformedBody) {
   }
 }
 
-TEST_F(Flex, StatesItAnewAboutTheMechanicsCoordinates) {
+TEST_F(Flex, LinearisesAgainAboutTheMechanicsCoordinates) {
   const scene::Scene scene = load({"session.flexible=every_step"});
   FlexSubsystem flex(scene);
   const coupling::FlexibleSample at = bent();
@@ -203,11 +203,11 @@ TEST_F(Flex, RefusesAMechanicsWithOtherModes) {
       "with the same one");
 }
 
-TEST_F(Flex, KnowsNoBodyWhoseModesAreFrozen) {
+TEST_F(Flex, LeavesOutBodiesWithFrozenModes) {
   const scene::Scene scene = load({"Truck_JibBoom.flex_modes=none"});
   EXPECT_FALSE(scene.has_modes());
   EXPECT_TRUE(scene.flexible_bodies.empty());
 }
 
 }  // namespace flex_subsystem_test
-}  // namespace slew::flexible
+}  // namespace slew::flex_node

@@ -1,4 +1,4 @@
-// Mechanics and flex node in a session with flexible bodies: who waits for whom, and when.
+// Mechanics and flex node in a session with flexible bodies: when each waits for the other.
 #include <gtest/gtest.h>
 
 #include "node/physics_node.h"
@@ -30,20 +30,20 @@ class WithFlexibleBodies : public ::testing::Test {
       return Status::ok();
     };
   }
-  void say_elastic(StepIndex step, Phase phase = Phase::running) {
+  void publish_elastic(StepIndex step, Phase phase = Phase::running) {
     wire::ElasticMessage message;
     message.header = played.header(Role::flex, step, phase);
-    played.say(Topic::elastic, message);
+    played.publish(Topic::elastic, message);
   }
-  void say_flexible(StepIndex step) {
+  void publish_flexible(StepIndex step) {
     wire::FlexibleMessage message;
     message.header = played.header(Role::mechanics, step);
-    played.say(Topic::flexible, message);
+    played.publish(Topic::flexible, message);
   }
   template <typename Message>
   std::vector<StepIndex> steps_of(Topic topic) {
     std::vector<StepIndex> steps;
-    for (const Message& message : played.said<Message>(topic)) steps.push_back(message.header.step);
+    for (const Message& message : played.received<Message>(topic)) steps.push_back(message.header.step);
     return steps;
   }
 
@@ -54,19 +54,13 @@ class Mechanics : public WithFlexibleBodies {
  protected:
   void get_ready(ElasticExchange exchange) {
     node = std::make_unique<PhysicsNode>(Role::mechanics, played.transport(), built_for(exchange));
-    played.say(Topic::session, played.session);
-    poll(0);
-    const wire::Header own = node->member().header(Phase::join, kJoinStep);
-    played.say_heard(Role::io, NodeState::joining, own, {Topic::mechanism});
-    played.say_heard(Role::flex, NodeState::joining, own, {Topic::flexible});
-    poll(kMs);
-    poll(kMs);
+    played.join(*node, now_ns, {Topic::mechanism, Topic::flexible});
     ASSERT_EQ(node->member().state(), NodeState::initialising);
-    say_elastic(kJoinStep, Phase::init);
+    publish_elastic(kJoinStep, Phase::init);
     poll(kMs);
     ASSERT_EQ(node->member().state(), NodeState::ready);
-    played.say_status(Role::flex, NodeState::ready, 0);
-    played.say_status(Role::io, NodeState::running, 0);
+    played.publish_status(Role::flex, NodeState::ready, 0);
+    played.publish_status(Role::io, NodeState::running, 0);
     poll(0);
     played.forget();
   }
@@ -78,65 +72,65 @@ class Mechanics : public WithFlexibleBodies {
 
 TEST_F(Mechanics, StartsWithTheElasticForcesOfTheFlexNode) {
   node = std::make_unique<PhysicsNode>(Role::mechanics, played.transport(), built_for(ElasticExchange::once));
-  played.say(Topic::session, played.session);
+  played.publish(Topic::session, played.session);
   poll(0);
   const wire::Header own = node->member().header(Phase::join, kJoinStep);
-  played.say_heard(Role::io, NodeState::joining, own, {Topic::mechanism});
-  // the mechanics' state must be heard as well
-  played.say_heard(Role::flex, NodeState::joining, own, {});
+  played.acknowledge(Role::io, NodeState::joining, own, {Topic::mechanism});
+  // the mechanics' samples must be acknowledged as well
+  played.acknowledge(Role::flex, NodeState::joining, own, {});
   poll(kMs);
   poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::joining);
-  played.say_heard(Role::flex, NodeState::joining, own, {Topic::flexible});
+  played.acknowledge(Role::flex, NodeState::joining, own, {Topic::flexible});
   poll(kMs);
   poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::initialising);
   played.forget();
   poll(4 * kMs);
-  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].role, Role::flex);
-  EXPECT_EQ(asked[0].topic, static_cast<std::uint8_t>(Topic::elastic));
-  EXPECT_EQ(asked[0].header.step, kJoinStep);
+  const auto requests = played.received<wire::ResendRequest>(Topic::resend);
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].role, Role::flex);
+  EXPECT_EQ(requests[0].topic, static_cast<std::uint8_t>(Topic::elastic));
+  EXPECT_EQ(requests[0].header.step, kJoinStep);
 }
 
-TEST_F(Mechanics, WaitsForNobodyWhenTheyAreStatedOnce) {
+TEST_F(Mechanics, DoesNotWaitForFlexWhenItsForcesArePublishedOnce) {
   get_ready(ElasticExchange::once);
   for (StepIndex step = 0; step < 25; ++step) {
-    played.say_tick(step);
+    played.publish_tick(step);
     poll(kMs);
   }
   EXPECT_EQ(steps_of<wire::MechanismMessage>(Topic::mechanism).size(), 25u);
   EXPECT_EQ(steps_of<wire::FlexibleMessage>(Topic::flexible), (std::vector<StepIndex>{10, 20}));
-  // samples that come all the same are not kept, and nothing is wrong with them
-  say_elastic(20);
+  // samples that arrive all the same are dropped without being counted as refused
+  publish_elastic(20);
   poll(kMs);
   EXPECT_EQ(node->member().refusals().refused(), 0u);
 }
 
 TEST_F(Mechanics, WaitsForTheFlexNodeWhenTheyAreStatedEveryStep) {
   get_ready(ElasticExchange::every_step);
-  played.say_tick(0);
+  played.publish_tick(0);
   poll(kMs);
   EXPECT_TRUE(steps_of<wire::MechanismMessage>(Topic::mechanism).empty());
-  say_elastic(0);
+  publish_elastic(0);
   poll(kMs);
   EXPECT_EQ(steps_of<wire::MechanismMessage>(Topic::mechanism), std::vector<StepIndex>{1});
   EXPECT_EQ(steps_of<wire::FlexibleMessage>(Topic::flexible), std::vector<StepIndex>{1});
-  // it says whom it waits for, and asks
-  played.say_tick(1);
+  // it names the node it waits for, and requests the sample
+  played.publish_tick(1);
   poll(10 * kMs);
   poll(kMs);
   EXPECT_TRUE(node->health().is_waiting.load());
   EXPECT_EQ(static_cast<Role>(node->health().waiting_for.load()), Role::flex);
-  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
-  ASSERT_FALSE(asked.empty());
-  EXPECT_EQ(asked.back().role, Role::flex);
+  const auto requests = played.received<wire::ResendRequest>(Topic::resend);
+  ASSERT_FALSE(requests.empty());
+  EXPECT_EQ(requests.back().role, Role::flex);
 }
 
-TEST_F(Mechanics, SendsTheStateOfItsModesAgainWhenAsked) {
+TEST_F(Mechanics, ResendsTheStateOfItsModesOnRequest) {
   get_ready(ElasticExchange::once);
-  for (StepIndex step = 0; step < 25; ++step) played.say_tick(step);
+  for (StepIndex step = 0; step < 25; ++step) played.publish_tick(step);
   poll(kMs);
   played.forget();
   wire::ResendRequest request;
@@ -144,7 +138,7 @@ TEST_F(Mechanics, SendsTheStateOfItsModesAgainWhenAsked) {
   request.role = Role::mechanics;
   request.topic = static_cast<std::uint8_t>(Topic::flexible);
   request.last_step = 20;
-  played.say(Topic::resend, request);
+  played.publish(Topic::resend, request);
   poll(kMs);
   EXPECT_EQ(steps_of<wire::FlexibleMessage>(Topic::flexible), (std::vector<StepIndex>{10, 20}));
   EXPECT_TRUE(steps_of<wire::MechanismMessage>(Topic::mechanism).empty());
@@ -154,21 +148,15 @@ class FlexNode : public WithFlexibleBodies {
  protected:
   void get_ready(ElasticExchange exchange) {
     node = std::make_unique<PhysicsNode>(Role::flex, played.transport(), built_for(exchange));
-    played.say(Topic::session, played.session);
-    poll(0);
-    const wire::Header own = node->member().header(Phase::join, kJoinStep);
-    played.say_heard(Role::io, NodeState::joining, own, {Topic::elastic});
-    played.say_heard(Role::mechanics, NodeState::joining, own, {Topic::elastic});
-    poll(kMs);
-    poll(kMs);
-    // what it states first needs nobody
+    played.join(*node, now_ns, {Topic::elastic});
+    // its first sample needs no partner
     EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic).back(), kJoinStep);
     EXPECT_EQ(node->member().state(), NodeState::initialising);
-    say_flexible(0);
+    publish_flexible(0);
     poll(kMs);
     ASSERT_EQ(node->member().state(), NodeState::ready);
-    played.say_status(Role::mechanics, NodeState::ready, 0);
-    played.say_status(Role::io, NodeState::running, 0);
+    played.publish_status(Role::mechanics, NodeState::ready, 0);
+    played.publish_status(Role::io, NodeState::running, 0);
     poll(0);
   }
   void poll(std::int64_t after_ns) { node->poll(now_ns += after_ns); }
@@ -180,10 +168,10 @@ class FlexNode : public WithFlexibleBodies {
 TEST_F(FlexNode, FollowsTheMechanicsWithoutTicks) {
   get_ready(ElasticExchange::once);
   EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic), std::vector<StepIndex>{0});
-  say_flexible(20);
+  publish_flexible(20);
   poll(kMs);
   EXPECT_TRUE(steps_of<wire::ElasticMessage>(Topic::elastic).empty());
-  say_flexible(10);
+  publish_flexible(10);
   poll(kMs);
   EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic), (std::vector<StepIndex>{10, 20}));
   EXPECT_EQ(node->member().refusals().refused(), 0u);
@@ -191,18 +179,18 @@ TEST_F(FlexNode, FollowsTheMechanicsWithoutTicks) {
 
 TEST_F(FlexNode, StatesEveryStep) {
   get_ready(ElasticExchange::every_step);
-  for (StepIndex step = 1; step <= 3; ++step) say_flexible(step);
+  for (StepIndex step = 1; step <= 3; ++step) publish_flexible(step);
   poll(kMs);
   EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic), (std::vector<StepIndex>{0, 1, 2, 3}));
 }
 
 TEST_F(FlexNode, EndsWhenItHasSeenTheLastStep) {
   get_ready(ElasticExchange::once);
-  played.say_tick(25, static_cast<std::uint32_t>(TickFlag::end));
-  say_flexible(10);
+  played.publish_tick(25, static_cast<std::uint32_t>(TickFlag::end));
+  publish_flexible(10);
   poll(kMs);
   EXPECT_NE(node->member().state(), NodeState::ended);
-  say_flexible(20);
+  publish_flexible(20);
   poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::ended);
   EXPECT_EQ(node->member().exit_code(), ExitCode::ok);
@@ -210,9 +198,9 @@ TEST_F(FlexNode, EndsWhenItHasSeenTheLastStep) {
 
 TEST_F(FlexNode, StatesThatItUsedTheSampleOfTheSameStep) {
   get_ready(ElasticExchange::once);
-  say_flexible(10);
+  publish_flexible(10);
   poll(kMs);
-  const auto samples = played.said<wire::ElasticMessage>(Topic::elastic);
+  const auto samples = played.received<wire::ElasticMessage>(Topic::elastic);
   ASSERT_EQ(samples.size(), 2u);
   for (const auto& sample : samples) EXPECT_EQ(sample.state.used_step, sample.header.step);
 }
@@ -223,12 +211,12 @@ TEST_F(FlexNode, ShedsTheValuesOfItsVariablesFirst) {
   const auto variables = static_cast<std::uint32_t>(TickFlag::shed_variables);
   const std::uint32_t flags[] = {0, view, view | variables, 0};
   for (StepIndex exchange = 0; exchange < 4; ++exchange) {
-    played.say_tick(exchange * kEvery, flags[exchange]);
-    say_flexible((exchange + 1) * kEvery);
+    played.publish_tick(exchange * kEvery, flags[exchange]);
+    publish_flexible((exchange + 1) * kEvery);
     poll(kMs);
   }
   std::vector<std::size_t> values;
-  for (const auto& block : played.said<wire::VariableBlock>(Topic::variables)) {
+  for (const auto& block : played.received<wire::VariableBlock>(Topic::variables)) {
     if (block.header.phase == Phase::running) values.push_back(block.values.size());
   }
   EXPECT_EQ(values, (std::vector<std::size_t>{1, 1, 0, 0, 1}));
@@ -236,49 +224,49 @@ TEST_F(FlexNode, ShedsTheValuesOfItsVariablesFirst) {
 
 TEST_F(FlexNode, FollowsToTheLastStepAfterAFaultAndRequestsNothing) {
   get_ready(ElasticExchange::once);
-  played.say_tick(25, static_cast<std::uint32_t>(TickFlag::end) | static_cast<std::uint32_t>(TickFlag::fault));
-  played.say_status(Role::io, NodeState::running, 25);
+  played.publish_tick(25, static_cast<std::uint32_t>(TickFlag::end) | static_cast<std::uint32_t>(TickFlag::fault));
+  played.publish_status(Role::io, NodeState::running, 25);
   poll(kMs);
   played.forget();
   for (int i = 0; i < 10; ++i) poll(20 * kMs);
-  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
-  say_flexible(10);
-  say_flexible(20);
-  say_flexible(30);
+  EXPECT_TRUE(played.received<wire::ResendRequest>(Topic::resend).empty());
+  publish_flexible(10);
+  publish_flexible(20);
+  publish_flexible(30);
   poll(kMs);
   EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic), (std::vector<StepIndex>{10, 20}));
   EXPECT_EQ(node->member().state(), NodeState::running) << "the reason follows in the status of io";
 }
 
-TEST_F(FlexNode, AsksForAStateThatIsOverdue) {
+TEST_F(FlexNode, RequestsAStateThatIsOverdue) {
   get_ready(ElasticExchange::once);
   played.forget();
   poll(9 * kMs);
-  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
-  say_flexible(10);
+  EXPECT_TRUE(played.received<wire::ResendRequest>(Topic::resend).empty());
+  publish_flexible(10);
   poll(kMs);
   for (int i = 0; i < 12; ++i) poll(kMs);
-  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
+  EXPECT_TRUE(played.received<wire::ResendRequest>(Topic::resend).empty());
   poll(3 * kMs);
-  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].role, Role::mechanics);
-  EXPECT_EQ(asked[0].header.step, 20);
+  const auto requests = played.received<wire::ResendRequest>(Topic::resend);
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].role, Role::mechanics);
+  EXPECT_EQ(requests[0].header.step, 20);
 }
 
-TEST_F(FlexNode, BeginsAnewAfterAReset) {
+TEST_F(FlexNode, BeginsAgainAfterAReset) {
   get_ready(ElasticExchange::once);
-  say_flexible(10);
+  publish_flexible(10);
   poll(kMs);
   played.forget();
   wire::Tick init;
   init.header = played.header(Role::io, kJoinStep, Phase::init, 1);
-  played.say(Topic::tick, init);
+  played.publish(Topic::tick, init);
   poll(kMs);
   EXPECT_EQ(node->member().epoch(), 1u);
   wire::FlexibleMessage message;
   message.header = played.header(Role::mechanics, 0, Phase::running, 1);
-  played.say(Topic::flexible, message);
+  played.publish(Topic::flexible, message);
   poll(kMs);
   EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic), (std::vector<StepIndex>{kJoinStep, 0}));
 }
@@ -289,13 +277,10 @@ TEST(NodesWithoutFlexibleBodies, ProveNoTopicOfTheirs) {
     built.subsystem = std::make_unique<testing::StillSubsystem>();
     return Status::ok();
   });
-  played.say(Topic::session, played.session);
-  node.poll(1000 * kMs);
-  played.say_heard(Role::io, NodeState::joining, node.member().header(Phase::join, kJoinStep), {Topic::mechanism});
-  node.poll(1001 * kMs);
-  node.poll(1002 * kMs);
+  std::int64_t now_ns = 1000 * kMs;
+  played.join(node, now_ns, {Topic::mechanism});
   EXPECT_GE(node.member().state(), NodeState::initialising);
-  EXPECT_TRUE(played.said<wire::FlexibleMessage>(Topic::flexible).empty());
+  EXPECT_TRUE(played.received<wire::FlexibleMessage>(Topic::flexible).empty());
 }
 
 }  // namespace flexible_nodes_test

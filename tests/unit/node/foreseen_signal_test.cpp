@@ -23,7 +23,7 @@ scene::Scene load() {
 class Circuit {
  public:
   explicit Circuit(const scene::Scene& scene) : hydraulics(scene) {
-    mechanics::MechanicsSubsystem mechanics(scene);
+    mechanics_node::MechanicsSubsystem mechanics(scene);
     static_cast<void>(mechanics.first_sample(mechanism_));
     EXPECT_TRUE(hydraulics.start({&mechanism_.mechanism, nullptr}, sample).is_ok());
   }
@@ -45,7 +45,7 @@ class Circuit {
     return std::nan("");
   }
 
-  hydraulic_node::HydraulicsSubsystem hydraulics;
+  hydraulics_node::HydraulicsSubsystem hydraulics;
   coupling::OwnSample sample;
 
   StepIndex n = 0;

@@ -1,4 +1,4 @@
-// The crane's mechanics under another formulation, against hydraulics that does not know of it.
+// The crane's mechanics under another formulation, with unchanged hydraulics.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace formulation_test {
 
 constexpr StepIndex kSteps = 1000;
 
-// How far from the recursion: `lagrange` rounds otherwise; a penalty of 3e10 kg beside ports that feel 1e6 kg is wrong
+// Distance from the recursion: `lagrange` rounds otherwise; a penalty of 3e10 kg beside ports that feel 1e6 kg is wrong
 // by 3e-5 of the forces; the trapezoidal rule is of second order, and the oil's spring takes 1e-6 m for 100 N.
 struct Case {
   const char* formulation;

@@ -1,4 +1,4 @@
-// A free-running node: what it does without its partner's samples and without io's ticks, with both played by the test.
+// A free-running node without its partner's samples and without io's ticks; the test plays both.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -18,7 +18,7 @@ using wire::Role;
 using wire::TickFlag;
 using wire::Topic;
 
-// What the node had a subsystem do.
+// Calls of the subsystem by the node.
 struct Done {
   StepIndex step = 0;
   StepIndex age = 0;
@@ -50,33 +50,27 @@ class FreeRunning : public ::testing::Test {
  protected:
   void SetUp() override {
     played.session.window = kWindow;
-    played.say(Topic::session, played.session);
-    poll();
-    const wire::Header own = node.member().header(Phase::join, kJoinStep);
-    played.say_heard(Role::io, NodeState::joining, own, {Topic::mechanism});
-    played.say_heard(Role::hydraulics, NodeState::joining, own, {Topic::mechanism});
-    poll(kMs);
-    poll(kMs);
-    played.say_actuators(0);
+    played.join(node, now_ns, {Topic::mechanism});
+    played.publish_actuators(0);
     poll(kMs);
     ASSERT_EQ(node.member().state(), NodeState::ready);
-    played.say_status(Role::hydraulics, NodeState::ready, 0);
-    played.say_status(Role::io, NodeState::running, 0);
+    played.publish_status(Role::hydraulics, NodeState::ready, 0);
+    played.publish_status(Role::io, NodeState::running, 0);
     poll();
-    say_tick(0, 0.5);
+    publish_tick(0, 0.5);
     poll();
     ASSERT_EQ(done.size(), 1u);
   }
   void poll(std::int64_t after_ns = 0) { node.poll(now_ns += after_ns); }
-  void say_tick(StepIndex step, double control, const char* parameter = nullptr, std::uint32_t flags = 0) {
+  void publish_tick(StepIndex step, double control, const char* parameter = nullptr, std::uint32_t flags = 0) {
     wire::Tick tick;
     tick.header = played.header(Role::io, step);
     tick.flags = flags;
     tick.controls.push_back(control);
     if (parameter != nullptr) tick.commands.push_back({0, parameter, 1, 0});
-    played.say(Topic::tick, tick);
+    played.publish(Topic::tick, tick);
   }
-  std::vector<wire::MechanismMessage> samples() { return played.said<wire::MechanismMessage>(Topic::mechanism); }
+  std::vector<wire::MechanismMessage> samples() { return played.received<wire::MechanismMessage>(Topic::mechanism); }
 
   std::vector<Done> done;
   std::vector<std::pair<StepIndex, std::string>> changes;
@@ -92,7 +86,7 @@ class FreeRunning : public ::testing::Test {
 
 TEST_F(FreeRunning, WaitsForASampleNoLongerThanItsBudget) {
   samples();
-  say_tick(1, 0.6);
+  publish_tick(1, 0.6);
   poll(kMs);
   EXPECT_EQ(done.size(), 1u);
   EXPECT_EQ(node.next_deadline(now_ns), now_ns + kMs / 2);
@@ -100,38 +94,38 @@ TEST_F(FreeRunning, WaitsForASampleNoLongerThanItsBudget) {
   ASSERT_EQ(done.size(), 2u);
   EXPECT_EQ(done[1].age, 1);
   EXPECT_EQ(done[1].control, 0.6);
-  const auto said = samples();
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(said[0].header.step, 2);
-  EXPECT_EQ(said[0].state.used_step, 0);
-  EXPECT_EQ(said[0].state.quality, coupling::Quality::extrapolated);
+  const auto published = samples();
+  ASSERT_EQ(published.size(), 1u);
+  EXPECT_EQ(published[0].header.step, 2);
+  EXPECT_EQ(published[0].state.used_step, 0);
+  EXPECT_EQ(published[0].state.quality, coupling::Quality::extrapolated);
 }
 
 TEST_F(FreeRunning, TakesASampleThatIsThereAtOnce) {
   samples();
-  played.say_actuators(1);
-  say_tick(1, 0.6);
+  played.publish_actuators(1);
+  publish_tick(1, 0.6);
   poll(kMs);
   ASSERT_EQ(done.size(), 2u);
   EXPECT_EQ(done[1].age, 0);
-  const auto said = samples();
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(said[0].state.used_step, 1);
-  EXPECT_EQ(said[0].state.quality, coupling::Quality::ok);
-  EXPECT_EQ(said[0].state.lost, 0u);
+  const auto published = samples();
+  ASSERT_EQ(published.size(), 1u);
+  EXPECT_EQ(published[0].state.used_step, 1);
+  EXPECT_EQ(published[0].state.quality, coupling::Quality::ok);
+  EXPECT_EQ(published[0].state.lost, 0u);
 }
 
 TEST_F(FreeRunning, UsesTheNewestSampleAndCountsThoseThatNoStepUsed) {
   for (StepIndex step = 1; step <= 3; ++step) {
-    say_tick(step, 0);
+    publish_tick(step, 0);
     poll(kMs);
     poll(kMs / 2);
   }
   ASSERT_EQ(done.size(), 4u);
   EXPECT_EQ(done[3].age, 3);
   // sample 2 comes late, sample 1 never
-  played.say_actuators(2);
-  say_tick(4, 0);
+  played.publish_actuators(2);
+  publish_tick(4, 0);
   poll(kMs);
   poll(kMs / 2);
   ASSERT_EQ(done.size(), 5u);
@@ -140,7 +134,7 @@ TEST_F(FreeRunning, UsesTheNewestSampleAndCountsThoseThatNoStepUsed) {
 }
 
 TEST_F(FreeRunning, GoesOnWithoutATickAtItsTimeByTheLastInputs) {
-  played.say_actuators(1);
+  played.publish_actuators(1);
   poll(kMs);  // tick 1 would come now
   EXPECT_EQ(done.size(), 1u);
   poll(kMs / 2);
@@ -149,14 +143,14 @@ TEST_F(FreeRunning, GoesOnWithoutATickAtItsTimeByTheLastInputs) {
 }
 
 TEST_F(FreeRunning, AppliesTheCommandsOfALateTickOnceInTheNextStep) {
-  played.say_actuators(1);
+  played.publish_actuators(1);
   poll(kMs + kMs / 2);
   ASSERT_EQ(done.size(), 2u);
-  say_tick(1, 0.7, "Bag.mass");
-  say_tick(1, 0.7, "Bag.mass");
+  publish_tick(1, 0.7, "Bag.mass");
+  publish_tick(1, 0.7, "Bag.mass");
   poll(kMs / 4);
-  played.say_actuators(2);
-  say_tick(2, 0.8);
+  played.publish_actuators(2);
+  publish_tick(2, 0.8);
   poll(kMs / 4);
   ASSERT_EQ(done.size(), 3u);
   ASSERT_EQ(changes.size(), 1u);
@@ -165,44 +159,44 @@ TEST_F(FreeRunning, AppliesTheCommandsOfALateTickOnceInTheNextStep) {
 
 TEST_F(FreeRunning, BeginsAnEpochWithNothingOfTheFormer) {
   poll(3 * kMs / 2);  // step 1 without its tick
-  say_tick(1, 0.7, "Bag.mass");
+  publish_tick(1, 0.7, "Bag.mass");
   wire::Tick init;
   init.header = played.header(Role::io, kJoinStep, Phase::init, 1);
-  played.say(Topic::tick, init);
-  played.say_actuators(0, Phase::running, 1);
+  played.publish(Topic::tick, init);
+  played.publish_actuators(0, Phase::running, 1);
   poll(kMs);
   poll(kMs);
   ASSERT_EQ(node.member().state(), NodeState::ready);
   wire::NodeStatus io = played.status(Role::io, NodeState::running, 0);
   io.header.epoch = 1;
-  played.say(Topic::node_status, io);
+  played.publish(Topic::node_status, io);
   samples();
   done.clear();
   wire::Tick tick;
   tick.header = played.header(Role::io, 0, Phase::running, 1);
-  played.say(Topic::tick, tick);
+  played.publish(Topic::tick, tick);
   poll(kMs);
   ASSERT_EQ(done.size(), 1u);
   EXPECT_EQ(done[0].step, 0);
   EXPECT_EQ(done[0].control, -1) << "no control of the former epoch";
   EXPECT_TRUE(changes.empty());
-  const auto said = samples();
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(said[0].state.used_step, 0);
-  EXPECT_EQ(said[0].state.lost, 0u);
+  const auto published = samples();
+  ASSERT_EQ(published.size(), 1u);
+  EXPECT_EQ(published[0].state.used_step, 0);
+  EXPECT_EQ(published[0].state.lost, 0u);
 }
 
-TEST_F(FreeRunning, AsksForAMissedTick) {
+TEST_F(FreeRunning, RequestsAMissedTick) {
   poll(kMs + kMs / 2);
   poll(kMs / 2);
   ASSERT_EQ(done.size(), 2u);
-  static_cast<void>(played.said<wire::ResendRequest>(Topic::resend));
+  static_cast<void>(played.received<wire::ResendRequest>(Topic::resend));
   poll(4 * kMs);
   poll(4 * kMs);
-  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
-  ASSERT_FALSE(asked.empty());
-  EXPECT_EQ(asked[0].role, Role::io);
-  EXPECT_EQ(asked[0].header.step, 1);
+  const auto requests = played.received<wire::ResendRequest>(Topic::resend);
+  ASSERT_FALSE(requests.empty());
+  EXPECT_EQ(requests[0].role, Role::io);
+  EXPECT_EQ(requests[0].header.step, 1);
 }
 
 TEST_F(FreeRunning, IsNotFurtherAheadOfTheTicksThanTheWindow) {
@@ -212,24 +206,24 @@ TEST_F(FreeRunning, IsNotFurtherAheadOfTheTicksThanTheWindow) {
 
 TEST_F(FreeRunning, StandsStillWhileIoWithholdsTicks) {
   wire::NodeStatus holding = played.status(Role::io, NodeState::holding, 1);
-  played.say(Topic::node_status, holding);
+  played.publish(Topic::node_status, holding);
   for (int i = 0; i < 20; ++i) poll(kMs);
   EXPECT_EQ(done.size(), 1u);
 }
 
 TEST_F(FreeRunning, EndsAtAnEndThatComesAfterItsStep) {
-  played.say_actuators(1);
+  played.publish_actuators(1);
   poll(kMs + kMs / 2);
   ASSERT_EQ(done.size(), 2u);
-  say_tick(1, 0, nullptr, static_cast<std::uint32_t>(TickFlag::end));
+  publish_tick(1, 0, nullptr, static_cast<std::uint32_t>(TickFlag::end));
   poll(kMs / 4);
   EXPECT_EQ(node.member().state(), NodeState::ended);
   EXPECT_EQ(node.member().exit_code(), ExitCode::ok);
 }
 
 TEST_F(FreeRunning, CatchesUpWithoutWaitingWhenItIsBehindTheTicks) {
-  for (StepIndex step = 1; step <= 5; ++step) say_tick(step, 0);
-  played.say_actuators(3);
+  for (StepIndex step = 1; step <= 5; ++step) publish_tick(step, 0);
+  played.publish_actuators(3);
   poll(5 * kMs);
   // the last one has time to wait for its sample
   ASSERT_EQ(done.size(), 5u);

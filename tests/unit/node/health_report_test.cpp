@@ -14,7 +14,7 @@ using testing::PlayedSession;
 using wire::Role;
 using wire::Topic;
 
-// does nothing until its health was heard
+// A node without work that finishes when its health message has arrived.
 class IdleNode final : public Node {
  public:
   explicit IdleNode(PlayedSession& played) : played_(played), member_(Role::mechanics, played.transport(), {}) {}
@@ -23,7 +23,7 @@ class IdleNode final : public Node {
     health().has_session = true;
   }
   bool poll(std::int64_t) override {
-    is_finished_ = !played_.said<wire::Health>(Topic::health).empty() || monotonic_ns() > deadline_ns_;
+    is_finished_ = !played_.received<wire::Health>(Topic::health).empty() || monotonic_ns() > deadline_ns_;
     return false;
   }
   [[nodiscard]] std::int64_t next_deadline(std::int64_t now_ns) const override { return now_ns + testing::kMs; }
@@ -39,12 +39,12 @@ class IdleNode final : public Node {
   std::int64_t deadline_ns_ = monotonic_ns() + 30'000'000'000;
 };
 
-TEST(HealthReport, SaysNothingBeforeTheSessionIsKnown) {
+TEST(HealthReport, PublishesNothingBeforeTheNodeHasASession) {
   PlayedSession played{0};
   IdleNode node(played);
   HealthReport report(node);
   report.send();
-  EXPECT_TRUE(played.said<wire::Health>(Topic::health).empty());
+  EXPECT_TRUE(played.received<wire::Health>(Topic::health).empty());
 }
 
 TEST(HealthReport, GivesTheMeanAndTheLargestStepTimeSinceTheLastOne) {
@@ -65,27 +65,27 @@ TEST(HealthReport, GivesTheMeanAndTheLargestStepTimeSinceTheLastOne) {
   h.step_time_max_ns = 2'500'000;
   report.send();
   report.send();
-  const auto said = played.said<wire::Health>(Topic::health);
-  ASSERT_EQ(said.size(), 3u);
-  EXPECT_EQ(said[0].header.step, 7);
-  EXPECT_EQ(said[0].slip_ns, 5);
-  EXPECT_EQ(said[0].refused_messages, 3u);
-  EXPECT_DOUBLE_EQ(said[0].step_time_mean, 1e-3);
-  EXPECT_DOUBLE_EQ(said[0].step_time_max, 3e-3);
-  EXPECT_DOUBLE_EQ(said[1].step_time_mean, 2e-3);
-  EXPECT_DOUBLE_EQ(said[1].step_time_max, 2.5e-3);
-  EXPECT_EQ(said[2].step_time_mean, 0);
-  EXPECT_EQ(said[2].step_time_max, 0);
+  const auto published = played.received<wire::Health>(Topic::health);
+  ASSERT_EQ(published.size(), 3u);
+  EXPECT_EQ(published[0].header.step, 7);
+  EXPECT_EQ(published[0].slip_ns, 5);
+  EXPECT_EQ(published[0].refused_messages, 3u);
+  EXPECT_DOUBLE_EQ(published[0].step_time_mean, 1e-3);
+  EXPECT_DOUBLE_EQ(published[0].step_time_max, 3e-3);
+  EXPECT_DOUBLE_EQ(published[1].step_time_mean, 2e-3);
+  EXPECT_DOUBLE_EQ(published[1].step_time_max, 2.5e-3);
+  EXPECT_EQ(published[2].step_time_mean, 0);
+  EXPECT_EQ(published[2].step_time_max, 0);
 }
 
-// looks at a loop until it stands still; as many as it took, or so many when it does not
-int looks_until_it_stands(LoopWatch& watch, int most = 100) {
-  int looks = 0;
-  while (looks < most && !watch.look()) ++looks;
-  return looks;
+// Number of polls without an alarm before the first one, at most `most`.
+int polls_until_it_stands(LoopWatch& watch, int most = 100) {
+  int polls = 0;
+  while (polls < most && !watch.poll()) ++polls;
+  return polls;
 }
 
-constexpr auto kLooks = static_cast<int>(kLoopStands.ns / kHealthInterval.ns);
+constexpr auto kPolls = static_cast<int>(kLoopStalled.ns / kHealthInterval.ns);
 
 TEST(LoopWatch, SeesALoopThatDoesNotComeRound) {
   HealthState loop;
@@ -93,14 +93,14 @@ TEST(LoopWatch, SeesALoopThatDoesNotComeRound) {
   LoopWatch watch(loop);
   for (int i = 0; i < 50; ++i) {
     loop.turn();
-    EXPECT_FALSE(watch.look());
+    EXPECT_FALSE(watch.poll());
   }
-  EXPECT_EQ(looks_until_it_stands(watch), kLooks - 1);
-  EXPECT_EQ(watch.stood_for().ns, kLoopStands.ns);
-  EXPECT_TRUE(watch.look());
-  // each step is a sign of life too: who catches up does many of them in one turn
+  EXPECT_EQ(polls_until_it_stands(watch), kPolls - 1);
+  EXPECT_EQ(watch.stood_for().ns, kLoopStalled.ns);
+  EXPECT_TRUE(watch.poll());
+  // each step is a sign of life too: a node that catches up does many of them in one turn
   ++loop.steps_done;
-  EXPECT_FALSE(watch.look());
+  EXPECT_FALSE(watch.poll());
   EXPECT_EQ(watch.stood_for().ns, 0);
 }
 
@@ -110,15 +110,15 @@ TEST(LoopWatch, LetsALoopStandWhereItMay) {
   for (const wire::NodeState state : {wire::NodeState::checking, wire::NodeState::joining,
                                       wire::NodeState::initialising, wire::NodeState::ended, wire::NodeState::fault}) {
     loop.state = static_cast<std::uint8_t>(state);
-    EXPECT_EQ(looks_until_it_stands(watch), 100) << static_cast<int>(state);
+    EXPECT_EQ(polls_until_it_stands(watch), 100) << static_cast<int>(state);
   }
   loop.state = static_cast<std::uint8_t>(wire::NodeState::running);
   {
     const DiskWait outer(loop);
     { const DiskWait inner(loop); }
-    EXPECT_EQ(looks_until_it_stands(watch), 100);
+    EXPECT_EQ(polls_until_it_stands(watch), 100);
   }
-  EXPECT_EQ(looks_until_it_stands(watch), kLooks - 1);
+  EXPECT_EQ(polls_until_it_stands(watch), kPolls - 1);
 }
 
 TEST(LoopWatch, GoesByTheStepsOfALargeModel) {
@@ -127,8 +127,8 @@ TEST(LoopWatch, GoesByTheStepsOfALargeModel) {
   loop.steps_done = 10;
   loop.step_time_sum_ns = 10 * 200'000'000ll;
   LoopWatch watch(loop);
-  EXPECT_FALSE(watch.look());
-  EXPECT_EQ(looks_until_it_stands(watch), kStepsOfALoop * 2 - 1);
+  EXPECT_FALSE(watch.poll());
+  EXPECT_EQ(polls_until_it_stands(watch), kStepsOfALoop * 2 - 1);
 }
 
 TEST(RunTogether, SendsTheHealthOfItsNodes) {
@@ -137,7 +137,7 @@ TEST(RunTogether, SendsTheHealthOfItsNodes) {
   node.join();
   Node* const nodes[] = {&node};
   EXPECT_EQ(run_together(nodes, {}), ExitCode::ok);
-  EXPECT_FALSE(node.is_late()) << "nobody heard a health message";
+  EXPECT_FALSE(node.is_late()) << "no health message arrived";
 }
 
 }  // namespace health_report_test

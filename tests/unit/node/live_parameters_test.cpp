@@ -14,8 +14,8 @@ namespace live_parameters_test {
 
 void expect_all_taken(const scene::Scene& scene, const std::string& of) {
   std::vector<std::unique_ptr<coupling::Subsystem>> subsystems;
-  if (scene.has_mechanics()) subsystems.push_back(mechanics::make_mechanics_subsystem(scene));
-  if (scene.has_hydraulics()) subsystems.push_back(hydraulic_node::make_hydraulics_subsystem(scene));
+  if (scene.has_mechanics()) subsystems.push_back(mechanics_node::make_mechanics_subsystem(scene));
+  if (scene.has_hydraulics()) subsystems.push_back(hydraulics_node::make_hydraulics_subsystem(scene));
   const scene::ParameterDirectory directory(scene);
   int live = 0;
   for (const scene::ParameterInfo& parameter : directory.all()) {

@@ -26,25 +26,19 @@ class Physics : public ::testing::Test {
   }
   void poll(std::int64_t after_ns = 0) { node.poll(now_ns += after_ns); }
 
-  // mechanics has joined, has its sample 0 out and waits for tick 0
+  // mechanics has joined, has published sample 0 and waits for tick 0
   void get_ready() {
-    played.say(Topic::session, played.session);
-    poll();
-    const wire::Header own = node.member().header(Phase::join, kJoinStep);
-    played.say_heard(Role::io, NodeState::joining, own, {Topic::mechanism});
-    played.say_heard(Role::hydraulics, NodeState::joining, own, {Topic::mechanism});
-    poll(kMs);
-    poll(kMs);
-    played.say_actuators(0);
+    played.join(node, now_ns, {Topic::mechanism});
+    played.publish_actuators(0);
     poll(kMs);
     ASSERT_EQ(node.member().state(), NodeState::ready);
-    played.say_status(Role::hydraulics, NodeState::ready, 0);
-    played.say_status(Role::io, NodeState::running, 0);
+    played.publish_status(Role::hydraulics, NodeState::ready, 0);
+    played.publish_status(Role::io, NodeState::running, 0);
     poll();
   }
-  // the step that the node's newest sample holds for
+  // step of the node's newest sample
   StepIndex newest_sample() {
-    for (const auto& sample : played.said<wire::MechanismMessage>(Topic::mechanism)) newest_ = sample.header.step;
+    for (const auto& sample : played.received<wire::MechanismMessage>(Topic::mechanism)) newest_ = sample.header.step;
     return newest_;
   }
 
@@ -58,7 +52,7 @@ class Physics : public ::testing::Test {
 TEST_F(Physics, WaitsForJoinTenSecondsAndWithoutTimeoutAsLongAsItTakes) {
   PhysicsNode patient{Role::mechanics, transport, build, {kNoTimeout, kNoTimeout, std::nullopt}};
   for (PhysicsNode* waiting : {&node, &patient}) {
-    played.say(Topic::session, played.session);
+    played.publish(Topic::session, played.session);
     waiting->poll(now_ns);
     waiting->poll(now_ns + kMs);
     ASSERT_EQ(waiting->member().state(), NodeState::joining);
@@ -71,20 +65,20 @@ TEST_F(Physics, WaitsForJoinTenSecondsAndWithoutTimeoutAsLongAsItTakes) {
 TEST_F(Physics, DoesAStepForATickAndTheSampleOfItsPartner) {
   get_ready();
   EXPECT_EQ(newest_sample(), 0);
-  played.say_tick(0);
+  played.publish_tick(0);
   poll(kMs);
   EXPECT_EQ(newest_sample(), 1);
-  played.say_tick(1);
+  played.publish_tick(1);
   poll(kMs);
   EXPECT_EQ(newest_sample(), 1);
-  played.say_actuators(1);
+  played.publish_actuators(1);
   poll(kMs);
   EXPECT_EQ(newest_sample(), 2);
 }
 
-TEST_F(Physics, AfterAFaultTickSleepsUntilIoSaysWhy) {
+TEST_F(Physics, AfterAFaultTickSleepsUntilIoPublishesTheReason) {
   get_ready();
-  played.say_tick(0, static_cast<std::uint32_t>(TickFlag::end) | static_cast<std::uint32_t>(TickFlag::fault));
+  played.publish_tick(0, static_cast<std::uint32_t>(TickFlag::end) | static_cast<std::uint32_t>(TickFlag::fault));
   for (int i = 0; i < 5; ++i) {
     poll(50 * kMs);
     EXPECT_GT(node.next_deadline(now_ns), now_ns) << "poll " << i << " would spin";
@@ -92,19 +86,19 @@ TEST_F(Physics, AfterAFaultTickSleepsUntilIoSaysWhy) {
   wire::NodeStatus fault = played.status(Role::io, NodeState::fault, 0);
   fault.exit_code = static_cast<std::int32_t>(ExitCode::storage);
   fault.reason = "disk";
-  played.say(Topic::node_status, fault);
+  played.publish(Topic::node_status, fault);
   poll(kMs);
   EXPECT_EQ(node.member().exit_code(), ExitCode::storage);
   EXPECT_EQ(node.member().reason(), "io ended the session: disk");
 }
 
-TEST_F(Physics, SaysOfAStepThatWasTooLongThatItWasAndHashesTheSame) {
-  played.session.pace = wire::Pace::real;
+TEST_F(Physics, FlagsAStepThatWasTooLongAndHashesTheSame) {
+  played.session.pace = Pace::real;
   node.add_work({3 * played.session.step_ns});
   get_ready();
-  played.say_tick(0);
+  played.publish_tick(0);
   poll(kMs);
-  const auto samples = played.said<wire::MechanismMessage>(Topic::mechanism);
+  const auto samples = played.received<wire::MechanismMessage>(Topic::mechanism);
   ASSERT_FALSE(samples.empty());
   EXPECT_EQ(samples.back().header.step, 1);
   EXPECT_EQ(samples.back().state.flags, static_cast<std::uint32_t>(StepFlag::overrun));
@@ -114,19 +108,19 @@ TEST_F(Physics, SaysOfAStepThatWasTooLongThatItWasAndHashesTheSame) {
 }
 
 TEST_F(Physics, HasNoDeadlineInFreePace) {
-  played.session.pace = wire::Pace::free;
+  played.session.pace = Pace::free;
   node.add_work({3 * played.session.step_ns});
   get_ready();
-  played.say_tick(0);
+  played.publish_tick(0);
   poll(kMs);
-  const auto samples = played.said<wire::MechanismMessage>(Topic::mechanism);
+  const auto samples = played.received<wire::MechanismMessage>(Topic::mechanism);
   ASSERT_FALSE(samples.empty());
   EXPECT_EQ(samples.back().state.flags, 0u);
   EXPECT_EQ(node.timing().overruns, 0u);
   EXPECT_EQ(node.timing().response.count(), 1u);
 }
 
-TEST_F(Physics, LeavesOutTheValuesOfItsVariablesWhereTheTickSaysSo) {
+TEST_F(Physics, LeavesOutTheValuesOfItsVariablesWhereTheTickOrdersIt) {
   PhysicsNode observed(Role::mechanics, played.transport(), [](const wire::SessionDescription&, BuiltSubsystem& built) {
     built.subsystem = std::make_unique<testing::ObservedSubsystem>();
     built.published_variables = {0};
@@ -134,35 +128,29 @@ TEST_F(Physics, LeavesOutTheValuesOfItsVariablesWhereTheTickSaysSo) {
     return Status::ok();
   });
   const auto go_on = [&] { observed.poll(now_ns += kMs); };
-  played.say(Topic::session, played.session);
-  go_on();
-  const wire::Header own = observed.member().header(Phase::join, kJoinStep);
-  played.say_heard(Role::io, NodeState::joining, own, {Topic::mechanism, Topic::variables});
-  played.say_heard(Role::hydraulics, NodeState::joining, own, {Topic::mechanism});
-  go_on();
-  go_on();
+  played.join(observed, now_ns, {Topic::mechanism, Topic::variables});
   const auto view = static_cast<std::uint32_t>(TickFlag::shed_view);
   const auto all = view | static_cast<std::uint32_t>(TickFlag::shed_variables);
   const std::uint32_t flags[] = {0, view, all, 0};
   for (StepIndex step = 0; step < 4; ++step) {
-    played.say_actuators(step);
-    played.say_tick(step, flags[step]);
+    played.publish_actuators(step);
+    played.publish_tick(step, flags[step]);
     go_on();
     go_on();
   }
   std::map<StepIndex, std::size_t> values;
-  for (const auto& block : played.said<wire::VariableBlock>(Topic::variables)) {
+  for (const auto& block : played.received<wire::VariableBlock>(Topic::variables)) {
     if (block.header.phase == Phase::running) values[block.header.step] = block.values.size();
   }
-  // a block has the step after its tick; the view is the flex node's matter
+  // a block has the step after its tick; shed_view concerns the flex node only
   EXPECT_EQ(values, (std::map<StepIndex, std::size_t>{{0, 1}, {1, 1}, {2, 1}, {3, 0}, {4, 1}}));
 }
 
 TEST_F(Physics, EndsAtTheFirstSampleThatCannotBeSent) {
   get_ready();
   for (StepIndex step = 0; step < 4; ++step) {
-    played.say_tick(step);
-    if (step > 0) played.say_actuators(step);
+    played.publish_tick(step);
+    if (step > 0) played.publish_actuators(step);
   }
   transport.break_down(Topic::mechanism);
   poll(kMs);
@@ -171,68 +159,68 @@ TEST_F(Physics, EndsAtTheFirstSampleThatCannotBeSent) {
   EXPECT_EQ(node.member().exit_code(), ExitCode::failed);
   EXPECT_EQ(node.member().reason(), "message not sent");
   EXPECT_EQ(node.health().steps_done.load(), 1u);
-  const auto statuses = played.said<wire::NodeStatus>(Topic::node_status);
+  const auto statuses = played.received<wire::NodeStatus>(Topic::node_status);
   ASSERT_FALSE(statuses.empty());
   EXPECT_EQ(statuses.back().reason, "message not sent");
 }
 
-TEST_F(Physics, SaysNothingMoreInASessionThatIsWithdrawn) {
-  played.say(Topic::session, played.session);
+TEST_F(Physics, PublishesNothingMoreInASessionThatIsWithdrawn) {
+  played.publish(Topic::session, played.session);
   poll();
   ASSERT_EQ(node.member().state(), NodeState::joining);
   played.forget();
   played.session.header.phase = Phase::ended;
-  played.say(Topic::session, played.session);
+  played.publish(Topic::session, played.session);
   poll(kMs);
   EXPECT_TRUE(node.is_finished());
   EXPECT_TRUE(node.member().is_withdrawn());
-  EXPECT_TRUE(played.said<wire::NodeStatus>(Topic::node_status).empty());
+  EXPECT_TRUE(played.received<wire::NodeStatus>(Topic::node_status).empty());
 }
 
-// ---- asking for what is missing -------------------------------------------------------------------------------
+// ---- requests for missing messages ----------------------------------------------------------------------------
 
-TEST_F(Physics, AsksForATickThreeMillisecondsAfterItWasDue) {
+TEST_F(Physics, RequestsATickThreeMillisecondsAfterItWasDue) {
   played.session.step_ns = 10 * kMs;
   get_ready();
-  played.say_tick(0);
+  played.publish_tick(0);
   poll(kMs);
-  played.say_actuators(1);
+  played.publish_actuators(1);
   const std::int64_t done_ns = now_ns;
   played.forget();
   while (now_ns < done_ns + 12 * kMs) poll(kMs);
-  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
+  EXPECT_TRUE(played.received<wire::ResendRequest>(Topic::resend).empty());
   while (now_ns < done_ns + 14 * kMs) poll(kMs);
-  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].role, Role::io);
-  EXPECT_EQ(asked[0].header.step, 1);
+  const auto requests = played.received<wire::ResendRequest>(Topic::resend);
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].role, Role::io);
+  EXPECT_EQ(requests[0].header.step, 1);
 }
 
-TEST_F(Physics, AsksForNothingWhileTheSessionIsPaused) {
+TEST_F(Physics, RequestsNothingWhileTheSessionIsPaused) {
   get_ready();
-  played.say_tick(0);
+  played.publish_tick(0);
   poll(kMs);
-  played.say_actuators(1);
-  played.say_status(Role::io, NodeState::holding, 1);
+  played.publish_actuators(1);
+  played.publish_status(Role::io, NodeState::holding, 1);
   poll(kMs);
   played.forget();
   for (int i = 0; i < 100; ++i) poll(2 * kMs);
-  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
-  // a tick that io has sent before it held is missing all the same
-  played.say_status(Role::io, NodeState::holding, 2);
+  EXPECT_TRUE(played.received<wire::ResendRequest>(Topic::resend).empty());
+  // a tick that io sent before it held is missing too
+  played.publish_status(Role::io, NodeState::holding, 2);
   for (int i = 0; i < 60; ++i) poll(2 * kMs);
-  EXPECT_FALSE(played.said<wire::ResendRequest>(Topic::resend).empty());
+  EXPECT_FALSE(played.received<wire::ResendRequest>(Topic::resend).empty());
 }
 
-TEST_F(Physics, SaysThatItWaitsWhenSomethingIsOverdue) {
+TEST_F(Physics, ReportsThatItWaitsWhenAMessageIsOverdue) {
   get_ready();
-  played.say_tick(0);
+  played.publish_tick(0);
   poll(kMs);
   EXPECT_FALSE(node.health().is_waiting.load());
   for (int i = 0; i < 10; ++i) poll(kMs);
   EXPECT_TRUE(node.health().is_waiting.load());
-  played.say_tick(1);
-  played.say_actuators(1);
+  played.publish_tick(1);
+  played.publish_actuators(1);
   poll(kMs);
   EXPECT_FALSE(node.health().is_waiting.load());
 }
@@ -240,29 +228,29 @@ TEST_F(Physics, SaysThatItWaitsWhenSomethingIsOverdue) {
 TEST_F(Physics, CountsAnInitThatCannotBeDecoded) {
   PlayedSession other{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
   PhysicsNode hydraulics{Role::hydraulics, other.transport(), build};
-  other.say(Topic::session, other.session);
+  other.publish(Topic::session, other.session);
   hydraulics.poll(now_ns);
-  other.say_status(Role::mechanics, NodeState::initialising);
+  other.publish_status(Role::mechanics, NodeState::initialising);
   wire::MechanismMessage init;
   init.header = other.header(Role::mechanics, kJoinStep, Phase::init);
   std::vector<std::byte> bytes;
   ASSERT_TRUE(transport::encode(init, bytes));
   bytes.resize(bytes.size() / 2);
-  other.say_bytes(Topic::mechanism, bytes);
+  other.publish_bytes(Topic::mechanism, bytes);
   hydraulics.poll(now_ns);
   EXPECT_EQ(hydraulics.member().refusals().undecodable, 1u);
 }
 
-// ---- who may say what -----------------------------------------------------------------------------------------
+// ---- which writer is accepted on which topic ------------------------------------------------------------------
 
 TEST_F(Physics, DoesNotFollowATickOfAnObserverOrAPartner) {
   get_ready();
   const std::uint64_t refused = node.member().refusals().unexpected_writer;
   wire::Tick tick;
   tick.header = played.header(Role::observer, 0);
-  played.say(Topic::tick, tick);
+  played.publish(Topic::tick, tick);
   tick.header = played.header(Role::hydraulics, 0);
-  played.say(Topic::tick, tick);
+  played.publish(Topic::tick, tick);
   poll(kMs);
   EXPECT_EQ(newest_sample(), 0);
   EXPECT_EQ(node.member().refusals().unexpected_writer, refused + 2);
@@ -272,15 +260,15 @@ TEST_F(Physics, BeginsAnEpochForIoAlone) {
   get_ready();
   wire::Tick init;
   init.header = played.header(Role::observer, kJoinStep, Phase::init, 1);
-  played.say(Topic::tick, init);
+  played.publish(Topic::tick, init);
   init.header = played.header(Role::io, kJoinStep, Phase::init, 1);
   init.header.incarnation += 1;
-  played.say(Topic::tick, init);
+  played.publish(Topic::tick, init);
   poll(kMs);
   EXPECT_EQ(node.member().epoch(), 0u);
   EXPECT_EQ(node.member().refusals().unexpected_writer, 2u);
   init.header.incarnation -= 1;
-  played.say(Topic::tick, init);
+  played.publish(Topic::tick, init);
   poll(kMs);
   EXPECT_EQ(node.member().epoch(), 1u);
 }
@@ -293,7 +281,7 @@ TEST_F(Physics, RefusesToPublishMoreVariablesThanTheWireNumbers) {
   };
   PlayedSession other{bit(Role::io) | bit(Role::mechanics)};
   PhysicsNode many{Role::mechanics, other.transport(), build_many};
-  other.say(Topic::session, other.session);
+  other.publish(Topic::session, other.session);
   many.poll(now_ns);
   EXPECT_TRUE(many.is_finished());
   EXPECT_EQ(many.member().exit_code(), ExitCode::bad_input);

@@ -11,7 +11,7 @@ using wire::Role;
 
 class Timing : public ::testing::Test {
  protected:
-  // one step: released so long ago, then done at once
+  // one step, released this long ago, then done at once
   void step(StepIndex n, std::int64_t released_ago_ns, Role waits_for = Role::io) {
     steps.release(n, monotonic_ns() - released_ago_ns);
     if (waits_for != Role::io) steps.waits_for(waits_for);
@@ -101,7 +101,7 @@ TEST(SentTime, IsThatOfTheStampUnlessItCannotBeTrue) {
   const std::int64_t before_ns = monotonic_ns();
   EXPECT_LE(sent_ns(wall_clock_ns() - 1'000'000, WriterClock::same), monotonic_ns() - 1'000'000 + 500'000'000);
   EXPECT_LT(sent_ns(wall_clock_ns() - 1'000'000'000, WriterClock::same), before_ns);
-  // another clock, a stamp of the future, one of an hour ago: the arrival
+  // another clock, a stamp in the future, one an hour old: the time of arrival
   EXPECT_GE(sent_ns(wall_clock_ns() - 1'000'000, WriterClock::other), before_ns);
   EXPECT_GE(sent_ns(wall_clock_ns() + kHour, WriterClock::same), before_ns);
   EXPECT_GE(sent_ns(wall_clock_ns() - kHour, WriterClock::same), before_ns);

@@ -126,7 +126,7 @@ TEST_F(SubsystemHash, ChangesWithTheValueOfAParameterThatHasArrived) {
   EXPECT_NE(other.hydraulics->state_hash(), crane.hydraulics->state_hash());
 }
 
-TEST(SubsystemHashOfAPendulum, TellsWhetherAJointLimitTakesPart) {
+TEST(SubsystemHashOfAPendulum, DependsOnWhetherAJointLimitTakesPart) {
   const scene::Scene scene = scene::load_text(R"(
 bodies:
   Rod: {position: [0, 2 m, 0], mass: 2 kg, center_of_mass: [0.5 m, 0, 0], inertia: [0, 0.167, 0.167]}
@@ -135,7 +135,7 @@ joints:
           limit_stiffness: 1e4 Nm/rad}
 )",
                                               "pendulum");
-  mechanics::MechanicsSubsystem pendulum(scene);
+  mechanics_node::MechanicsSubsystem pendulum(scene);
   coupling::OwnSample sample;
   static_cast<void>(pendulum.first_sample(sample));
   ASSERT_TRUE(pendulum.start({}, sample).is_ok());
@@ -147,7 +147,7 @@ joints:
   EXPECT_NE(pendulum.state_hash(), taking_part);
 }
 
-TEST_F(SubsystemHash, TellsAFailedStateFromAGoodOne) {
+TEST_F(SubsystemHash, DistinguishesAFailedStateFromAGoodOne) {
   const std::uint64_t before = crane.mechanics->state_hash();
   crane.mechanics->mutable_state().u[0] = std::numeric_limits<double>::infinity();
   crane.step(CranePair::levers(crane.n));

@@ -1,4 +1,4 @@
-// What a recorder counts of ticks while it writes them.
+// Counts of ticks that a recorder updates while it writes.
 #include "node/tick_counter.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(TickCounter, CountsStepsOfAllEpochsAndWallTimeWithoutPauses) {
   io_says(counter, wire::NodeState::holding, 110 * kMs);
   io_says(counter, wire::NodeState::running, 500 * kMs);
   take(counter, 0, 10, 509 * kMs);
-  // one that waits for a node is no pause
+  // holding for a node is not a pause
   io_says(counter, wire::NodeState::holding, 510 * kMs, "waits for mechanics");
   take(counter, 0, 13, 609 * kMs);
   for (StepIndex step = 0; step < 5; ++step) take(counter, 1, step, (700 + step) * kMs);
@@ -53,7 +53,7 @@ TEST(TickCounter, CountsStepsOfAllEpochsAndWallTimeWithoutPauses) {
   EXPECT_FALSE(tick_span_of("1 2 x"));
 }
 
-TEST(TickCounter, CountsTicksBehindAnEndAndKnowsWhenOneCameLate) {
+TEST(TickCounter, CountsTicksAfterAnEndAndDetectsALateOne) {
   TickCounter counter(milliseconds(1));
   for (const StepIndex step : {0, 1, 2, 3}) take(counter, 0, step, (1 + step) * kMs);
   take(counter, 0, 2, 5 * kMs, static_cast<std::uint32_t>(wire::TickFlag::end));

@@ -13,7 +13,7 @@
 #include "recording/reader.h"
 #include "tests/support/played_session.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 
 using testing::kMs;
 using testing::PlayedSession;
@@ -35,46 +35,47 @@ class RecorderBench {
   RecorderBench& operator=(const RecorderBench&) = delete;
 
   void poll(std::int64_t after_ns = 0) { node->poll(now_ns += after_ns); }
-  void say_probe() {
+  void publish_probe() {
     wire::Tick probe;
     probe.header = played.header(Role::io, kJoinStep, Phase::join);
-    played.say(Topic::tick, probe);
+    played.publish(Topic::tick, probe);
   }
   void join() {
-    played.say(Topic::session, played.session);
+    played.publish(Topic::session, played.session);
     poll();
-    for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) played.say_status(role, NodeState::joining);
+    for (const Role role : {Role::io, Role::mechanics, Role::hydraulics})
+      played.publish_status(role, NodeState::joining);
     poll(kMs);
-    say_probe();
+    publish_probe();
     poll(kMs);
     ASSERT_EQ(node->member().state(), NodeState::joining) << "io has not chosen it";
     choose(node->member().header(Phase::join, kJoinStep), NodeState::joining);
     ASSERT_EQ(node->member().state(), NodeState::ready);
   }
-  // io has taken the status of this process first
+  // io took the status of this process first
   void choose(const wire::Header& process, NodeState state) {
-    played.say_heard(Role::io, state, process, {Topic::node_status});
+    played.acknowledge(Role::io, state, process, {Topic::node_status});
     poll(kMs);
   }
   // ticks and samples of [from, to]
-  void say_steps(StepIndex from, StepIndex to) {
+  void publish_steps(StepIndex from, StepIndex to) {
     for (StepIndex step = from; step <= to; ++step) {
-      played.say_tick(step);
-      played.say_mechanism(step);
-      played.say_actuators(step);
+      played.publish_tick(step);
+      played.publish_mechanism(step);
+      played.publish_actuators(step);
     }
     poll(101 * kMs);
   }
   // mechanics' variables at a step
-  void say_block(StepIndex step) {
+  void publish_block(StepIndex step) {
     wire::VariableBlock block;
     block.header = played.header(Role::mechanics, step);
     block.values.resize(3);
-    played.say(Topic::variables, block);
+    played.publish(Topic::variables, block);
     poll();
   }
-  void say_end(StepIndex last, NodeState state = NodeState::ended) {
-    for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) played.say_status(role, state, last);
+  void publish_end(StepIndex last, NodeState state = NodeState::ended) {
+    for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) played.publish_status(role, state, last);
     poll(kMs);
   }
   // another process of the role
@@ -86,7 +87,7 @@ class RecorderBench {
     return status;
   }
 
-  // ---- what is in the file
+  // ---- contents of the file
   // steps of a topic by epoch
   [[nodiscard]] std::set<StepIndex> recorded(Topic topic, std::uint32_t epoch = 0) const {
     std::unique_ptr<recording::Reader> reader;
@@ -121,4 +122,4 @@ class RecorderBench {
   std::int64_t now_ns = 1000 * kMs;
 };
 
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

@@ -8,15 +8,15 @@
 
 #include "recorder_bench.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 namespace recorder_node_test {
 
 class Recorder : public ::testing::Test, public RecorderBench {};
 
 TEST_F(Recorder, RecordsEveryStepUpToTheEndThatEachNodeNamed) {
   join();
-  say_steps(0, 9);
-  say_end(9);
+  publish_steps(0, 9);
+  publish_end(9);
   EXPECT_TRUE(node->is_finished());
   EXPECT_EQ(node->member().exit_code(), ExitCode::ok) << node->member().reason();
   EXPECT_EQ(recorded(Topic::tick).size(), 10u);
@@ -24,89 +24,89 @@ TEST_F(Recorder, RecordsEveryStepUpToTheEndThatEachNodeNamed) {
   EXPECT_EQ(summary("tick.lost"), "0");
 }
 
-TEST_F(Recorder, AsksForAGapAsSoonAsItIsDue) {
+TEST_F(Recorder, RequestsAGapAsSoonAsItIsDue) {
   join();
-  say_steps(0, 5);
+  publish_steps(0, 5);
   poll(kMs);
   played.forget();
-  played.say_tick(7);
+  played.publish_tick(7);
   poll();
   const std::int64_t due_ns = node->next_deadline(now_ns);
   EXPECT_LE(due_ns, now_ns + node::kResendAfter.ns);
   poll(due_ns - now_ns);
-  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].header.step, 6);
-  EXPECT_EQ(asked[0].last_step, 6);
+  const auto requests = played.received<wire::ResendRequest>(Topic::resend);
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].header.step, 6);
+  EXPECT_EQ(requests[0].last_step, 6);
   EXPECT_GT(node->next_deadline(now_ns), now_ns);
 }
 
-TEST_F(Recorder, AsksForAGapWhileAllElseComesInOrder) {
+TEST_F(Recorder, RequestsAGapWhileAllElseComesInOrder) {
   join();
-  say_steps(0, 5);
-  static_cast<void>(played.said<wire::ResendRequest>(Topic::resend));
-  const auto say_step = [&](StepIndex step, bool has_mechanism) {
-    played.say_tick(step);
-    if (has_mechanism) played.say_mechanism(step);
-    played.say_actuators(step);
+  publish_steps(0, 5);
+  static_cast<void>(played.received<wire::ResendRequest>(Topic::resend));
+  const auto publish_step = [&](StepIndex step, bool has_mechanism) {
+    played.publish_tick(step);
+    if (has_mechanism) played.publish_mechanism(step);
+    played.publish_actuators(step);
     poll(kMs);
   };
   // samples 6 and 9 of the mechanics are lost
-  for (StepIndex step = 6; step <= 20; ++step) say_step(step, step != 6 && step != 9);
-  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
-  ASSERT_GE(asked.size(), 2u);
-  EXPECT_EQ(asked[0].header.step, 6);
-  // once a gap is filled the next one is asked for as fast as the first
-  played.say_mechanism(6);
+  for (StepIndex step = 6; step <= 20; ++step) publish_step(step, step != 6 && step != 9);
+  const auto requests = played.received<wire::ResendRequest>(Topic::resend);
+  ASSERT_GE(requests.size(), 2u);
+  EXPECT_EQ(requests[0].header.step, 6);
+  // once a gap is filled the next one is requested as soon as the first
+  played.publish_mechanism(6);
   poll();
-  for (StepIndex step = 21; step <= 25; ++step) say_step(step, true);
-  const auto next = played.said<wire::ResendRequest>(Topic::resend);
+  for (StepIndex step = 21; step <= 25; ++step) publish_step(step, true);
+  const auto next = played.received<wire::ResendRequest>(Topic::resend);
   ASSERT_GE(next.size(), 1u);
   EXPECT_EQ(next[0].header.step, 9);
 }
 
-// Ticks that no node can send again, as a recorder sees them that was behind by more than the others keep.
+// Ticks that no node can resend: the recorder was further behind than the other nodes' caches reach.
 TEST_F(Recorder, BehindAGapInTheTicksRecordsTheStatesOfAllNodes) {
   join();
-  say_steps(0, 9);
+  publish_steps(0, 9);
   for (StepIndex step = 10; step < 3000; ++step) {
-    if (step < 13 || step > 15) played.say_tick(step);
-    played.say_mechanism(step);
-    played.say_actuators(step);
+    if (step < 13 || step > 15) played.publish_tick(step);
+    played.publish_mechanism(step);
+    played.publish_actuators(step);
     if (step % 100 == 0) poll(100 * kMs);
   }
   poll(kMs);
-  // asked for as a recorder does that comes late
-  const auto has_asked = [&](Role role, StepIndex step) {
-    const auto asked = played.said<wire::ResendRequest>(Topic::resend);
-    return std::any_of(asked.begin(), asked.end(), [&](const wire::ResendRequest& request) {
+  // requests the states as a late recorder does
+  const auto has_requested = [&](Role role, StepIndex step) {
+    const auto requests = played.received<wire::ResendRequest>(Topic::resend);
+    return std::any_of(requests.begin(), requests.end(), [&](const wire::ResendRequest& request) {
       return request.topic == static_cast<std::uint8_t>(Topic::state) && request.role == role &&
              request.header.step == step;
     });
   };
-  EXPECT_TRUE(has_asked(Role::io, kJoinStep));
+  EXPECT_TRUE(has_requested(Role::io, kJoinStep));
   wire::StatePart part;
   part.total = 5;
   part.bytes.resize(5);
-  const auto say_state = [&](Role role, StepIndex step) {
+  const auto publish_state = [&](Role role, StepIndex step) {
     part.header = played.header(Role::io, step);
     part.role = role;
-    played.say(Topic::state, part);
+    played.publish(Topic::state, part);
     poll(kMs);
   };
-  say_state(Role::io, 14);  // of a step in the gap: no use
-  say_state(Role::io, 3000);
-  say_state(Role::mechanics, 3000);
+  publish_state(Role::io, 14);  // a state of a step in the gap is useless
+  publish_state(Role::io, 3000);
+  publish_state(Role::mechanics, 3000);
   played.forget();
   poll(200 * kMs);
-  EXPECT_TRUE(has_asked(Role::hydraulics, 3000));
-  say_state(Role::hydraulics, 3000);
-  say_state(Role::hydraulics, 3000);
-  say_state(Role::io, 3100);  // of somebody who saves the session
+  EXPECT_TRUE(has_requested(Role::hydraulics, 3000));
+  publish_state(Role::hydraulics, 3000);
+  publish_state(Role::hydraulics, 3000);
+  publish_state(Role::io, 3100);  // a request to save the session
   played.forget();
-  say_steps(3000, 3010);
-  EXPECT_FALSE(has_asked(Role::io, kJoinStep)) << "once";
-  say_end(3010);
+  publish_steps(3000, 3010);
+  EXPECT_FALSE(has_requested(Role::io, kJoinStep)) << "once";
+  publish_end(3010);
   ASSERT_TRUE(node->is_finished());
   EXPECT_EQ(recorded(Topic::state), std::set<StepIndex>{3000});
   EXPECT_EQ(summary("state.recorded"), "3");
@@ -127,27 +127,27 @@ TEST_F(Recorder, BehindAGapInTheTicksRecordsTheStatesOfAllNodes) {
                                          {"left_out.tick", "3"}}));
 }
 
-// A sample that is missing is no obstacle for who computes the session again.
-TEST_F(Recorder, BehindAGapInTheSamplesAsksForNoStates) {
+// A session with a missing sample can be computed again.
+TEST_F(Recorder, AfterAGapInTheSamplesRequestsNoStates) {
   join();
-  say_steps(0, 9);
+  publish_steps(0, 9);
   for (StepIndex step = 10; step < 3000; ++step) {
-    played.say_tick(step);
-    if (step != 13) played.say_mechanism(step);
-    played.say_actuators(step);
+    played.publish_tick(step);
+    if (step != 13) played.publish_mechanism(step);
+    played.publish_actuators(step);
     if (step % 100 == 0) poll(100 * kMs);
   }
   poll(kMs);
-  for (const wire::ResendRequest& request : played.said<wire::ResendRequest>(Topic::resend)) {
+  for (const wire::ResendRequest& request : played.received<wire::ResendRequest>(Topic::resend)) {
     EXPECT_NE(request.topic, static_cast<std::uint8_t>(Topic::state));
   }
-  say_end(2999);
+  publish_end(2999);
   EXPECT_EQ(summary("mechanism.lost"), "1");
 }
 
 TEST_F(Recorder, NamesNoFileThatItCouldNotCreate) {
   played.session.step_ns = 0;
-  played.say(Topic::session, played.session);
+  played.publish(Topic::session, played.session);
   poll();
   EXPECT_TRUE(node->is_finished());
   EXPECT_EQ(node->member().exit_code(), ExitCode::bad_input);
@@ -159,10 +159,10 @@ TEST_F(Recorder, NamesNoFileThatItCouldNotCreate) {
 
 TEST_F(Recorder, CountsVariableBlocksThatNeverCame) {
   join();
-  for (const StepIndex step : {0, 10, 40, 50}) say_block(step);
-  say_steps(0, 59);
-  say_end(59);
-  // 20 and 30 are missing, and nothing comes behind the last one
+  for (const StepIndex step : {0, 10, 40, 50}) publish_block(step);
+  publish_steps(0, 59);
+  publish_end(59);
+  // 20 and 30 are missing, and no block follows the last one
   poll(2000 * kMs);
   EXPECT_EQ(summary("variables.recorded"), "4");
   EXPECT_EQ(summary("variables.lost"), "2");
@@ -172,57 +172,57 @@ TEST_F(Recorder, CountsVariableBlocksThatNeverCame) {
 
 // ---- others of the name ---------------------------------------------------------------------------------------
 
-TEST_F(Recorder, DoesNotFileWhatAnotherSessionOfTheNameSays) {
+TEST_F(Recorder, DoesNotFileMessagesOfAnotherSessionOfTheName) {
   join();
-  const auto say_all = [&](std::uint8_t session) {
+  const auto publish_all = [&](std::uint8_t session) {
     wire::NodeStatus status = played.status(Role::mechanics, NodeState::running, 1);
     wire::Health health;
     wire::ControllerLease lease;
     status.header.session[0] ^= session;
     health.header = lease.header = status.header;
-    played.say(Topic::node_status, status);
-    played.say(Topic::health, health);
-    played.say(Topic::controller_lease, lease);
+    played.publish(Topic::node_status, status);
+    played.publish(Topic::health, health);
+    played.publish(Topic::controller_lease, lease);
     poll(kMs);
   };
-  say_all(0);
-  say_all(1);
-  say_all(1);
-  say_steps(0, 9);
-  say_end(9);
+  publish_all(0);
+  publish_all(1);
+  publish_all(1);
+  publish_steps(0, 9);
+  publish_end(9);
   EXPECT_EQ(summary("health.recorded"), "1");
   EXPECT_EQ(summary("controller_lease.recorded"), "1");
 }
 
 TEST_F(Recorder, WaitsForTheLastVariableBlock) {
   join();
-  for (const StepIndex step : {0, 10, 20}) say_block(step);
-  say_steps(0, 35);
-  say_end(35);
+  for (const StepIndex step : {0, 10, 20}) publish_block(step);
+  publish_steps(0, 35);
+  publish_end(35);
   poll(kMs);
   EXPECT_FALSE(node->is_finished());
-  say_block(30);
+  publish_block(30);
   poll(kMs);
   EXPECT_TRUE(node->is_finished());
   EXPECT_EQ(summary("variables.lost"), "0");
 }
 
-// samples of and for flexible bodies come every k-th step, as blocks do
+// Samples from and to flexible bodies are published every k-th step, as blocks are.
 TEST_F(Recorder, CountsSamplesOfFlexibleBodiesThatNeverCame) {
   played.session.required_roles |= bit(Role::flex);
-  played.say_status(Role::flex, NodeState::joining);
+  played.publish_status(Role::flex, NodeState::joining);
   join();
   for (const StepIndex step : {0, 10, 20, 50}) {
     wire::FlexibleMessage flexible;
     flexible.header = played.header(Role::mechanics, step);
-    played.say(Topic::flexible, flexible);
+    played.publish(Topic::flexible, flexible);
     wire::ElasticMessage elastic;
     elastic.header = played.header(Role::flex, step);
-    if (step != 20) played.say(Topic::elastic, elastic);
+    if (step != 20) played.publish(Topic::elastic, elastic);
   }
-  say_steps(0, 59);
-  played.say_status(Role::flex, NodeState::ended, 50);
-  say_end(59);
+  publish_steps(0, 59);
+  played.publish_status(Role::flex, NodeState::ended, 50);
+  publish_end(59);
   poll(2000 * kMs);
   EXPECT_EQ(summary("flexible.recorded"), "4");
   EXPECT_EQ(summary("flexible.lost"), "2");
@@ -232,23 +232,23 @@ TEST_F(Recorder, CountsSamplesOfFlexibleBodiesThatNeverCame) {
 
 TEST_F(Recorder, RecordsWhatComesAfterTheResetThatEndedItsEpoch) {
   join();
-  for (StepIndex step = 0; step <= 9; ++step) played.say_tick(step);
+  for (StepIndex step = 0; step <= 9; ++step) played.publish_tick(step);
   for (StepIndex step = 0; step <= 5; ++step) {
-    played.say_mechanism(step);
-    played.say_actuators(step);
+    played.publish_mechanism(step);
+    played.publish_actuators(step);
   }
   wire::Tick init;
   init.header = played.header(Role::io, kJoinStep, Phase::init, 1);
-  played.say(Topic::tick, init);
-  // io's tick overtook these; the samples 7 of both nodes never come
+  played.publish(Topic::tick, init);
+  // io's tick overtook these; samples 7 of both nodes never arrive
   for (const StepIndex step : {6, 8}) {
-    played.say_mechanism(step);
-    played.say_actuators(step);
+    played.publish_mechanism(step);
+    played.publish_actuators(step);
   }
   for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) {
     wire::NodeStatus ended = played.status(role, NodeState::ended, -1);
     ended.header.epoch = 1;
-    played.say(Topic::node_status, ended);
+    played.publish(Topic::node_status, ended);
   }
   poll(kMs);
   EXPECT_TRUE(node->is_finished());
@@ -262,13 +262,13 @@ TEST_F(Recorder, RecordsWhatComesAfterTheResetThatEndedItsEpoch) {
 
 TEST_F(Recorder, WritesHowTheSessionEnded) {
   join();
-  say_steps(0, 9);
+  publish_steps(0, 9);
   wire::NodeStatus io = played.status(Role::io, NodeState::fault, 9);
   io.exit_code = static_cast<std::int32_t>(ExitCode::diverged);
   io.reason = "hydraulics (process 1 on here): diverged in step 8";
-  played.say_status(Role::mechanics, NodeState::fault, 9);
-  played.say_status(Role::hydraulics, NodeState::fault, 9);
-  played.say(Topic::node_status, io);
+  played.publish_status(Role::mechanics, NodeState::fault, 9);
+  played.publish_status(Role::hydraulics, NodeState::fault, 9);
+  played.publish(Topic::node_status, io);
   poll(kMs);
   EXPECT_EQ(summary("exit_code"), "5");
   EXPECT_EQ(summary("end"), io.reason);
@@ -277,36 +277,36 @@ TEST_F(Recorder, WritesHowTheSessionEnded) {
 
 TEST_F(Recorder, WritesThatASignalEndedTheSession) {
   join();
-  say_steps(0, 9);
+  publish_steps(0, 9);
   wire::NodeStatus io = played.status(Role::io, NodeState::ended, 9);
   io.exit_code = static_cast<std::int32_t>(ExitCode::interrupted);
-  played.say_status(Role::mechanics, NodeState::ended, 9);
-  played.say_status(Role::hydraulics, NodeState::ended, 9);
-  played.say(Topic::node_status, io);
+  played.publish_status(Role::mechanics, NodeState::ended, 9);
+  played.publish_status(Role::hydraulics, NodeState::ended, 9);
+  played.publish(Topic::node_status, io);
   poll(kMs);
   EXPECT_EQ(summary("exit_code"), "130");
   EXPECT_EQ(summary("end"), "interrupted by SIGINT");
   EXPECT_EQ(node->member().exit_code(), ExitCode::ok);
 }
 
-// mechanics may have been heard by all before io was
+// All nodes may have acknowledged mechanics before they acknowledge io.
 TEST_F(Recorder, RecordsAnInitThatComesBeforeIosProbe) {
-  played.say(Topic::session, played.session);
+  played.publish(Topic::session, played.session);
   poll();
-  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) played.say_status(role, NodeState::joining);
-  played.say_mechanism(kJoinStep, Phase::join);
-  played.say_mechanism(kJoinStep, Phase::init);
-  played.say_mechanism(0);
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) played.publish_status(role, NodeState::joining);
+  played.publish_mechanism(kJoinStep, Phase::join);
+  played.publish_mechanism(kJoinStep, Phase::init);
+  played.publish_mechanism(0);
   poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::joining);
-  say_probe();
+  publish_probe();
   poll(kMs);
   choose(node->member().header(Phase::join, kJoinStep), NodeState::joining);
   ASSERT_EQ(node->member().state(), NodeState::ready);
-  played.say_tick(0);
-  played.say_actuators(0);
-  say_steps(1, 9);
-  say_end(9);
+  played.publish_tick(0);
+  played.publish_actuators(0);
+  publish_steps(1, 9);
+  publish_end(9);
   EXPECT_EQ(node->member().exit_code(), ExitCode::ok) << node->member().reason();
   EXPECT_EQ(recorded(Topic::mechanism).size(), 11u) << "INIT and ten samples";
 }
@@ -315,32 +315,32 @@ TEST_F(Recorder, RecordsAnInitThatComesBeforeIosProbe) {
 
 TEST_F(Recorder, IsNotDisturbedByAnEmptyOneWhoseClockIsBehind) {
   join();
-  say_steps(0, 9);
-  played.say(Topic::node_status, other_recorder(NodeState::ready, kJoinStep, 0));
+  publish_steps(0, 9);
+  played.publish(Topic::node_status, other_recorder(NodeState::ready, kJoinStep, 0));
   poll(kMs);
   EXPECT_FALSE(node->is_finished());
-  say_steps(10, 12);
-  say_end(12);
+  publish_steps(10, 12);
+  publish_end(12);
   EXPECT_EQ(recorded(Topic::tick).size(), 13u);
 }
 
-// Directly after READY, whatever the other one says.
+// Directly after READY, whatever the other one publishes.
 TEST_F(Recorder, ThatIsReadyYieldsToNoStatus) {
   join();
-  played.say(Topic::node_status, other_recorder(NodeState::running, 100, 0));
+  played.publish(Topic::node_status, other_recorder(NodeState::running, 100, 0));
   poll(kMs);
   EXPECT_FALSE(node->is_finished());
-  say_steps(0, 9);
-  played.say(Topic::node_status, other_recorder(NodeState::running, 200, 0));
-  say_end(9);
+  publish_steps(0, 9);
+  played.publish(Topic::node_status, other_recorder(NodeState::running, 200, 0));
+  publish_end(9);
   EXPECT_EQ(node->member().exit_code(), ExitCode::ok) << node->member().reason();
   EXPECT_EQ(recorded(Topic::tick).size(), 10u);
 }
 
 TEST_F(Recorder, LeavesNothingBehindWhenIoHasChosenAnotherOne) {
-  played.say(Topic::session, played.session);
+  played.publish(Topic::session, played.session);
   poll();
-  played.say(Topic::node_status, other_recorder(NodeState::joining, kJoinStep, 0));
+  played.publish(Topic::node_status, other_recorder(NodeState::joining, kJoinStep, 0));
   poll(kMs);
   EXPECT_FALSE(node->is_finished());
   choose(other_recorder(NodeState::joining, kJoinStep, 0).header, NodeState::joining);
@@ -353,7 +353,7 @@ TEST_F(Recorder, LeavesNothingBehindOfASessionThatIsWithdrawn) {
   join();
   EXPECT_FALSE(std::filesystem::is_empty(folder));
   played.session.header.phase = Phase::ended;
-  played.say(Topic::session, played.session);
+  played.publish(Topic::session, played.session);
   poll(kMs);
   EXPECT_TRUE(node->is_finished());
   EXPECT_TRUE(node->member().is_withdrawn());
@@ -361,15 +361,15 @@ TEST_F(Recorder, LeavesNothingBehindOfASessionThatIsWithdrawn) {
   EXPECT_TRUE(node->recording().empty());
 }
 
-TEST_F(Recorder, ThatComesToARunningSessionIsNoRivalBeforeItHasHeardTheFirst) {
-  played.say(Topic::session, played.session);
+TEST_F(Recorder, ThatJoinsARunningSessionClaimsNoRoleBeforeItHasReceivedTheFirst) {
+  played.publish(Topic::session, played.session);
   poll();
   choose(other_recorder(NodeState::running, 499, INT64_MAX).header, NodeState::running);
-  played.say_tick(500);
+  played.publish_tick(500);
   poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::joining);
-  // on a machine whose clock is behind: the first is younger, and stays all the same
-  played.say(Topic::node_status, other_recorder(NodeState::running, 499, INT64_MAX));
+  // on a machine whose clock is behind: the first seems younger, and stays all the same
+  played.publish(Topic::node_status, other_recorder(NodeState::running, 499, INT64_MAX));
   poll(kMs);
   EXPECT_TRUE(node->is_finished());
   EXPECT_EQ(node->member().exit_code(), ExitCode::bad_input);
@@ -385,30 +385,30 @@ TEST_F(Recorder, OfASessionThatGoesOnTakesNoPartOfAStateThatHasNoPlace) {
   part.role = Role::mechanics;
   part.total = 5;
   part.bytes.resize(2);
-  const auto say_from = [&](std::uint32_t first) {
+  const auto publish_from = [&](std::uint32_t first) {
     part.first = first;
-    played.say(Topic::state, part);
+    played.publish(Topic::state, part);
     poll(kMs);
   };
-  say_from(3);
-  say_from(0);
+  publish_from(3);
+  publish_from(0);
   part.bytes.resize(5);
-  say_from(0);
-  say_from(0);
-  say_steps(100, 101);
-  say_end(101);
+  publish_from(0);
+  publish_from(0);
+  publish_steps(100, 101);
+  publish_end(101);
   poll(node::kLinger.ns);
   ASSERT_TRUE(node->is_finished());
   EXPECT_EQ(summary("state.recorded"), "1");
   EXPECT_EQ(summary("state.lost"), "2") << "those of io and of the hydraulics";
 }
 
-TEST_F(Recorder, ThatComesLateAndHearsOfNoFirstOneSaysSo) {
-  played.say(Topic::session, played.session);
+TEST_F(Recorder, ThatIsLateAndReceivesNoStatusOfAFirstOneReportsIt) {
+  played.publish(Topic::session, played.session);
   poll();
   for (int i = 0; i < 110; ++i) {
-    played.say_status(Role::io, NodeState::running);
-    played.say_tick(500 + i);
+    played.publish_status(Role::io, NodeState::running);
+    played.publish_tick(500 + i);
     poll(100 * kMs);
   }
   EXPECT_TRUE(node->is_finished());
@@ -418,4 +418,4 @@ TEST_F(Recorder, ThatComesLateAndHearsOfNoFirstOneSaysSo) {
 }
 
 }  // namespace recorder_node_test
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

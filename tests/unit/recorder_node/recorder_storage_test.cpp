@@ -11,10 +11,10 @@
 
 #include "recorder_bench.h"
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 namespace recorder_storage_test {
 
-// A disk on which a write fails, by its number: this one alone or all from there on, some after half of their bytes.
+// A disk on which write number n fails, alone or with all later ones; some writes fail after half of their bytes.
 class FailingDisk final : public recording::FileCalls {
  public:
   enum class Failure { once, from_then_on, half_way };
@@ -48,25 +48,25 @@ class FailingDisk final : public recording::FileCalls {
 RecorderConfig on(FailingDisk& disk) {
   RecorderConfig config;
   config.file_calls = &disk;
-  config.limits.flush_period = milliseconds(1);  // whatever has come is written at the next look
+  config.limits.flush_period = milliseconds(1);  // each poll writes all messages
   config.limits.window_steps = 2;
   return config;
 }
 
-// Ten steps and an end. False when the session was refused, because not even the front of the file could be written.
+// Ten steps and an end. False: the session was refused, because the front of the file could not be written.
 bool play(RecorderBench& bench) {
-  bench.played.say(Topic::session, bench.played.session);
+  bench.played.publish(Topic::session, bench.played.session);
   bench.poll();
   if (bench.node->is_finished()) return false;
   for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) {
-    bench.played.say_status(role, NodeState::joining);
+    bench.played.publish_status(role, NodeState::joining);
   }
   bench.poll(kMs);
-  bench.say_probe();
+  bench.publish_probe();
   bench.poll(kMs);
-  for (StepIndex step = 0; step < 10; step += 2) bench.say_steps(step, step + 1);
+  for (StepIndex step = 0; step < 10; step += 2) bench.publish_steps(step, step + 1);
   EXPECT_FALSE(bench.node->is_finished()) << "the session was not let go on";
-  bench.say_end(9);
+  bench.publish_end(9);
   EXPECT_TRUE(bench.node->is_finished());
   return true;
 }
@@ -117,7 +117,7 @@ TEST(RecorderStorage, AFailureOfAnyWriteEndsTheRecordingAndNotTheSession) {
           ASSERT_TRUE(std::filesystem::is_empty(bench.folder)) << "a session that did not begin leaves nothing";
           continue;
         }
-        // the end itself is the last thing to be written
+        // the end is written last
         const bool is_end_there = failure != FailingDisk::Failure::from_then_on && n < whole.writes - 1;
         expect_valid(bench, is_end_there);
         if (::testing::Test::HasFatalFailure()) return;
@@ -128,7 +128,7 @@ TEST(RecorderStorage, AFailureOfAnyWriteEndsTheRecordingAndNotTheSession) {
   EXPECT_LT(refused, 9 * whole.writes);
 }
 
-TEST(RecorderStorage, ADiskThatDoesNotConfirmIsTold) {
+TEST(RecorderStorage, ADiskThatDoesNotConfirmIsReported) {
   FailingDisk disk;
   disk.fails_to_synchronise = true;
   RecorderBench bench(on(disk));
@@ -141,15 +141,15 @@ TEST(RecorderStorage, WhenRoomGetsShortAllThatCameIsKeptAndTheSessionGoesOn) {
   FailingDisk disk;
   RecorderBench bench(on(disk));
   bench.join();
-  bench.say_steps(0, 9);
+  bench.publish_steps(0, 9);
   disk.room = kKeepFreeBytes - 1;
   bench.poll(2 * kMs);
-  bench.say_steps(10, 19);
+  bench.publish_steps(10, 19);
   EXPECT_FALSE(bench.node->is_finished());
   EXPECT_EQ(bench.recorded(Topic::tick).size(), 10u);
   expect_valid(bench, true);
   EXPECT_EQ(bench.summary("last_step"), "9");
-  bench.say_end(19);
+  bench.publish_end(19);
   EXPECT_TRUE(bench.node->is_finished());
   EXPECT_EQ(bench.node->member().exit_code(), ExitCode::storage);
   EXPECT_NE(bench.node->member().reason().find(
@@ -200,7 +200,7 @@ class HeldDisk final : public recording::FileCalls {
 
 class SlowDisk : public ::testing::Test {
  protected:
-  explicit SlowDisk(wire::Pace pace = wire::Pace::real) {
+  explicit SlowDisk(Pace pace = Pace::real) {
     RecorderConfig config;
     config.file_calls = &disk_;
     config.keep_free = 0;
@@ -215,27 +215,27 @@ class SlowDisk : public ::testing::Test {
   ~SlowDisk() override { disk_.release(); }
 
   // one step with a block of variables that do not compress
-  void say_step(StepIndex step) {
-    bench_->played.say_tick(step);
-    bench_->played.say_mechanism(step);
-    bench_->played.say_actuators(step);
+  void publish_step(StepIndex step) {
+    bench_->played.publish_tick(step);
+    bench_->played.publish_mechanism(step);
+    bench_->played.publish_actuators(step);
     wire::VariableBlock block;
     block.header = bench_->played.header(Role::mechanics, step);
     for (int i = 0; i < 20; ++i) block.values.push_back(std::sin(1.7 * static_cast<double>(step) + i));
-    bench_->played.say(Topic::variables, block);
+    bench_->played.publish(Topic::variables, block);
     bench_->poll(2 * kMs);
-    // the others are alive, whatever the clock says
+    // the peers stay alive at any time on the clock
     for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) {
-      bench_->played.say_status(role, NodeState::running, step);
+      bench_->played.publish_status(role, NodeState::running, step);
     }
   }
   void finish(StepIndex last) {
-    bench_->say_end(last);
+    bench_->publish_end(last);
     ASSERT_TRUE(bench_->node->is_finished());
     ASSERT_EQ(recording::Reader::open(bench_->node->recording(), reader_).text, "");
     ASSERT_EQ(reader_->verify().text, "");
   }
-  // Waits until nothing waits for the disk.
+  // Waits until the backlog is empty.
   [[nodiscard]] bool is_written() const {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (bench_->node->backlog_bytes() > 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
@@ -257,18 +257,18 @@ class SlowDisk : public ::testing::Test {
 
 TEST_F(SlowDisk, CostsVariablesBeforeSteps) {
   StepIndex step = 0;
-  for (; step < 10; ++step) say_step(step);
+  for (; step < 10; ++step) publish_step(step);
   disk_.hold();
   // until variables are left out, and a little longer
-  while (bench_->node->lost() == 0 && step < 5'000) say_step(step++);
+  while (bench_->node->lost() == 0 && step < 5'000) publish_step(step++);
   ASSERT_LT(step, 5'000);
   const StepIndex first_lost = step - 1;
-  for (int i = 0; i < 5; ++i) say_step(step++);
+  for (int i = 0; i < 5; ++i) publish_step(step++);
   disk_.release();
-  // when all that waited is written, variables are recorded again
+  // when the backlog is written, variables are recorded again
   for (const StepIndex until = step + 50; step < until; ++step) {
     ASSERT_TRUE(is_written());
-    say_step(step);
+    publish_step(step);
   }
   finish(step - 1);
   EXPECT_EQ(bench_->recorded(Topic::tick).size(), static_cast<std::size_t>(step)) << "no step was left out";
@@ -290,7 +290,7 @@ TEST_F(SlowDisk, ThatStandsStillCostsStepsTooAndNeverMoreMemory) {
   disk_.hold();
   StepIndex step = 0;
   for (; step < 3'000; ++step) {
-    say_step(step);
+    publish_step(step);
     ASSERT_LE(bench_->node->backlog_bytes(), 40'000u);
   }
   EXPECT_FALSE(bench_->node->is_finished());
@@ -302,13 +302,13 @@ TEST_F(SlowDisk, ThatStandsStillCostsStepsTooAndNeverMoreMemory) {
   EXPECT_EQ(*ticks.begin(), 0);
   ASSERT_GE(gaps().size(), 1u);
   EXPECT_GE(std::stoi(gaps().front().at("left_out.tick")), 1);
-  // variables had gone before
+  // variables had been left out before
   EXPECT_LT(bench_->recorded(Topic::variables).size(), ticks.size());
 }
 
 class SlowDiskInFreePace : public SlowDisk {
  protected:
-  SlowDiskInFreePace() : SlowDisk(wire::Pace::free) {}
+  SlowDiskInFreePace() : SlowDisk(Pace::free) {}
 };
 
 TEST_F(SlowDiskInFreePace, IsWaitedForAndCostsNothing) {
@@ -324,7 +324,7 @@ TEST_F(SlowDiskInFreePace, IsWaitedForAndCostsNothing) {
     disk_.release();
   });
   for (StepIndex step = 0; step < kSteps; ++step) {
-    say_step(step);
+    publish_step(step);
     EXPECT_LE(bench_->node->backlog_bytes(), kBacklog);
   }
   releases.join();
@@ -337,4 +337,4 @@ TEST_F(SlowDiskInFreePace, IsWaitedForAndCostsNothing) {
 }
 
 }  // namespace recorder_storage_test
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace slew::recorder {
+namespace slew::recorder_node {
 namespace stream_gaps_test {
 
 using Arrival = StreamGaps::Arrival;
@@ -51,7 +51,7 @@ TEST(StreamGaps, WhatNeverComesIsCountedAsLost) {
   EXPECT_EQ(stream.lost(), 5u);
 }
 
-TEST(StreamGaps, TellsOnceWhatItHasGivenUp) {
+TEST(StreamGaps, ReportsOnceWhatItHasGivenUp) {
   StreamGaps stream(64);
   for (const StepIndex step : {0, 1, 4, 7, 8}) stream.arrived(step);
   stream.give_up_before(6);
@@ -85,7 +85,7 @@ TEST(StreamGaps, StreamThatWentOnFarAheadIsFoundAgain) {
   stream.arrived(0);
   EXPECT_EQ(stream.arrived(1000), Arrival::too_far);
   EXPECT_EQ(stream.arrived(1001), Arrival::new_step);
-  // what a depth holds can still be asked for
+  // steps within a depth can still be requested
   EXPECT_EQ(stream.next(), 994);
   EXPECT_EQ(stream.lost(), 993u);
   for (StepIndex step = 994; step <= 1000; ++step) EXPECT_EQ(stream.arrived(step), Arrival::new_step);
@@ -102,4 +102,4 @@ TEST(StreamGaps, ClosingFarAheadCountsWithoutCountingOneByOne) {
 }
 
 }  // namespace stream_gaps_test
-}  // namespace slew::recorder
+}  // namespace slew::recorder_node

@@ -32,7 +32,7 @@ std::string block(int number) {
   return sample_payload(static_cast<std::uint64_t>(number), 1'000);
 }
 
-TEST(BackgroundFile, WritesEverythingInOrderAndTellsTheSameSums) {
+TEST(BackgroundFile, WritesEverythingInOrderWithTheSameSums) {
   const ScratchDirectory scratch;
   BackgroundFile file(system_file_calls(), 5'000);
   ASSERT_EQ(file.create(scratch / "a").text, "");
@@ -60,7 +60,7 @@ TEST(BackgroundFile, ABlockLargerThanTheBacklogIsWritten) {
   EXPECT_EQ(file_content(scratch / "a"), block(1) + block(2));
 }
 
-TEST(BackgroundFile, AFailureIsToldOnceAndWhatWaitedIsNotWritten) {
+TEST(BackgroundFile, AFailureIsReportedOnceAndWhatWaitedIsNotWritten) {
   const ScratchDirectory scratch;
   SteppedDisk disk;
   disk.allowed = 2;
@@ -83,7 +83,7 @@ TEST(BackgroundFile, AFailureIsToldOnceAndWhatWaitedIsNotWritten) {
 }
 
 // The writer counts the waiting messages as lost, and its index holds those in the file.
-TEST(BackgroundFile, AWriterWhoseChunksWaitedTellsTheTruthAfterAFailure) {
+TEST(BackgroundFile, AWriterWithWaitingChunksCountsWhatIsInTheFileAfterAFailure) {
   const ScratchDirectory scratch;
   for (int fails_at = 5; fails_at < 12; ++fails_at) {
     SCOPED_TRACE(fails_at);

@@ -278,7 +278,7 @@ TEST(DamagedRecording, WhatIsNoRecordingIsRefused) {
   // a well-formed MCAP file of another program
   Bytes other;
   put_magic(other);
-  encode_header(other, {"ros2", "other"});
+  encode(other, HeaderRecord{"ros2", "other"});
   encode_end(other, 0, crc32_of(other), {});
   write_file(scratch / "other.mcap", as_text(other));
   EXPECT_NE(refusal(scratch / "other.mcap").find("the identity of its session is missing"), std::string::npos);

@@ -74,13 +74,13 @@ TEST(GoldenRecording, OfVersion1IsReadToTheSameValuesWithoutItsEnd) {
 void write_newer(const std::filesystem::path& path, const std::string& version, bool is_whole) {
   Bytes bytes;
   put_magic(bytes);
-  encode_header(bytes, {kProfile, "slewring 9"});
+  encode(bytes, HeaderRecord{kProfile, "slewring 9"});
   encode_mark(bytes, crc32_of(bytes));
   FileIndex index;
   TextMap entries = to_entries(sample_identity());
   entries["format_version"] = version;
   const std::size_t at = bytes.size();
-  encode_metadata(bytes, {kIdentityName, entries});
+  encode(bytes, MetadataRecord{kIdentityName, entries});
   index.metadata.push_back({at, bytes.size() - at, kIdentityName});
   encode_mark(bytes, crc32_of(bytes));
   const std::size_t record = begin_record(bytes, Opcode{0x91});

@@ -65,11 +65,11 @@ class RecoveredRecording : public ::testing::Test {
   Recovery recovery_;
 };
 
-TEST_F(RecoveredRecording, SaysWhichSessionItIsAsTheFirstOfSeveralRecords) {
+TEST_F(RecoveredRecording, NamesItsSessionInTheFirstOfSeveralRecords) {
   // cut behind the first chunk's Mark, and another record of the name behind that
   std::string content = whole_.substr(0, chunks_[1].begin);
   Bytes more;
-  encode_metadata(more, {kIdentityName, {{"format_version", "1"}}});
+  encode(more, MetadataRecord{kIdentityName, {{"format_version", "1"}}});
   content += as_text(more);
   Bytes mark;
   encode_mark(mark, crc32_of(as_byte_span(content)));
@@ -185,7 +185,7 @@ TEST_F(RecoveredRecording, TakesNeitherIndexNorSummaryFromTheFile) {
   expect_messages({messages_.begin(), messages_.begin() + static_cast<std::ptrdiff_t>(chunks_[2].first_message)});
 }
 
-TEST_F(RecoveredRecording, SaysWhereBytesAreLost) {
+TEST_F(RecoveredRecording, ReportsWhereBytesAreLost) {
   std::string damaged = whole_;
   damaged[chunks_[1].begin + 60] ^= 4;
   damaged.resize(chunks_[3].begin + 30);

@@ -28,7 +28,7 @@ TEST(Recording, GivesBackWhatWasWritten) {
   EXPECT_EQ(writer->counts().lost_messages, 0u);
 }
 
-TEST(Recording, KnowsItsSessionAndChannels) {
+TEST(Recording, HasItsSessionAndChannels) {
   const ScratchDirectory scratch;
   std::ignore = write_sample(scratch / "a.mcap", 3, Ending::closed);
   const std::unique_ptr<Reader> reader = open(scratch / "a.mcap");

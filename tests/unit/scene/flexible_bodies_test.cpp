@@ -100,7 +100,7 @@ TEST_F(FlexibleScene, OneSettingFreezesTheModes) {
   EXPECT_EQ(load(kBoom, {"Boom.flex_modes=none"}).mechanics.flexible_bodies[0].modes->modes(), 0U);
 }
 
-TEST_F(FlexibleScene, DampingAndModesNeedARestartAndARefusalSaysSo) {
+TEST_F(FlexibleScene, DampingAndModesNeedARestartAndARefusalNamesIt) {
   ParameterDirectory directory{load()};
   for (const std::string key : {"Boom.relative_damping", "Boom.flex_modes"}) {
     EXPECT_EQ(directory.parse_assignment(key + "=0.02").status.text,
@@ -121,7 +121,7 @@ TEST_F(FlexibleScene, ANodeIsNamedAsIfItWereABody) {
   expect_part(problems(with(named, "Boom.Node20", "Load.Node20")), "no body 'Load.Node20'");
 }
 
-TEST_F(FlexibleScene, TheModelIsTheSceneUnlessItIsSaid) {
+TEST_F(FlexibleScene, TheModelIsTheSceneUnlessItIsNamed) {
   expect_part(problems(with(kBoom, "scene: crane", "scene: other")), "other_beam_hard_Source.dat");
   EXPECT_EQ(problems(with(with(kBoom, "scene: crane", "scene: other"), "    flex_file",
                           "    flex_model: crane\n    flex_file")),
@@ -141,13 +141,13 @@ TEST_F(FlexibleScene, RigidKeysMayStayAndAreComparedWithTheFiles) {
   expect_part(other[1], "Boom.center_of_mass: it has no effect: the flexible files give [-3.25");
 }
 
-TEST_F(FlexibleScene, RigidIsTheTypeThatNeedNotBeSaid) {
-  const std::string said = with(kPendulum, "{mass", "{type: rigid, mass");
-  EXPECT_EQ(load_text(said, "test").expanded_text, load_text(kPendulum, "test").expanded_text);
+TEST_F(FlexibleScene, RigidIsTheDefaultType) {
+  const std::string named = with(kPendulum, "{mass", "{type: rigid, mass");
+  EXPECT_EQ(load_text(named, "test").expanded_text, load_text(kPendulum, "test").expanded_text);
   expect_part(problems_of(with(kPendulum, "{mass", "{type: flexibel, mass")), "did you mean 'flexible'");
 }
 
-TEST_F(FlexibleScene, WhatDoesNotFitIsToldByKey) {
+TEST_F(FlexibleScene, WhatDoesNotFitIsReportedByKey) {
   const auto fault = [&](const std::string& from, const std::string& to) { return problems(with(kBoom, from, to)); };
   expect_part(fault("beam_hard", "beam_soft"), "Boom.flex_file_prefix: ");
   expect_part(fault("beam_hard", "beam_soft"), "slewring flex build");
@@ -220,7 +220,7 @@ TEST_F(FlexibleScene, AFileThatIsDamagedIsNamed) {
   expect_part(problems(kBoom), "crane_beam_hard_Modes.dat");
 }
 
-TEST_F(FlexibleScene, AManifestTellsThatAFileIsAnother) {
+TEST_F(FlexibleScene, AManifestDetectsAnotherFile) {
   const Scene scene = load();
   EXPECT_TRUE(check_assets(scene.assets, folder_.path()).is_ok());
   folder_.write("crane_beam_hard_Frequencies.dat", "other");

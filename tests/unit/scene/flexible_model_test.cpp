@@ -209,7 +209,7 @@ struct Refused {
   const char* problem;
 };
 
-TEST(FlexibleModel, FaultsAreToldWithPlaceExpectationAndSuggestion) {
+TEST(FlexibleModel, FaultsAreReportedWithPlaceExpectationAndSuggestion) {
   const std::string root = kNames + kSteel + kBox;  // four lines
   const Refused refused[] = {
       {"prefix: b\n" + kSteel + kBox + kLine, "f:1:1: the key 'model' is missing; expected a text"},
@@ -308,7 +308,7 @@ TEST(FlexibleModel, FaultsAreToldWithPlaceExpectationAndSuggestion) {
   for (const Refused& one : refused) EXPECT_EQ(problems_of(one.text), one.problem) << one.text;
 }
 
-TEST(FlexibleModel, FaultsAreToldAtOnce) {
+TEST(FlexibleModel, FaultsAreReportedAtOnce) {
   const std::string told = problems_of(
       "model: m\nprefix: p\nmaterials: {S: {youngs_modulus: -1, density: 2 m}}\nsections: {B: {shape: tube, wall: 1}}\n"
       "lines: {nodes: 3}\nreduction: {attachment: glued}\n");

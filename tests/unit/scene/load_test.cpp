@@ -127,7 +127,7 @@ TEST(Load, IncludedFilesAreLaidUnderTheScene) {
   EXPECT_EQ(scene.session.pace, Pace::free);
 }
 
-TEST(Load, AProblemInAnIncludedFileIsToldWhereItStands) {
+TEST(Load, AProblemInAnIncludedFileIsReportedWhereItStands) {
   const TemporaryFolder folder;
   const std::string base = folder.write("base.yaml", "bodies:\n  Rod: {mass: 0, inertia: [0, 1, 1]}\n");
   const std::string scene =
@@ -176,7 +176,7 @@ TEST(Load, AnUnusualStepIsAWarningAndNotAnError) {
   EXPECT_EQ(scene.warnings[0], "test:1:17: session.step: 0.05 ms is outside 0.1 to 10 ms");
 }
 
-TEST(Load, ANumberOfOverrunsThatNoPolicyLooksAtIsToldAsAWarning) {
+TEST(Load, ANumberOfOverrunsThatNoPolicyLooksAtIsReportedAsAWarning) {
   const Scene slip = load_text("session: {overrun_after: 5}\n" + kPendulum, "test");
   ASSERT_EQ(slip.warnings.size(), 1u);
   EXPECT_EQ(slip.warnings[0],
@@ -231,7 +231,7 @@ TEST(Load, TheTextOfASessionStatesEveryKeyAndIsReadWithoutAWord) {
   EXPECT_EQ(all_of(again.warnings), "");
 }
 
-TEST(Load, WhatChangesNothingIsToldAsAWarning) {
+TEST(Load, WhatChangesNothingIsReportedAsAWarning) {
   const std::string rod = "bodies:\n  Rod: {mass: 1 kg, inertia: [1, 1, 1]}\n";
   const auto warnings = [&](const std::string& rest) { return all_of(load_text(rod + rest, "test").warnings); };
   const auto joint = [](const std::string& type, const std::string& keys) {
@@ -265,7 +265,7 @@ TEST(Load, WhatChangesNothingIsToldAsAWarning) {
   EXPECT_EQ(force("type: point_force, body: Rod, force: 1 N"), "");
 }
 
-TEST(Load, AnInputWithoutEffectIsToldAsAWarning) {
+TEST(Load, AnInputWithoutEffectIsReportedAsAWarning) {
   const std::string body =
       "bodies:\n  Rod: {mass: 1 kg, inertia: [1, 1, 1]}\njoints:\n  Hinge: {type: revolute, body2: Rod}\n";
   const auto warnings = [&](const std::string& load, const std::string& input) {

@@ -313,7 +313,7 @@ TEST_F(FromMesh, TheMeshIsAFileInTheScenesFolder) {
             std::string::npos);
 }
 
-TEST_F(FromMesh, WhatTheMeshAnswersIsNotAskedFor) {
+TEST_F(FromMesh, ValuesFromTheMeshAreNotRequired) {
   write(box(1, 2, 3));
   const std::string keys = "mesh: part.stl, mesh_unit: 1 m, mesh_up: y";
   EXPECT_EQ(refusal(keys),

@@ -10,7 +10,7 @@ namespace name_pattern_test {
 
 const std::vector<std::string> kNames = {"Cyl_Lift.force", "Cyl_Jib.force", "Cyl_Lift.stroke", "Bag.position.y"};
 
-TEST(Choose, KeepsTheOrderOfTheWishesAndGivesNoNameTwice) {
+TEST(Choose, KeepsTheOrderOfTheNamesAndGivesNoNameTwice) {
   const std::vector<std::string> wishes = {"Bag.position.y", "Cyl_*.force", "Cyl_Lift.*"};
   EXPECT_EQ(choose(wishes, kNames),
             (std::vector<std::string>{"Bag.position.y", "Cyl_Lift.force", "Cyl_Jib.force", "Cyl_Lift.stroke"}));

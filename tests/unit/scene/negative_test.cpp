@@ -87,7 +87,7 @@ TEST(NegativeFile, AFileOfHundredMegabytesIsRefusedByItsSizeAlone) {
   EXPECT_EQ(refusal_of(path), path + ": is 100.0 MB large; expected at most 10.0 MB");
 }
 
-TEST(NegativeFile, AnOverrideIsToldByItsText) {
+TEST(NegativeFile, AnOverrideIsReportedByItsText) {
   const std::string crane = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
   EXPECT_EQ(refusal_of(crane, {"Bag.mass=-5 kg"}),
             "--set Bag.mass=-5 kg: '-5 kg' is out of range; expected more than 0 kg");

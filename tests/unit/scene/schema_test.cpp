@@ -44,7 +44,7 @@ TEST(Schema, HasEveryFieldOfEveryTable) {
   }
 }
 
-TEST(Schema, SaysWhichFieldsAreLive) {
+TEST(Schema, ReportsWhichFieldsAreLive) {
   const auto schema = nlohmann::json::parse(json_schema());
   const auto& bodies = schema["properties"]["bodies"]["additionalProperties"]["oneOf"];
   ASSERT_EQ(bodies.size(), 4u);

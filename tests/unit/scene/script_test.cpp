@@ -90,7 +90,7 @@ TEST(Script, ItsCourseOverATimeIsStraightBetweenPointsAndJumps) {
   expect_pieces(course(script, at(3), at(4)), {{1, 1, 1}});
 }
 
-TEST(Script, NoCourseHasMorePiecesThanIsSaid) {
+TEST(Script, NoCourseHasMorePiecesThanItStates) {
   const ScriptPlayer script = player(
       "script:\n  inputs:\n    Stick: [[1 s, 0.5], [1.002 s, -0.5], [1.002 s, 0.25], "
       "[1.003 s, 0], [1.5 s, 1]]\n");

@@ -57,7 +57,7 @@ TEST(YamlTree, LineBreaksThatNoEditorShowsAreRefused) {
                   .problems.starts_with("f:1:5: a line break that no editor shows"));
 }
 
-TEST(YamlTree, SyntaxErrorsSayWhatIsMissingAndWhere) {
+TEST(YamlTree, SyntaxErrorsReportWhatIsMissingAndWhere) {
   EXPECT_EQ(parse("a: \"b\nc: 1\n").problems, "f:1:4: this quote is not closed; expected a second \"");
   EXPECT_EQ(parse("a: [1, 2}\n").problems,
             "f:1:9: not valid YAML: this bracket does not fit the '[' in line 1; expected ']'");
@@ -92,7 +92,7 @@ TEST(YamlTree, QuotedAndBlockScalarsAreMarkedAsText) {
   EXPECT_TRUE(parsed.root->find("d")->value.is_quoted);
 }
 
-TEST(YamlTree, ADuplicateKeyKeepsTheFirstValueAndTellsBothPlaces) {
+TEST(YamlTree, ADuplicateKeyKeepsTheFirstValueAndReportsBothPlaces) {
   const Parsed parsed = parse("a: 1\nb: 2\na: 3\n");
   ASSERT_TRUE(parsed.root);
   EXPECT_EQ(parsed.root->find("a")->value.text, "1");

@@ -79,7 +79,7 @@ TEST_F(Events, HaveTheTextOfARequestThatWasNotRecorded) {
   EXPECT_EQ(event_texts(), std::vector{node::to_text(param_set()) + " accepted"});
 }
 
-TEST_F(Events, OfAnEarlierRecordingSayItByTheRequest) {
+TEST_F(Events, OfAnEarlierRecordingNameTheRequest) {
   write_message(param_set());
   write_message(accepted(""));
   EXPECT_EQ(event_texts(), std::vector{node::to_text(param_set()) + " accepted"});

@@ -43,7 +43,7 @@ TEST_F(SceneOptionsTest, StepDurationAndPaceBecomePartOfTheScene) {
   const scene::Scene scene = scene::load_scene(options_);
   EXPECT_EQ(scene.session.step_duration(), milliseconds(2));
   EXPECT_EQ(scene.session.steps(), 1500);
-  EXPECT_EQ(scene.session.pace, scene::Pace::free);
+  EXPECT_EQ(scene.session.pace, Pace::free);
   // another node reads the same from the session's text
   const scene::Scene again = scene::load_text(scene.expanded_text, "again");
   EXPECT_EQ(again.session.step_duration(), milliseconds(2));
@@ -127,21 +127,19 @@ TEST_F(SceneOptionsTest, ArgumentsForAChildGiveTheSameScene) {
 
 TEST_F(SceneOptionsTest, TheSessionTakesChannelsStepAndRolesFromTheScene) {
   const scene::Scene scene = scene::load_scene(options_);
-  io::SessionWish wish;
-  wish.session_name = "s";
-  const io::IoConfig config = io::make_config(scene, wish);
+  const io_node::IoConfig config = io_node::make_config(scene, "s", io_node::Recording::required);
   ASSERT_EQ(config.channels.size(), 3u);
   EXPECT_EQ(config.channels[0].name, "Input_Slew");
   EXPECT_EQ(config.channels[0].scale, -500);
   EXPECT_EQ(config.channels[0].dead_zone, 0.2);
   EXPECT_EQ(config.channels[0].ramp, 0.5);
-  EXPECT_EQ(config.step, milliseconds(1));
-  EXPECT_EQ(config.steps, 20'000);
+  EXPECT_EQ(config.session.step_duration(), milliseconds(1));
+  EXPECT_EQ(config.session.steps(), 20'000);
   EXPECT_EQ(config.required_roles,
             bit(wire::Role::io) | bit(wire::Role::mechanics) | bit(wire::Role::hydraulics) | bit(wire::Role::recorder));
-  EXPECT_TRUE(config.judge_parameter("Bag.mass", 1500, -1).is_accepted);
-  EXPECT_FALSE(config.judge_parameter("Bag.mass", -1, -1).is_accepted);
-  EXPECT_FALSE(config.judge_parameter("Bag.mas", 1, -1).is_accepted);
+  EXPECT_TRUE(config.check_parameter("Bag.mass", 1500, -1).is_accepted);
+  EXPECT_FALSE(config.check_parameter("Bag.mass", -1, -1).is_accepted);
+  EXPECT_FALSE(config.check_parameter("Bag.mas", 1, -1).is_accepted);
 }
 
 }  // namespace scene_options_test

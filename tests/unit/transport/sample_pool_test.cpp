@@ -58,7 +58,7 @@ TEST_F(Pool, KeepsWhatWasTakenBeyondItsRoom) {
   give_back(taken);
 }
 
-TEST_F(Pool, GivesEverybodyMemoryOfTheirOwn) {
+TEST_F(Pool, GivesEveryUserMemoryOfItsOwn) {
   const std::vector<void*> taken = take(kRoom + 20);
   EXPECT_EQ(std::set<void*>(taken.begin(), taken.end()).size(), taken.size());
   for (std::size_t i = 0; i < taken.size(); ++i) {

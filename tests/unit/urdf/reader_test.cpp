@@ -132,7 +132,7 @@ TEST(UrdfReader, RefusesWhatIsNoTree) {
   EXPECT_EQ(problems_of(robot(circle)), "r.urdf:4: link 'c' is its own ancestor; expected a tree");
 }
 
-TEST(UrdfReader, TellsEverythingAtOnce) {
+TEST(UrdfReader, ReportsEverythingAtOnce) {
   const std::string text = problems_of(robot(joint("type=\"revolut\"", "") + "<link name=\"a\"/>\n<link/>\n"));
   EXPECT_NE(text.find("r.urdf:4: "), std::string::npos) << text;
   EXPECT_NE(text.find("r.urdf:5: link 'a': is there twice (first in line 3)"), std::string::npos) << text;
@@ -200,7 +200,7 @@ TEST(UrdfReader, NotesShapesWithoutExtent) {
   EXPECT_EQ(texts_of(notes), expected);
 }
 
-TEST(UrdfImport, TellsProblemsOfTheSceneAtTheLineOfTheUrdf) {
+TEST(UrdfImport, ReportsProblemsOfTheSceneAtTheLineOfTheUrdf) {
   const scene::TemporaryFolder folder;
   // a point mass that turns freely
   const std::string path =

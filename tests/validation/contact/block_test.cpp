@@ -155,7 +155,7 @@ TEST(Block, StopsOnTheFlat) {
   EXPECT_LT(std::fabs(block.v), 1e-12);
 }
 
-TEST(RestingBlock, GoesAsDeepAsItsWeightAsks) {
+TEST(RestingBlock, GoesAsDeepAsItsWeightRequires) {
   Block linear(2, 0, {.stiffness = 1e6}, dry(0.3));
   linear.run(2, 1e-4);
   EXPECT_NEAR(linear.d, 1.962e-5, 1e-6 * 1.962e-5);

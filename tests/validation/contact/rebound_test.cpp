@@ -106,7 +106,7 @@ TEST(Rebound, OfACreepingImpactLiesBetweenRestitutionAndOne) {
   }
 }
 
-TEST(ElasticBall, GoesAsDeepAndStaysAsLongAsASpringSays) {
+TEST(ElasticBall, GoesAsDeepAndStaysAsLongAsOnASpring) {
   const NormalLaw law = build({.stiffness = 1e5, .restitution = 1});
   const Bounce ball = bounce(law, 1, std::sqrt(2 * 9.81), 9.81);
   EXPECT_NEAR(ball.deepest, 1.4105584557e-2, 1.4e-2 * 1e-6);

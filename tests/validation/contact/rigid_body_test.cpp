@@ -139,7 +139,7 @@ TEST(RigidBox, SlipsOnASteepIncline) {
   EXPECT_NEAR(along(body, angle), 1.178143618, 4e-3);
 }
 
-TEST(RigidBox, ThrownOntoTheFlatStopsWhereFrictionSays) {
+TEST(RigidBox, ThrownOntoTheFlatStopsWhereFrictionEndsItsWay) {
   Body body = box_on_incline(0);
   body.v = Vec3(2, 0, 0);
   body.run(1.5);

@@ -16,7 +16,7 @@ using enum Order;
 
 constexpr double kTime = 10;  // s
 
-TEST(LinearOscillator, IsWhereTheExactSolutionSays) {
+TEST(LinearOscillator, IsWhereTheExactSolutionIs) {
   const TwoMasses masses;
   const State end = exact_map(masses, kTime) * kStart;
   const State published(-4.46079749, 87.5960608, -0.964932839, -99.8736233);

@@ -55,8 +55,8 @@ class CoupledRun {
   [[nodiscard]] std::uint32_t flags() const { return flags_; }  // all so far
   [[nodiscard]] const Indicator& indicator() const { return hydraulics().indicator(); }
   [[nodiscard]] double variable(std::string_view name) const;
-  [[nodiscard]] const hydraulic_node::HydraulicsSubsystem& hydraulics() const {
-    return dynamic_cast<const hydraulic_node::HydraulicsSubsystem&>(*session_.subsystem(wire::Role::hydraulics));
+  [[nodiscard]] const hydraulics_node::HydraulicsSubsystem& hydraulics() const {
+    return dynamic_cast<const hydraulics_node::HydraulicsSubsystem&>(*session_.subsystem(wire::Role::hydraulics));
   }
 
  private:

@@ -37,7 +37,7 @@ struct FreeBoom {
   }
 
   scene::Scene scene;
-  mechanics::MechanicsSubsystem mechanics;
+  mechanics_node::MechanicsSubsystem mechanics;
   ActuatorSample nothing;
   OwnSample sample;
 };

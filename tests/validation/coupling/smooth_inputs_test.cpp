@@ -94,16 +94,15 @@ double error_of(Machine& machine, double H, Level level, const std::vector<doubl
   machine.scene.session.step = H;
   machine.scene.session.coupling = level;
   const SimDuration step = machine.scene.session.step_duration();
-  const io::IoConfig config = io::make_config(machine.scene, {.session_name = "s", .recording = io::Recording::none});
-  io::InputGate gate(config.channels, config.gate, step);
-  std::vector<SignalCourse> script(gate.size());
+  io_node::IoConfig config = io_node::make_config(machine.scene, "s", io_node::Recording::none);
+  io_node::InputGate gate(config.channels, config.gate(), step);
+  io_node::InputSources sources(std::move(config.sources), config.channels, step);
   CoupledRun run(machine.scene);
   require_ok(run.start());
   double error = 0;
   StepIndex n = 0;
   for (std::size_t k = 0; k < reference.size(); ++n) {
-    config.source->courses(run.time(), run.time() + step, script);
-    gate.advance(n, script, 0);
+    gate.advance(n, sources.read(run.time(), run.time() + step), 0);
     run.step(std::vector<double>{gate.control(0)});
     if (run.has_failed()) throw std::runtime_error("the coupled run failed");
     if (run.time().ns % kGrid.ns != 0) continue;

@@ -44,7 +44,7 @@ double nearest(const std::vector<double>& f, double to) {
   return best;
 }
 
-TEST(Cantilever, DeflectsAsTheClosedFormsSay) {
+TEST(Cantilever, DeflectsAsInTheClosedForms) {
   for (const int n : {1, 19, 50, 200}) {
     const std::string with = ", " + std::to_string(n) + " elements";
     const Tip euler = static_tip(cantilever_b01(n, Shear::none)), timoshenko = static_tip(cantilever_b01(n));

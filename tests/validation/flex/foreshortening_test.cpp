@@ -71,7 +71,7 @@ double turning_frequency(const ReducedBody& body, double W, int mode) {
 }
 
 // one mode: w^2 = w1^2 + 1.193 W^2 out of the plane of turning, less W^2 in it (Southwell)
-TEST(Foreshortening, TurningBeamStiffensAsSouthwellSays) {
+TEST(Foreshortening, TurningBeamStiffensAsInSouthwell) {
   const Reduction all = reduce(build_beam(strip(20)), stiffened(10));
   const int out_of_plane[] = {1};  // thin along z: first mode flaps
   const ReducedBody flap = select(all.body, out_of_plane);

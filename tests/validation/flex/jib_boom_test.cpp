@@ -64,7 +64,7 @@ TEST(JibBoom, SoftSteelScalesFrequenciesByRootTen) {
 }
 
 // 500 kg at the tip of the horizontal beam: 68 mm with the beam's own weight left out is F L^3/3EI and shear
-TEST(JibBoom, SagsByWhatTheCraneDataSay) {
+TEST(JibBoom, SagsByTheCraneData) {
   const FeModel model = build_beam(jib_boom());
   const Reduction r = reduce(model, with_modes(16));
   std::vector<double> q(r.body.modes());

@@ -119,7 +119,7 @@ TEST(Buckling, AHundredthBelowTheLoadItSwings) {
 }
 
 // above it leaves straight with the rate that theory has, and is flagged when it is a tenth of its length off
-TEST(Buckling, AHundredthAboveTheLoadItLeavesAsTheorySays) {
+TEST(Buckling, AHundredthAboveTheLoadItLeavesAsInTheory) {
   const double growth = std::sqrt(-exact_square(1.01));
   for (const Rule& rule : kRules) {
     Formulated strip = start(compressed(6, 1.01, 1e-6), rule);

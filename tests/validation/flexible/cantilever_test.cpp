@@ -51,7 +51,7 @@ double by_load(int elements, int modes, const std::vector<int>& kept) {
          deflection(elements, modes, 1000 / kGravity, kept);
 }
 
-TEST(CantileverOfModes, DeflectsAsTheClosedFormSays) {
+TEST(CantileverOfModes, DeflectsAsInTheClosedForm) {
   for (const int elements : {5, 19}) {
     EXPECT_NEAR(by_load(elements, 4, {}) / kTip, 1, 1e-8) << elements << " elements, all modes";
   }

@@ -90,8 +90,8 @@ TEST(LoadedJib, HasTheFrequenciesOfTheTransferMatrix) {
 
 // oil stiffness that the hydraulics publishes at its start, by the force elements' names
 std::map<std::string, double> oil_stiffness(const scene::Scene& scene) {
-  mechanics::MechanicsSubsystem mechanics(scene);
-  hydraulic_node::HydraulicsSubsystem hydraulics(scene);
+  mechanics_node::MechanicsSubsystem mechanics(scene);
+  hydraulics_node::HydraulicsSubsystem hydraulics(scene);
   coupling::OwnSample m, h;
   EXPECT_TRUE(mechanics.first_sample(m));
   EXPECT_TRUE(hydraulics.start({&m.mechanism, nullptr}, h).is_ok());

@@ -148,7 +148,7 @@ TEST(Divergence, OfSegmentsEndsTheRun) {
 
 TEST(Divergence, OfWhatIsFollowedEndsTheRunToo) {
   const scene::Scene scene = scene_of(cantilever(1));
-  mechanics::MechanicsSubsystem shown(scene, mechanics::Motion::followed);
+  mechanics_node::MechanicsSubsystem shown(scene, mechanics_node::Motion::followed);
   coupling::OwnSample sample;
   static_cast<void>(shown.first_sample(sample));
   ASSERT_TRUE(shown.start({}, sample).is_ok());
@@ -174,7 +174,7 @@ TEST(Divergence, OfStepsThatDoNotConvergeEndsTheRun) {
   for (const Formulation formulation :
        {Formulation::recursive, Formulation::lagrange, Formulation::augmented, Formulation::penalty}) {
     MechanicsAlone alone(scene_of(rotor(formulation)));
-    EXPECT_EQ(run_until_end(alone, 100), mechanics::kMostUnconverged) << name_of(formulation);
+    EXPECT_EQ(run_until_end(alone, 100), mechanics_node::kMostUnconverged) << name_of(formulation);
     EXPECT_TRUE(alone.report.has(StepFlag::ended));
     const std::string text(alone.subsystem.failure_text());
     EXPECT_EQ(text.rfind("Rotor: of late more steps did not converge than did, and it turns by 4 rad", 0), 0U) << text;
@@ -236,7 +236,7 @@ TEST(Divergence, NeedsMoreThanHalfOfTheStepsUnconverged) {
   Workspace ws(model);
   observe(model, state, ws);
   const auto ends_after = [&](int unconverged, int converged, int rounds) {
-    mechanics::DivergenceWatch watch(model);
+    mechanics_node::DivergenceWatch watch(model);
     for (int i = 0; i < rounds; ++i) {
       for (int k = 0; k < unconverged + converged; ++k) {
         watch.count_step(k >= unconverged);
@@ -245,8 +245,8 @@ TEST(Divergence, NeedsMoreThanHalfOfTheStepsUnconverged) {
     }
     return -1;
   };
-  EXPECT_EQ(ends_after(1, 0, 1000), mechanics::kMostUnconverged);
-  EXPECT_EQ(ends_after(mechanics::kMostUnconverged - 1, mechanics::kMostUnconverged - 1, 1000), -1);
+  EXPECT_EQ(ends_after(1, 0, 1000), mechanics_node::kMostUnconverged);
+  EXPECT_EQ(ends_after(mechanics_node::kMostUnconverged - 1, mechanics_node::kMostUnconverged - 1, 1000), -1);
   EXPECT_EQ(ends_after(1, 1, 1000), -1);
   EXPECT_NE(ends_after(2, 1, 1000), -1);
 }

@@ -96,11 +96,11 @@ class Exchange {
   ElasticExchange exchange_;
 
  public:
-  mechanics::MechanicsSubsystem mechanics;
+  mechanics_node::MechanicsSubsystem mechanics;
   OwnSample now, stated;
 
  private:
-  flexible::FlexSubsystem flex_;
+  flex_node::FlexSubsystem flex_;
   StepIndex n_ = 0;
 };
 
@@ -126,7 +126,7 @@ TEST(ElasticExchange, StatedOnceIsTheFilesOwnLawToTheBit) {
   const scene::Scene scene = load({});
   Exchange coupled(scene);
   ASSERT_TRUE(coupled.start().is_ok());
-  mechanics::MechanicsSubsystem alone(scene);
+  mechanics_node::MechanicsSubsystem alone(scene);
   OwnSample sample;
   static_cast<void>(alone.first_sample(sample));
   ASSERT_TRUE(alone.start({}, sample).is_ok());
@@ -314,8 +314,8 @@ TEST_F(Stated, WhatCannotBeAnElasticLawIsRefused) {
       {[](ElasticSample& s) { s.K[0] *= 1e6; }, "its fastest mode turns with"},
   };
   for (const Case& one : cases) {
-    const std::string said = refusal(one.change);
-    EXPECT_NE(said.find(one.says), std::string::npos) << said << "\nexpected: " << one.says;
+    const std::string text = refusal(one.change);
+    EXPECT_NE(text.find(one.says), std::string::npos) << text << "\nexpected: " << one.says;
   }
   EXPECT_EQ(refusal([](ElasticSample&) {}), "");
 }

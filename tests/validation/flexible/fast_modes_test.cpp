@@ -82,7 +82,7 @@ class Node {
     scene.mechanics = def;
     return scene;
   }
-  mechanics::MechanicsSubsystem subsystem_;
+  mechanics_node::MechanicsSubsystem subsystem_;
   coupling::OwnSample sample_;
   StepIndex n_ = 0;
   bool is_flagged_ = false;

@@ -96,7 +96,7 @@ MechanicsDef slider_crank(const SliderCrank& at, Bends how) {
 
 class LoopStarts : public ::testing::TestWithParam<Bends> {};
 
-TEST_P(LoopStarts, ASliderCrankMovesAsItsKinematicsSay) {
+TEST_P(LoopStarts, ASliderCrankMovesAsInItsKinematics) {
   for (const double phi : {0.4, 1.0, 2.2, -1.3}) {
     for (const double L : {0.3, 0.45}) {
       const SliderCrank at{.r = 0.1, .L = L, .phi = phi, .phi_dot = 150};
@@ -146,7 +146,7 @@ double angle_of(Vec3 v) {
   return std::atan2(v[1], v[0]);
 }
 
-TEST_P(LoopStarts, AFourBarMovesAsItsKinematicsSay) {
+TEST_P(LoopStarts, AFourBarMovesAsInItsKinematics) {
   for (const double theta : {0.5, 1.4, 2.6}) {
     const FourBar bar{.a = 0.3, .b = 0.9, .c = 0.7, .d = 1.0, .theta = theta};
     const double w = 40;

@@ -54,7 +54,7 @@ std::vector<int> lowest(int count) {
   return kept;
 }
 
-TEST(FlexibleStart, SagsAsBeamTheorySays) {
+TEST(FlexibleStart, SagsAsInBeamTheory) {
   for (const double youngs_modulus : {2e11, 2e10}) {
     for (const double load : {500.0, 1500.0}) {
       const double exact = sag(load, youngs_modulus);

@@ -1,4 +1,4 @@
-// The scenes of scenes/forces do what their comments say, in both formulations: figures by hand.
+// The scenes of scenes/forces move as their comments predict, in both formulations: figures by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>

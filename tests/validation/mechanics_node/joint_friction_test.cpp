@@ -2,7 +2,7 @@
 // cannot do: hold.
 //
 // D01: M = 1 kg, K = 2 N/m whose end moves with 0.1 m/s, sigma_0 1e5, sigma_1 sqrt(1e5), sigma_2 0.4, F_c 1, F_s 1.5,
-// v_s 1e-3. Published x(25 s) = 1.9088392; x(10), x(15), x(20) of an independent solution; 1e-3 m, as the case says.
+// v_s 1e-3. Published x(25 s) = 1.9088392; x(10), x(15), x(20) of an independent solution; 1e-3 m, as in the case.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -86,7 +86,7 @@ TEST(BristleFriction, IsPartOfTheStateHashAndOfAReset) {
   EXPECT_EQ(m.subsystem.state_hash(), before);
 }
 
-// without bristles: the joint creeps at v_c atanh(F/F_c), as its card says
+// without bristles: the joint creeps at v_c atanh(F/F_c), the law of its card
 TEST(RegularisedFriction, Creeps) {
   MechanicsAlone m(kFile, {"Rail.bristle_stiffness=0", "Rail.bristle_damping=0", "Rail.breakaway_ratio=1"});
   m.run_to(1.9);

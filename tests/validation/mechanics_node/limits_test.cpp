@@ -69,7 +69,7 @@ TEST_P(Limits, ThrowBackAsTheClosedForm) {
   }
 }
 
-// a spring that is too stiff for the shortest part of a step throws back less than it was given, and says so
+// A spring too stiff for the shortest part of a step returns less energy than it received, and raises the flag.
 TEST_P(Limits, ThatAreTooStiffToBeFollowedAreFlagged) {
   for (const double k : {1e12, 1e14, 1e15, 1e17, 1e19}) {
     SCOPED_TRACE(k);

@@ -15,7 +15,7 @@ namespace payload_test {
 
 std::string payload_of(const multibody::MechanicsDef& mechanics) {
   const multibody::Model model = multibody::build_model(mechanics);
-  const int payload = mechanics::payload_of(mechanics, model);
+  const int payload = mechanics_node::payload_of(mechanics, model);
   return payload == 0 ? "" : model.bodies[static_cast<std::size_t>(payload)].name;
 }
 

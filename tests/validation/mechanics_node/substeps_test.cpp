@@ -25,7 +25,7 @@ MechanicsAlone alone(const char* scene, Formulation formulation, Integrator inte
 
 class Substeps : public ::testing::TestWithParam<std::pair<Formulation, Integrator>> {};
 
-// the same bits: nothing but the exchange with partners knows the communication step
+// The same bits: only the exchange with partners depends on the communication step.
 TEST_P(Substeps, OfALongStepAreStepsOfTheirLength) {
   const auto [formulation, integrator] = GetParam();
   for (const char* scene : kScenes) {

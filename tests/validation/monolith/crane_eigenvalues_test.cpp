@@ -22,8 +22,8 @@ TEST(CraneEigenvalues, AreThoseOfTheLinearModelInThePlaneOfLifting) {
       scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane_flexible.yaml",
                        {"ForceR_FrictionX.damping_constant=0", "ForceR_FrictionY.damping_constant=0",
                         "ForceR_FrictionZ.damping_constant=0"});
-  mechanics::MechanicsSubsystem mechanics(scene);
-  hydraulic_node::HydraulicsSubsystem hydraulics(scene);
+  mechanics_node::MechanicsSubsystem mechanics(scene);
+  hydraulics_node::HydraulicsSubsystem hydraulics(scene);
   coupling::OwnSample m, h;
   ASSERT_TRUE(mechanics.first_sample(m));
   ASSERT_TRUE(hydraulics.start({&m.mechanism, nullptr}, h).is_ok());

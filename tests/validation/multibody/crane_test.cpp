@@ -70,7 +70,7 @@ TEST(CraneStatics, NothingMovesUnderTheHoldingForces) {
   for (const double rate : crane.ws.udot) EXPECT_NEAR(rate, 0, 1e-9);
 }
 
-TEST(CraneStatics, BagHangsAtTheStartWhereTheSceneSays) {
+TEST(CraneStatics, BagHangsAtTheStartWhereTheScenePlacesIt) {
   Mechanism crane(crane_def());
   const Triple bag = crane.pose("Bag").center_of_mass;
   EXPECT_NEAR(bag[0], -3.2, 0.1);

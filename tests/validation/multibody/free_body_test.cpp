@@ -33,7 +33,7 @@ class Dzhanibekov : public EveryFormulation {
   static double step() { return is(Formulation::augmented) ? 1e-4 : 1e-3; }
 };
 
-TEST_P(Dzhanibekov, FlipsAsTheEllipticFunctionsSay) {
+TEST_P(Dzhanibekov, FlipsAsInTheEllipticFunctions) {
   Formulated wing = start(wing_def());
   double rate_error = 0, attitude_error = 0, invariant_error = 0;
   for (const auto& row : read_table("dzhanibekov.csv")) {

@@ -149,7 +149,7 @@ std::array<double, 2> slider_at(double angle, double speed) {
   return {x, -(y * dy + z * dz) / x};
 }
 
-TEST_P(Driven, CrankOfASpatialLoopMovesItsSliderAsGeometrySays) {
+TEST_P(Driven, CrankOfASpatialLoopMovesItsSliderAsInGeometry) {
   MechanicsDef def = testing::slider_crank();
   def.formulation = GetParam();
   for (JointDef& joint : def.joints) joint.initial_velocity = joint.initial_velocity_2 = kNotGiven;

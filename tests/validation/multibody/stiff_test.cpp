@@ -33,7 +33,7 @@ class Stiff : public ::testing::TestWithParam<Choice> {
 };
 
 // growth of one step on x'' = -w^2 x, w h = 31.6: |R| of the method's stability function at i w h
-TEST_P(Stiff, SpringOf1e9IsStableInStepsOf1msAndDampedAsTheRuleSays) {
+TEST_P(Stiff, SpringOf1e9IsStableInStepsOf1msAndDampedAsInTheRule) {
   MechanicsDef def = slide(1e-3);
   def.translational_forces[0].spring_constant = 1e9;
   Formulated cube = start(def);

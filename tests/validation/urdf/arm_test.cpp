@@ -37,7 +37,7 @@ std::array<double, 2> by_hand(const std::vector<double>& q, const std::vector<do
   return {(M22 * r1 - M12 * r2) / determinant, (M11 * r2 - M12 * r1) / determinant};
 }
 
-TEST(TwoLinkArm, AcceleratesAsLagrangesEquationsSay) {
+TEST(TwoLinkArm, AcceleratesAsInLagrangesEquations) {
   Imported arm(example());
   ASSERT_EQ(arm.mechanism.state.q.size(), 2u);
   double largest = 0;

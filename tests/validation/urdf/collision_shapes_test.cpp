@@ -91,7 +91,7 @@ TEST_F(Package, AMeshWithoutDentsIsAShapeFromItsFile) {
   }
 }
 
-TEST_F(Package, AMeshThatIsNoShapeIsToldWithItsReason) {
+TEST_F(Package, AMeshThatIsNoShapeIsReportedWithItsReason) {
   const std::pair<std::string, std::string> kCases[] = {
       {mesh("package://any/meshes/dented.obj"), "dent"},
       {mesh("package://any/meshes/none.obj"), "there is no such file"},
@@ -106,7 +106,7 @@ TEST_F(Package, AMeshThatIsNoShapeIsToldWithItsReason) {
   }
 }
 
-TEST_F(Package, AMeshOutsideTheScenesFolderIsTold) {
+TEST_F(Package, AMeshOutsideTheScenesFolderIsReported) {
   const std::string robot = "<robot name=\"r\">" + link("arm", mesh("../meshes/corner.obj")) + "</robot>";
   const Import made = import_file(folder_.write("urdf/robot.urdf", robot), RootMount::floating);
   ASSERT_FALSE(made.notes.empty());

@@ -170,7 +170,7 @@ TEST(JointTypes, LimitsFarFromZeroAreTakenBackByWholeTurns) {
   }
 }
 
-TEST(JointTypes, WhatIsOnlySeenIsToldAsComments) {
+TEST(JointTypes, WhatIsOnlySeenBecomesComments) {
   const scene::TemporaryFolder folder;
   const std::string text =
       import_file(

@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(All, StiffRebound, ::testing::ValuesIn(gate_ways()), na
 INSTANTIATE_TEST_SUITE_P(AllNightly, StiffRebound, ::testing::ValuesIn(nightly_ways()), name_of_way);
 
 // was 4.6, 55 and 560 times the speed of the impact at e = 0.01 and 1e8, 1e9 and 1e10 N/m
-TEST_P(StiffRebound, IsNeverFasterThanTheRestitutionSays) {
+TEST_P(StiffRebound, IsNeverFasterThanByTheRestitution) {
   for (const double k : {1e6, 1e7, 1e8, 1e9, 1e10}) {
     for (const double e : {0.01, 0.1, 0.5, 0.9}) {
       SCOPED_TRACE("k = " + std::to_string(k) + ", e = " + std::to_string(e));

@@ -84,7 +84,7 @@ struct OneAngle {
 class Toggle : public EveryFormulation {};
 
 // an unstable balance: an error at the start has grown a millionfold at the end
-TEST_P(Toggle, PressIsLeftAsItsEquationSays) {
+TEST_P(Toggle, PressIsLeftAsInItsEquation) {
   for (const double angle : {1e-6, -1e-6}) {
     OneAngle reference{angle, 0};
     reference.run(1, 10000);

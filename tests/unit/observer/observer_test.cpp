@@ -1,17 +1,17 @@
 // Requests that are lost on their way, or whose session ends.
-#include "session/observer.h"
+#include "observer/observer.h"
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <deque>
 #include <memory>
 
 #include "core/failure.h"
-#include "node/driver.h"
 #include "transport/cdr/codec.h"
 #include "transport/topics.h"
 
-namespace slew::session {
+namespace slew::observer {
 namespace observer_test {
 
 using wire::Role;
@@ -109,13 +109,13 @@ class ObserverRequest : public ::testing::Test {
 
   // "" when io has answered, else the message for the user
   std::string failure_of_request(std::uint64_t number = kRequest, SimDuration at_most = milliseconds(10'000)) {
-    Observer observer(std::move(io_), "crane");
+    Observer observer(std::move(io_), {.session = "crane", .stop = &stop_});
     wire::ControlRequest request;
     request.request = number;
     try {
       const wire::ControlReply reply = observer.request_reply(request, at_most, [this] {
         ++sent_first_;
-        node::stop_requested.store(signal_);
+        stop_.store(signal_);
       });
       return reply.is_accepted ? "" : "refused";
     } catch (const Failure& failure) {
@@ -125,6 +125,7 @@ class ObserverRequest : public ::testing::Test {
   }
 
   int sent_first_ = 0;
+  std::atomic<int> stop_ = 0;     // as a signal handler sets it
   int signal_ = 0;                // that comes when the request is sent
   ExitCode code_ = ExitCode::ok;  // exit code of the failure
   std::unique_ptr<PlayedIo> io_ = std::make_unique<PlayedIo>();
@@ -171,7 +172,6 @@ TEST_F(ObserverRequest, ASessionWithoutAReplyFails) {
 TEST_F(ObserverRequest, ASignalEndsIt) {
   signal_ = static_cast<int>(ExitCode::interrupted);
   EXPECT_EQ(failure_of_request(), "interrupted; the request may have had an effect");
-  node::stop_requested.store(0);
   EXPECT_EQ(code_, ExitCode::interrupted);
 }
 
@@ -197,4 +197,4 @@ TEST_F(ObserverRequest, AWithdrawnSessionFailsAtOnce) {
 }
 
 }  // namespace observer_test
-}  // namespace slew::session
+}  // namespace slew::observer

@@ -1,12 +1,19 @@
 // An observer's view from a session's messages.
-#include "session/session_view.h"
+#include "observer/session_view.h"
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/status.h"
 #include "transport/cdr/codec.h"
 #include "transport/topics.h"
 
-namespace slew::session {
+namespace slew::observer {
 namespace session_view_test {
 
 using wire::Role;
@@ -202,6 +209,167 @@ TEST_F(SessionViewTest, OneThatOnlyClaimsTheNameTakesNoPlace) {
   EXPECT_EQ(view.session().header.session, session_.header.session);
 }
 
+// ---- of the first session of a name, to its end ----------------------------------------------------------------
+
+TEST_F(SessionViewTest, TheFirstSessionStaysUntilItIsWithdrawn) {
+  SessionView view("crane", Choice::first);
+  take_message(view, session_);
+  take_message(view, directory(Role::mechanics, 1, 0, {"A.force"}));
+  wire::SessionDescription later = session_;
+  later.header.session = {7};
+  later.started_ns = session_.started_ns + 1;
+  take_message(view, later);
+  later.header.phase = wire::Phase::ended;
+  take_message(view, later);
+  EXPECT_EQ(view.session().header.session, session_.header.session);
+  EXPECT_FALSE(view.end());
+  session_.header.phase = wire::Phase::ended;
+  take_message(view, session_);
+  ASSERT_TRUE(view.has_session());
+  EXPECT_EQ(view.end(), "");
+  EXPECT_NE(view.find("A.force"), nullptr) << "handles stay";
+}
+
+// ---- end ------------------------------------------------------------------------------------------------------
+
+struct EndCase {
+  const char* what;
+  Role role;
+  std::int64_t rejoin_ns;
+  ExitCode code;
+  bool ends;
+};
+
+TEST_F(SessionViewTest, TheEndIsThatOfIoOrOfANodeThatIsNotReplaced) {
+  const EndCase cases[] = {
+      {"io", Role::io, 0, ExitCode::ok, true},
+      {"io, where nodes are replaced", Role::io, 1, ExitCode::ok, true},
+      {"a node", Role::mechanics, 0, ExitCode::failed, true},
+      {"a node that is replaced", Role::mechanics, 1, ExitCode::failed, false},
+      {"a node that has lost io", Role::mechanics, 1, ExitCode::node_lost, true},
+      {"the recorder", Role::recorder, 0, ExitCode::storage, false},
+  };
+  for (const EndCase& c : cases) {
+    SessionView view("crane");
+    session_.rejoin_ns = c.rejoin_ns;
+    take_message(view, session_);
+    wire::NodeStatus status;
+    status.header = header(c.role);
+    status.state = wire::NodeState::running;
+    take_message(view, status);
+    EXPECT_FALSE(view.end()) << c.what;
+    status.state = wire::NodeState::ended;
+    status.reason = "the cause";
+    status.exit_code = static_cast<std::int32_t>(c.code);
+    take_message(view, status);
+    EXPECT_EQ(view.end(), c.ends ? std::optional<std::string>("the cause") : std::nullopt) << c.what;
+    EXPECT_EQ(view.is_over(), c.role == Role::io) << c.what;
+  }
+}
+
+TEST_F(SessionViewTest, TheFirstReasonOfTheEndStays) {
+  SessionView view("crane");
+  take_message(view, session_);
+  for (const auto& [role, reason] :
+       {std::pair(Role::mechanics, ""), {Role::io, "first"}, {Role::hydraulics, "second"}}) {
+    wire::NodeStatus status;
+    status.header = header(role);
+    status.state = wire::NodeState::ended;
+    status.reason = reason;
+    take_message(view, status);
+  }
+  EXPECT_EQ(view.end(), "first");
+}
+
+// ---- places and receivers -------------------------------------------------------------------------------------
+
+TEST_F(SessionViewTest, PlacesAreInTheOrderOfTheNamesWhichARepetitionDoesNotChange) {
+  SessionView view("crane");
+  take_message(view, session_);
+  take_message(view, directory(Role::mechanics, 2, 0, {"A.force", "B.force"}));
+  take_message(view, directory(Role::io, 1, 0, {"Input.raw"}));
+  take_message(view, directory(Role::mechanics, 2, 0, {"A.force", "B.force"}));
+  std::vector<std::string> names;
+  for (const VariablePlace& place : view.places()) names.push_back(view.variable(place).name);
+  EXPECT_EQ(names, (std::vector<std::string>{"A.force", "B.force", "Input.raw"}));
+  ASSERT_NE(view.find_place("B.force"), nullptr);
+  EXPECT_EQ(*view.find_place("B.force"), (VariablePlace{Role::mechanics, 1}));
+}
+
+// Notes what it receives.
+class Notes final : public Receiver {
+ public:
+  void begin_session() override { text += "session "; }
+  void take_directory(const wire::VariableDirectory& m) override { text += m.entries.front().name + " "; }
+  void take_block(const wire::VariableBlock& m, std::span<const std::byte> bytes, double time) override {
+    text += "block " + std::to_string(m.header.step) + (bytes.empty() ? " empty " : " ");
+    times.push_back(time);
+  }
+  void take_sample(const wire::Header& header, const wire::SampleState& state) override {
+    text += "sample " + std::to_string(header.step) + " lost " + std::to_string(state.lost) + " ";
+  }
+  void take_lease(const wire::ControllerLease& m) override { text += m.channel + " "; }
+  void take_state(const wire::StatePart& m) override { text += "state " + std::to_string(m.request) + " "; }
+
+  std::string text;
+  std::vector<double> times;  // of the blocks
+};
+
+TEST_F(SessionViewTest, AReceiverGetsWhatTheViewAcceptsWithWhatCameBeforeTheSession) {
+  SessionView view("crane");
+  Notes notes;
+  const auto take = [&](const auto& message, std::optional<double> time = std::nullopt) {
+    transport::ByteBuffer bytes;
+    ASSERT_TRUE(transport::encode(message, bytes));
+    view.take(transport::kTopicOf<std::decay_t<decltype(message)>>, bytes, time, &notes);
+  };
+  take(directory(Role::mechanics, 1, 0, {"A.force"}));
+  take(block(Role::mechanics, 3, {1}), 0.5);
+  EXPECT_EQ(notes.text, "");
+  take(session_);
+  EXPECT_EQ(notes.text, "session A.force block 3 ");
+  notes.text.clear();
+  take(block(Role::mechanics, 4, {1}));
+  EXPECT_EQ(notes.times, (std::vector<double>{0.5, 0.004}));
+  wire::MechanismMessage sample;
+  sample.header = header(Role::mechanics);
+  sample.header.step = 4;
+  sample.state.lost = 2;
+  take(sample);
+  wire::ControllerLease lease;
+  lease.header = header(Role::io);
+  lease.controller = "stick";
+  lease.channel = "Lift";
+  take(lease);
+  wire::StatePart part;
+  part.header = header(Role::io);
+  part.request = 8;
+  take(part);
+  EXPECT_EQ(notes.text, "block 4 sample 4 lost 2 Lift state 8 ");
+  // of another session
+  notes.text.clear();
+  lease.header.session = {9};
+  take(lease);
+  wire::VariableBlock other = block(Role::mechanics, 5, {1});
+  other.header.session = {9};
+  take(other);
+  EXPECT_EQ(notes.text, "");
+}
+
+TEST_F(SessionViewTest, AProcessWhosePlaceWasGivenAwayIsIgnored) {
+  SessionView view("crane");
+  session_.given_up = {{Role::mechanics, 5}};
+  take_message(view, session_);
+  take_message(view, directory(Role::mechanics, 1, 0, {"A.force"}));
+  wire::VariableBlock late = block(Role::mechanics, 4, {1});
+  late.header.incarnation = 5;
+  take_message(view, late);
+  EXPECT_EQ(view.find("A.force")->step, kJoinStep);
+  late.header.incarnation = 6;
+  take_message(view, late);
+  EXPECT_EQ(view.find("A.force")->step, 4);
+}
+
 TEST_F(SessionViewTest, StepTimesAreWeightedByTheStepsTheyWereMeasuredOver) {
   SessionView view("crane");
   take_message(view, session_);
@@ -228,4 +396,4 @@ TEST_F(SessionViewTest, RubbishIsPassedOver) {
 }
 
 }  // namespace session_view_test
-}  // namespace slew::session
+}  // namespace slew::observer

@@ -1,22 +1,20 @@
-#include "session/session_view.h"
+#include "observer/session_view.h"
 
 #include <algorithm>
-#include <utility>
 
-#include "core/state_hash.h"
-#include "node/tick_counter.h"
+#include "core/status.h"
 #include "transport/cdr/codec.h"
-#include "transport/given_up.h"
+#include "transport/session_state.h"
 
-namespace slew::session {
+namespace slew::observer {
 
 using wire::Role;
 using wire::Topic;
 
 namespace {
 
-// directories of 64 messages a node, some statuses: a session publishes no more than that once
-constexpr std::size_t kMostPending = 1024;
+// directories of 64 messages a node, some statuses, and the last blocks of variables that writers keep for a controller
+constexpr std::size_t kMostPending = 4096;
 
 }  // namespace
 
@@ -26,60 +24,80 @@ NodeView* SessionView::node_of(const wire::Header& header) {
   return transport::is_given_up(*session_, header) ? nullptr : &nodes_[index];
 }
 
-template <typename Sample>
-void SessionView::take_sample(std::span<const std::byte> bytes, Sample& sample) {
-  if (!transport::decode(bytes, sample) || node_of(sample.header) == nullptr) return;
-  flags_.take(sample.header, sample.state);
-}
-
-void SessionView::take(Topic topic, std::span<const std::byte> bytes, std::optional<double> time) {
-  // topics arrive in any order; messages that are published once must wait for the session they belong to
-  const bool is_published_once =
-      topic == Topic::node_status || topic == Topic::variable_directory || topic == Topic::controller_lease;
-  if (!session_ && is_published_once && pending_.size() < kMostPending) {
-    pending_.push_back({topic, {bytes.begin(), bytes.end()}});
+void SessionView::take(Topic topic, Bytes bytes, std::optional<double> time, Receiver* receiver) {
+  // topics arrive in any order; messages that are not repeated wait for the session they belong to
+  const bool is_repeated = topic == Topic::health || topic == Topic::mechanism || topic == Topic::actuators;
+  if (!session_ && topic != Topic::session && !is_repeated) {
+    if (pending_.size() < kMostPending) pending_.push_back({topic, {bytes.begin(), bytes.end()}, time});
     return;
   }
   switch (topic) {
     case Topic::session:
-      return take_session(bytes);
+      return take_session(bytes, receiver);
     case Topic::node_status:
       return take_status(bytes);
     case Topic::health:
       return take_health(bytes);
     case Topic::variable_directory:
-      return take_directory(bytes);
+      return take_directory(bytes, receiver);
     case Topic::variables:
-      return take_block(bytes, time);
+      return take_block(bytes, time, receiver);
     case Topic::mechanism:
-      return take_sample(bytes, mechanism_);
+      return take_sample<wire::MechanismMessage>(bytes, receiver);
     case Topic::actuators:
-      return take_sample(bytes, actuators_);
+      return take_sample<wire::ActuatorMessage>(bytes, receiver);
     case Topic::controller_lease:
-      return take_lease(bytes);
+      return take_lease(bytes, receiver);
+    case Topic::state:
+      return take_state(bytes, receiver);
     default:
       return;
   }
 }
 
-void SessionView::take_status(std::span<const std::byte> bytes) {
+void SessionView::take_status(Bytes bytes) {
   wire::NodeStatus status;
   if (!transport::decode(bytes, status)) return;
   if (NodeView* node = node_of(status.header); node != nullptr) {
+    note_end(status);
     node->is_known = true;
     node->status = std::move(status);
   }
 }
 
-void SessionView::take_lease(std::span<const std::byte> bytes) {
-  wire::ControllerLease lease;
-  if (!transport::decode(bytes, lease) || node_of(lease.header) == nullptr) return;
-  leases_[{lease.controller, lease.channel}] = lease;
+// io reports the end and its cause. If io itself is lost, the other nodes' status counts. Where lost nodes are
+// replaced, a node that ends for another reason than the loss of a node is replaced too, or io reports the end.
+void SessionView::note_end(const wire::NodeStatus& status) {
+  const Role role = status.header.role;
+  if (status.state < wire::NodeState::ended || role == Role::recorder) return;
+  const bool has_lost_node = status.exit_code == static_cast<std::int32_t>(ExitCode::node_lost);
+  if (role != Role::io && session_->rejoin_ns > 0 && !has_lost_node) return;
+  if (!end_ || end_->empty()) end_ = status.reason;
 }
 
-// A session that starts under the same name after this one takes its place. A session that only claims the name does
-// not. A withdrawn session gives the place back.
-void SessionView::take_session(std::span<const std::byte> bytes) {
+void SessionView::take_lease(Bytes bytes, Receiver* receiver) {
+  wire::ControllerLease lease;
+  if (!transport::decode(bytes, lease) || node_of(lease.header) == nullptr) return;
+  if (receiver != nullptr) receiver->take_lease(lease);
+  leases_[{lease.controller, lease.channel}] = std::move(lease);
+}
+
+void SessionView::take_state(Bytes bytes, Receiver* receiver) {
+  wire::StatePart part;
+  if (receiver == nullptr || !transport::decode(bytes, part) || node_of(part.header) == nullptr) return;
+  receiver->take_state(part);
+}
+
+template <typename Sample>
+void SessionView::take_sample(Bytes bytes, Receiver* receiver) {
+  Sample sample;
+  if (receiver == nullptr || !transport::decode(bytes, sample) || node_of(sample.header) == nullptr) return;
+  receiver->take_sample(sample.header, sample.state);
+}
+
+// A session that starts under the same name after this one takes its place, where the newest is viewed. A session that
+// only claims the name does not. A withdrawn session gives the place back.
+void SessionView::take_session(Bytes bytes, Receiver* receiver) {
   wire::SessionDescription session;
   if (!transport::decode(bytes, session) || (!name_.empty() && session.name != name_)) return;
   const auto is_it = [&](const std::optional<wire::SessionDescription>& other) {
@@ -87,7 +105,9 @@ void SessionView::take_session(std::span<const std::byte> bytes) {
   };
   if (session.header.phase == wire::Phase::ended) {
     if (is_it(claimant_)) claimant_.reset();
-    if (is_it(session_)) look_at(std::exchange(claimant_, std::nullopt));
+    if (!is_it(session_)) return;
+    if (choice_ == Choice::newest) return look_at(std::exchange(claimant_, std::nullopt), receiver);
+    if (!end_) end_.emplace();
     return;
   }
   if (session.header.phase != wire::Phase::running) return;
@@ -96,32 +116,34 @@ void SessionView::take_session(std::span<const std::byte> bytes) {
     session_ = std::move(session);
     return;
   }
+  if (session_ && choice_ == Choice::first) return;
   if (session_ && session.started_ns < session_->started_ns) {
     claimant_ = std::move(session);
     return;
   }
   claimant_ = std::exchange(session_, std::nullopt);
-  look_at(std::move(session));
+  look_at(std::move(session), receiver);
 }
 
-void SessionView::look_at(std::optional<wire::SessionDescription> session) {
+void SessionView::look_at(std::optional<wire::SessionDescription> session, Receiver* receiver) {
   session_ = std::move(session);
   nodes_ = {};
   variables_ = {};
   named_ = {};
   has_directory_ = {};
+  places_.clear();
   index_.clear();
   leases_.clear();
-  flags_ = {};
-  curves_ = empty_curves_;
-  variables_digest_ = 0;
   step_ = kJoinStep;
+  end_.reset();
+  if (receiver != nullptr) receiver->begin_session();
   if (!session_) return;
   name_ = session_->name;
-  for (const PendingMessage& message : std::exchange(pending_, {})) take(message.topic, message.bytes);
+  for (const PendingMessage& message : std::exchange(pending_, {}))
+    take(message.topic, message.bytes, message.time, receiver);
 }
 
-void SessionView::take_health(std::span<const std::byte> bytes) {
+void SessionView::take_health(Bytes bytes) {
   wire::Health health;
   if (!transport::decode(bytes, health)) return;
   NodeView* node = node_of(health.header);
@@ -137,31 +159,33 @@ void SessionView::take_health(std::span<const std::byte> bytes) {
   node->health = std::move(health);
 }
 
-void SessionView::take_directory(std::span<const std::byte> bytes) {
+void SessionView::take_directory(Bytes bytes, Receiver* receiver) {
   wire::VariableDirectory directory;
   if (!transport::decode(bytes, directory) || node_of(directory.header) == nullptr) return;
   const auto role = static_cast<std::size_t>(directory.header.role);
-  std::vector<VariableView>& variables = variables_[role];
-  if (curves_) curves_->take(directory);
+  std::deque<VariableView>& variables = variables_[role];
+  if (receiver != nullptr) receiver->take_directory(directory);
   has_directory_[role] = true;
   if (variables.size() < directory.total) variables.resize(directory.total);
   for (std::size_t i = 0; i < directory.entries.size(); ++i) {
-    const std::size_t at = directory.first + i;
-    if (at >= variables.size()) break;
-    if (variables[at].name.empty()) ++named_[role];
-    variables[at].name = directory.entries[i].name;
-    variables[at].unit = directory.entries[i].unit;
-    index_.insert_or_assign(variables[at].name, std::pair(role, at));
+    const VariablePlace place{directory.header.role, directory.first + static_cast<std::uint32_t>(i)};
+    if (place.index >= variables.size()) break;
+    VariableView& variable = variables[place.index];
+    if (variable.name.empty()) {
+      ++named_[role];
+      places_.push_back(place);
+    }
+    variable.name = directory.entries[i].name;
+    variable.unit = directory.entries[i].unit;
+    index_.insert_or_assign(variable.name, place);
   }
 }
 
-void SessionView::take_block(std::span<const std::byte> bytes, std::optional<double> time) {
+void SessionView::take_block(Bytes bytes, std::optional<double> time, Receiver* receiver) {
   if (!transport::decode(bytes, block_) || node_of(block_.header) == nullptr) return;
   if (block_.header.phase != wire::Phase::running) return;
-  variables_digest_ += digest_of(bytes);
-  if (curves_)
-    curves_->take(block_,
-                  time.value_or(static_cast<double>(start_of(block_.header.step, {session_->step_ns}).ns) / 1e9));
+  const auto start = static_cast<double>(start_of(block_.header.step, {session_->step_ns}).ns) / 1e9;
+  if (receiver != nullptr) receiver->take_block(block_, bytes, time.value_or(start));
   NodeView& node = *node_of(block_.header);
   ++node.blocks;
   if (!block_.values.empty()) {
@@ -170,7 +194,7 @@ void SessionView::take_block(std::span<const std::byte> bytes, std::optional<dou
     ++node.blocks_left_out;
     if (!node.left_out_since) node.left_out_since = block_.header.step;
   }
-  std::vector<VariableView>& variables = variables_[static_cast<std::size_t>(block_.header.role)];
+  std::deque<VariableView>& variables = variables_[static_cast<std::size_t>(block_.header.role)];
   if (variables.size() < block_.first + block_.values.size()) variables.resize(block_.first + block_.values.size());
   for (std::size_t i = 0; i < block_.values.size(); ++i) {
     VariableView& variable = variables[block_.first + i];
@@ -183,12 +207,12 @@ void SessionView::take_block(std::span<const std::byte> bytes, std::optional<dou
 }
 
 bool SessionView::is_left_out(std::string_view name) const {
-  const auto found = index_.find(name);
-  return found != index_.end() && nodes_[found->second.first].left_out_since;
+  const VariablePlace* place = find_place(name);
+  return place != nullptr && node(place->role).left_out_since;
 }
 
 bool SessionView::is_paused() const noexcept {
-  return node::is_pause(node(Role::io).status);
+  return transport::is_pause(node(Role::io).status);
 }
 
 bool SessionView::is_over() const noexcept {
@@ -198,7 +222,7 @@ bool SessionView::is_over() const noexcept {
 
 std::vector<const VariableView*> SessionView::variables() const {
   std::vector<const VariableView*> all;
-  for (const std::vector<VariableView>& of_role : variables_) {
+  for (const std::deque<VariableView>& of_role : variables_) {
     for (const VariableView& variable : of_role) {
       if (!variable.name.empty()) all.push_back(&variable);
     }
@@ -206,9 +230,14 @@ std::vector<const VariableView*> SessionView::variables() const {
   return all;
 }
 
-const VariableView* SessionView::find(std::string_view name) const {
+const VariablePlace* SessionView::find_place(std::string_view name) const {
   const auto found = index_.find(name);
-  return found == index_.end() ? nullptr : &variables_[found->second.first][found->second.second];
+  return found == index_.end() ? nullptr : &found->second;
+}
+
+const VariableView* SessionView::find(std::string_view name) const {
+  const VariablePlace* place = find_place(name);
+  return place == nullptr ? nullptr : &variable(*place);
 }
 
 const wire::ControllerLease* SessionView::lease(const std::string& controller, const std::string& channel) const {
@@ -226,4 +255,4 @@ bool SessionView::has_whole_directory() const noexcept {
   return true;
 }
 
-}  // namespace slew::session
+}  // namespace slew::observer

@@ -1,0 +1,278 @@
+// Distances, nearest points and closing speeds against closed forms and an independent search over triangles.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "math/rotation.h"
+#include "sensor_bench.h"
+
+namespace slew::sensors::testing {
+namespace distance_test {
+
+using contact::ShapeType;
+using contact::testing::box;
+using contact::testing::box_mesh;
+using contact::testing::plane;
+using contact::testing::rounded;
+using contact::testing::sphere;
+using math::Mat3;
+
+constexpr double kSearch = 1e-9;    // m
+constexpr double kCylinder = 2e-6;  // m
+
+class Draw {
+ public:
+  explicit Draw(unsigned seed) : engine_(seed) {}
+  double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  Vec3 vector(double size) { return {number(-size, size), number(-size, size), number(-size, size)}; }
+  Mat3 rotation() { return rotation_of(math::turn_by(vector(3))); }
+  FrameMotion motion(double size) { return {vector(size), rotation(), vector(2), vector(2)}; }
+
+ private:
+  std::mt19937 engine_;
+};
+
+double distance_of(const SensorsDef& def, const FrameMotion& a, const FrameMotion& b = {}) {
+  Sensors sensors(def);
+  EXPECT_TRUE(sensors.observe(at(a, b)));
+  return value(sensors, "S.distance");
+}
+
+// distance of two segments p + s d, s in 0..1 (Ericson 2005, 5.1.9)
+double segment_distance(Vec3 p1, Vec3 d1, Vec3 p2, Vec3 d2) {
+  const Vec3 r = p1 - p2;
+  const double a = dot(d1, d1), e = dot(d2, d2), f = dot(d2, r), c = dot(d1, r), b = dot(d1, d2);
+  const double denominator = a * e - b * b;
+  double s = denominator > 1e-14 ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
+  double t = (b * s + f) / e;
+  if (t < 0 || t > 1) {
+    t = std::clamp(t, 0.0, 1.0);
+    s = std::clamp((b * t - c) / a, 0.0, 1.0);
+  }
+  return norm(p1 + d1 * s - p2 - d2 * t);
+}
+
+// distance of a point and a triangle: projection inside, else the edges
+double triangle_distance(Vec3 p, const std::array<Vec3, 3>& v) {
+  const Vec3 n = cross(v[1] - v[0], v[2] - v[0]);
+  bool is_inside = true;
+  double least = 1e300;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 from = v[k], edge = v[(k + 1) % 3] - from;
+    is_inside = is_inside && dot(cross(edge, p - from), n) >= 0;
+    const double s = std::clamp(dot(p - from, edge) / dot(edge, edge), 0.0, 1.0);
+    least = std::min(least, norm(p - from - edge * s));
+  }
+  return is_inside ? std::fabs(dot(p - v[0], n)) / norm(n) : least;
+}
+
+std::vector<std::array<Vec3, 3>> triangles_of(const ShapeDef& shape, const FrameMotion& frame) {
+  std::vector<std::array<Vec3, 3>> all;
+  for (const auto& t : shape.mesh.triangles) {
+    std::array<Vec3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = frame.p_W + frame.R_W * Vec3(shape.mesh.vertices[t[k]]);
+    all.push_back(corners);
+  }
+  return all;
+}
+
+// distance of two surfaces that do not intersect: vertices to triangles both ways, and edges to edges
+double surface_distance(const std::vector<std::array<Vec3, 3>>& a, const std::vector<std::array<Vec3, 3>>& b) {
+  double least = 1e300;
+  for (const auto& x : a) {
+    for (const auto& y : b) {
+      for (int i = 0; i < 3; ++i) {
+        least = std::min({least, triangle_distance(x[i], y), triangle_distance(y[i], x)});
+        for (int k = 0; k < 3; ++k) {
+          const Vec3 dx = x[(i + 1) % 3] - x[i], dy = y[(k + 1) % 3] - y[k];
+          least = std::min(least, segment_distance(x[i], dx, y[k], dy));
+        }
+      }
+    }
+  }
+  return least;
+}
+
+// A U of three blocks, open upwards: a concave surface.
+ShapeDef channel() {
+  ShapeDef shape;
+  shape.type = ShapeType::triangle_mesh;
+  for (const auto& [size, place] :
+       {std::pair(Vec3(3, 2, 0.5), Vec3(0, 0, 0)), std::pair(Vec3(0.5, 2, 2), Vec3(-1.25, 0, 1.25)),
+        std::pair(Vec3(0.5, 2, 2), Vec3(1.25, 0, 1.25))}) {
+    contact::MeshDef block = box_mesh(size[0], size[1], size[2]).mesh;
+    for (Triple& v : block.vertices) v = (Vec3(v) + place).array();
+    contact::testing::append(shape.mesh, block);
+  }
+  return shape;
+}
+
+TEST(Distance, OfSpheresAndCapsulesIsThatOfTheirAxes) {
+  Draw draw(1);
+  for (int i = 0; i < 50; ++i) {
+    SCOPED_TRACE(i);
+    const FrameMotion a = draw.motion(1), b = {draw.vector(1) + Vec3(6, 0, 0), draw.rotation(), {}, {}};
+    EXPECT_NEAR(distance_of(pair(sphere(0.4), sphere(0.7), clearance()), a, b), norm(a.p_W - b.p_W) - 1.1, kSearch);
+    const Vec3 axis_a = a.R_W.c[2], axis_b = b.R_W.c[2];
+    const double axes = segment_distance(a.p_W - axis_a, axis_a * 2, b.p_W - axis_b * 0.5, axis_b);
+    const SensorsDef capsules =
+        pair(rounded(ShapeType::capsule, 0.3, 2), rounded(ShapeType::capsule, 0.2, 1), clearance());
+    EXPECT_NEAR(distance_of(capsules, a, b), axes - 0.5, kSearch);
+  }
+}
+
+// the only curved surface: the search ends when it gains less than rounding, which is before the surface
+TEST(Distance, OfABallFromACylinderIsThatOfItsProfile) {
+  Draw draw(9);
+  for (int i = 0; i < 50; ++i) {
+    SCOPED_TRACE(i);
+    const FrameMotion a = draw.motion(1);
+    const Vec3 centre = draw.vector(3);
+    const double across = std::max(std::hypot(centre[0], centre[1]) - 0.7, 0.0);
+    const double along = std::max(std::fabs(centre[2]) - 1, 0.0);
+    const FrameMotion b{a.p_W + a.R_W * centre, draw.rotation(), {}, {}};
+    const SensorsDef def = pair(rounded(ShapeType::cylinder, 0.7, 2), sphere(0.05), clearance());
+    EXPECT_NEAR(distance_of(def, a, b), std::max(std::hypot(across, along) - 0.05, 0.0), kCylinder);
+  }
+}
+
+TEST(Distance, OfBoxesIsThatOfTheirTriangles) {
+  Draw draw(2);
+  for (int i = 0; i < 50; ++i) {
+    SCOPED_TRACE(i);
+    const FrameMotion a = draw.motion(1), b = {draw.vector(1) + Vec3(5, 0, 0), draw.rotation(), {}, {}};
+    const double expected = surface_distance(triangles_of(box_mesh(1, 2, 0.5), a), triangles_of(box_mesh(2, 1, 1), b));
+    EXPECT_NEAR(distance_of(pair(box(1, 2, 0.5), box(2, 1, 1), clearance()), a, b), expected, kSearch);
+    EXPECT_NEAR(distance_of(pair(box_mesh(1, 2, 0.5), box(2, 1, 1), clearance()), a, b), expected, kSearch);
+  }
+}
+
+TEST(Distance, FromAPlaneIsThatOfTheLowestPoint) {
+  Draw draw(3);
+  for (int i = 0; i < 20; ++i) {
+    SCOPED_TRACE(i);
+    const FrameMotion a = {draw.vector(1) + Vec3(0, 0, 5), draw.rotation(), draw.vector(1), {}};
+    double lowest = 1e300;
+    for (const Triple& v : box_mesh(1, 2, 3).mesh.vertices) lowest = std::min(lowest, (a.p_W + a.R_W * Vec3(v))[2]);
+    Sensors sensors(pair(box(1, 2, 3), plane(), clearance()));
+    ASSERT_TRUE(sensors.observe(at(a)));
+    EXPECT_NEAR(value(sensors, "S.distance"), lowest, 1e-12);
+    EXPECT_NEAR(value(sensors, "S.closing_speed"), -a.v_W[2], 1e-12);
+    const double tilt = std::acos(std::fabs(a.R_W(2, 2)));
+    EXPECT_NEAR(distance_of(pair(rounded(ShapeType::cylinder, 0.5, 2), plane(), clearance()), a),
+                a.p_W[2] - std::cos(tilt) - 0.5 * std::sin(tilt), 1e-12);
+    EXPECT_NEAR(distance_of(pair(rounded(ShapeType::capsule, 0.5, 2), plane(), clearance()), a),
+                a.p_W[2] - std::cos(tilt) - 0.5, 1e-12);
+  }
+}
+
+TEST(Distance, OfConcaveMeshesIsThatOfTheirTriangles) {
+  Draw draw(4);
+  const ShapeDef shape = channel();
+  for (int i = 0; i < 20; ++i) {
+    SCOPED_TRACE(i);
+    // the second one stands within the first, upside down and turned a little
+    const FrameMotion a = draw.motion(0.2);
+    const Mat3 turned = a.R_W * math::rotation_x(M_PI) * rotation_of(math::turn_by(draw.vector(0.1)));
+    const FrameMotion b{a.p_W + a.R_W * (Vec3(1.25, 0, 2.8) + draw.vector(0.05)), turned, {}, {}};
+    const double expected = surface_distance(triangles_of(shape, a), triangles_of(shape, b));
+    ASSERT_GT(expected, 0.01);
+    EXPECT_NEAR(distance_of(pair(shape, shape, clearance()), a, b), expected, 1e-9);
+    // a ball in the channel, and a capsule along it
+    const FrameMotion inside{a.p_W + a.R_W * (Vec3(0, 0, 1.3) + draw.vector(0.3)), a.R_W, {}, {}};
+    double from_point = 1e300;
+    for (const auto& t : triangles_of(shape, a)) from_point = std::min(from_point, triangle_distance(inside.p_W, t));
+    EXPECT_NEAR(distance_of(pair(shape, sphere(0.1), clearance()), a, inside), from_point - 0.1, kSearch);
+    EXPECT_NEAR(distance_of(pair(sphere(0.1), shape, clearance()), inside, a), from_point - 0.1, kSearch);
+  }
+}
+
+// the points are on the shapes, and at the distance from each other
+TEST(NearestPoints, AreTheDistanceApartAndOnTheirShapes) {
+  Draw draw(5);
+  for (int i = 0; i < 30; ++i) {
+    SCOPED_TRACE(i);
+    const FrameMotion a = draw.motion(1), b = {draw.vector(1) + Vec3(6, 0, 0), draw.rotation(), {}, {}};
+    for (const auto& [first, second] : {std::pair(sphere(0.5), box(1, 2, 1)), std::pair(box(1, 2, 1), sphere(0.5)),
+                                        std::pair(sphere(0.5), channel()), std::pair(channel(), sphere(0.5))}) {
+      Sensors sensors(pair(first, second, clearance()));
+      ASSERT_TRUE(sensors.observe(at(a, b)));
+      const Vec3 p_a = point(sensors, "S.point_of"), p_b = point(sensors, "S.point_to");
+      EXPECT_NEAR(norm(p_a - p_b), value(sensors, "S.distance"), 1e-5);
+      const bool ball_is_first = first.type == ShapeType::sphere;
+      EXPECT_NEAR(norm((ball_is_first ? p_a - a.p_W : p_b - b.p_W)), 0.5, 1e-5);
+    }
+  }
+}
+
+TEST(ClosingSpeed, IsTheRateOfTheDistance) {
+  Draw draw(6);
+  const double h = 1e-3;
+  const std::pair<ShapeDef, ShapeDef> pairs[] = {
+      {sphere(0.4), rounded(ShapeType::capsule, 0.2, 1)}, {sphere(0.4), box(1, 2, 1)}, {channel(), sphere(0.3)}};
+  for (const auto& [first, second] : pairs) {
+    const SensorsDef def = pair(first, second, clearance());
+    for (int i = 0; i < 20; ++i) {
+      SCOPED_TRACE(i);
+      FrameMotion a = draw.motion(0.5), b = draw.motion(0.5);
+      b.p_W += Vec3(5, 0, 0);
+      const auto moved = [&](const FrameMotion& m, double t) {
+        return FrameMotion{m.p_W + m.v_W * t, rotation_of(math::turn_by(m.w_W * t)) * m.R_W, m.v_W, m.w_W};
+      };
+      Sensors sensors(def);
+      ASSERT_TRUE(sensors.observe(at(a, b)));
+      const double rate =
+          (distance_of(def, moved(a, h), moved(b, h)) - distance_of(def, moved(a, -h), moved(b, -h))) / (2 * h);
+      EXPECT_NEAR(value(sensors, "S.closing_speed"), -rate, 5e-3);
+    }
+  }
+}
+
+// many shapes in both groups: the broad phase finds what a search over all pairs finds
+TEST(Distance, OfGroupsIsTheLeastOfAllPairs) {
+  Draw draw(7);
+  SensorsDef def;
+  def.frames = {{"Ground", true}, {"A", false}, {"B", false}};
+  for (int i = 0; i < 200; ++i) {
+    ShapeDef shape = in_frame(sphere(0.1), ("s" + std::to_string(i)).c_str(), i % 2 == 0 ? "A" : "B");
+    shape.position = draw.vector(4).array();
+    def.shapes.push_back(shape);
+  }
+  def.sensors = {{.name = "S", .type = SensorType::clearance, .of = {"A"}, .to = {"B"}}};
+  Sensors sensors(def);
+  for (int i = 0; i < 10; ++i) {
+    const FrameMotion a = draw.motion(1), b = {draw.vector(1) + Vec3(9, 0, 0), draw.rotation(), {}, {}};
+    double least = 1e300;
+    for (std::size_t j = 0; j < def.shapes.size(); j += 2) {
+      for (std::size_t k = 1; k < def.shapes.size(); k += 2) {
+        const Vec3 p = a.p_W + a.R_W * Vec3(def.shapes[j].position), q = b.p_W + b.R_W * Vec3(def.shapes[k].position);
+        least = std::min(least, norm(p - q) - 0.2);
+      }
+    }
+    ASSERT_TRUE(sensors.observe(at(a, b)));
+    EXPECT_NEAR(value(sensors, "S.distance"), std::max(least, 0.0), kSearch);
+  }
+}
+
+TEST(Distance, IsZeroWhileShapesOverlap) {
+  Draw draw(8);
+  const std::pair<ShapeDef, ShapeDef> pairs[] = {
+      {sphere(0.4), box(1, 1, 1)}, {channel(), box(1, 1, 1)},
+      {channel(), channel()},      {sphere(0.4), plane()},
+      {channel(), plane()},        {box_mesh(1, 1, 1), rounded(ShapeType::cylinder, 0.4, 1)}};
+  for (const auto& [first, second] : pairs) {
+    for (int i = 0; i < 10; ++i) {
+      Sensors sensors(pair(first, second, clearance()));
+      FrameMotion a = draw.motion(0), b = draw.motion(0);
+      a.p_W = Vec3(0.1, 0.05, 0.02);
+      ASSERT_TRUE(sensors.observe(at(a, b)));
+      EXPECT_EQ(value(sensors, "S.distance"), 0);
+      EXPECT_EQ(value(sensors, "S.closing_speed"), 0);
+    }
+  }
+}
+
+}  // namespace distance_test
+}  // namespace slew::sensors::testing
