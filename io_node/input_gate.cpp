@@ -21,7 +21,7 @@ InputGate::InputGate(std::vector<ChannelConfig> channels, GateConfig config, Sim
     state.config = std::move(channel);
     // the steps of (1) from the awaited one to the present one
     if (state.config.controller == scene::ControllerMode::lockstep) {
-      state.early.resize(static_cast<std::size_t>(state.config.delay / config_.variables_every + 2));
+      state.pending.resize(static_cast<std::size_t>(state.config.delay / config_.variables_every + 2));
     }
     channels_.push_back(std::move(state));
   }
@@ -32,7 +32,7 @@ InputGate::InputGate(std::vector<ChannelConfig> channels, GateConfig config, Sim
 void InputGate::take_lease(std::size_t index, std::string reason) {
   Channel& channel = channels_[index];
   if (channel.holder.empty()) return;
-  static_cast<void>(note_told(index, channel.holder, channel.writer, latest_ns_));
+  static_cast<void>(note_refusal(index, channel.holder, channel.writer, latest_ns_));
   notices_.push_back({index, std::exchange(channel.holder, {}), false, std::move(reason)});
 }
 
@@ -88,7 +88,7 @@ transport::WriterSight InputGate::see_holder(const Channel& channel) const {
   return config_.see_writer ? config_.see_writer(channel.writer) : transport::WriterSight{};
 }
 
-// to a controller that does not hold it
+// Refusal of a controller that does not hold the channel.
 std::string InputGate::held_text(const Channel& channel, const std::string& controller) const {
   const std::string& name = channel.config.name;
   if (channel.holder.empty()) {
@@ -103,18 +103,18 @@ std::string InputGate::held_text(const Channel& channel, const std::string& cont
          "'; wait until it releases it, or until it has been silent for " + milliseconds_text(config_.release_after);
 }
 
-// False: it was told a moment ago, or so many others were that this one has to wait.
-bool InputGate::note_told(std::size_t channel, const std::string& controller, std::uint64_t writer,
-                          std::int64_t now_ns) {
-  Told* place = nullptr;
-  for (Told& told : told_) {
-    if (told.channel == channel && told.writer == writer && told.controller == controller) {
-      place = &told;
+// False: it was refused within kRefusalInterval, or so many others were that this one must wait.
+bool InputGate::note_refusal(std::size_t channel, const std::string& controller, std::uint64_t writer,
+                             std::int64_t now_ns) {
+  Refusal* place = nullptr;
+  for (Refusal& former : refusals_) {
+    if (former.channel == channel && former.writer == writer && former.controller == controller) {
+      place = &former;
       break;
     }
-    if (place == nullptr || told.at_ns < place->at_ns) place = &told;
+    if (place == nullptr || former.at_ns < place->at_ns) place = &former;
   }
-  if (now_ns - place->at_ns < kTellAgain.ns) return false;
+  if (now_ns - place->at_ns < kRefusalInterval.ns) return false;
   *place = {channel, controller, writer, now_ns};
   return true;
 }
@@ -123,11 +123,11 @@ std::optional<LeaseAnswer> InputGate::answer_to_write(std::size_t index, const s
                                                       std::int64_t now_ns, std::uint64_t writer) {
   const Channel& channel = channels_[index];
   if (controller.empty() || is_holder(channel, controller, writer)) return std::nullopt;
-  if (!note_told(index, controller, writer, now_ns)) return std::nullopt;
+  if (!note_refusal(index, controller, writer, now_ns)) return std::nullopt;
   return LeaseAnswer{false, channel.holder, held_text(channel, controller)};
 }
 
-// Its holder wants no more: what moves it now, and that no tick waits, is worth a word in mid-run.
+// Its holder has ended; during a run a notice reports that no tick waits for the channel.
 void InputGate::set_free(std::size_t index, StepIndex n) {
   Channel& channel = channels_[index];
   const std::string holder = std::exchange(channel.holder, {});
@@ -139,13 +139,13 @@ void InputGate::set_free(std::size_t index, StepIndex n) {
                           " on, and no tick waits for a controller until one is in step with it"});
 }
 
-// to a new holder; a lockstep channel is in step from the first tick on, or when its controller has caught up
-void InputGate::give(Channel& channel, const std::string& controller, std::int64_t now_ns, std::uint64_t writer) {
+// A lockstep channel is in step from the first tick on, or once its controller has caught up.
+void InputGate::set_holder(Channel& channel, const std::string& controller, std::int64_t now_ns, std::uint64_t writer) {
   channel.holder = controller;
   channel.writer = writer;
   channel.based_on = channel.last_sent = channel.last_value = kJoinStep;
-  std::fill(channel.early.begin(), channel.early.end(), Early{});
-  channel.pace = next_step_ == begin_step_ ? Pace::in_step : Pace::neutral;
+  std::fill(channel.pending.begin(), channel.pending.end(), PendingValue{});
+  channel.state = next_step_ == begin_step_ ? LockstepState::in_step : LockstepState::neutral;
   channel.out_since = next_step_;
   channel.out_since_ns = now_ns;
 }
@@ -154,16 +154,16 @@ LeaseAnswer InputGate::acquire(std::size_t index, const std::string& controller,
                                std::uint64_t writer) {
   Channel& channel = channels_[index];
   bool is_again = is_holder(channel, controller, writer);
-  // a process that died and was started again need not wait for the silence of the first
+  // a process that was started again does not wait for the silence of the dead one
   const bool has_left = !is_again && channel.holder == controller && see_holder(channel).has_left;
   if (!is_again && !channel.holder.empty() && !has_left) {
-    static_cast<void>(note_told(index, controller, writer, now_ns));
+    static_cast<void>(note_refusal(index, controller, writer, now_ns));
     return {false, channel.holder, held_text(channel, controller)};
   }
-  // asking again is a sign of life and moves nothing: the answer to the first time may still be on its way
+  // a repeated request is a sign of life and changes nothing: the answer to the first may be on its way
   if (!is_again) {
     channel.controller_raw = channel.config.neutral;
-    give(channel, controller, now_ns, writer);
+    set_holder(channel, controller, now_ns, writer);
   }
   if (writer != 0) channel.writer = writer;
   channel.written_ns = now_ns;
@@ -178,16 +178,17 @@ LeaseAnswer InputGate::take_over(std::size_t index, const std::string& controlle
   if (channel.holder.empty() || channel.holder == controller) return acquire(index, controller, now_ns, writer);
   const std::string& name = channel.config.name;
   if (channel.config.supervisor != controller) {
-    const std::string who = channel.config.supervisor.empty()
-                                ? "nobody may take it over: name a controller in " + name + ".supervisor of the scene"
-                                : "only '" + channel.config.supervisor + "' may take it over (" + name + ".supervisor)";
-    return {false, channel.holder, "channel " + name + " is held by '" + channel.holder + "', and " + who};
+    const std::string rule =
+        channel.config.supervisor.empty()
+            ? "it has no supervisor: name a controller in " + name + ".supervisor of the scene"
+            : "only '" + channel.config.supervisor + "' may take it over (" + name + ".supervisor)";
+    return {false, channel.holder, "channel " + name + " is held by '" + channel.holder + "', and " + rule};
   }
   latest_ns_ = now_ns;
   take_lease(index, "'" + controller + "' has taken over channel " + name);
   // the value stays until the new holder writes
-  give(channel, controller, now_ns, writer);
-  if (channel.pace == Pace::neutral) channel.pace = Pace::holding;
+  set_holder(channel, controller, now_ns, writer);
+  if (channel.state == LockstepState::neutral) channel.state = LockstepState::holding;
   channel.written_ns = now_ns;
   channel.is_silent = false;
   return {true, controller, ""};
@@ -202,7 +203,8 @@ LeaseAnswer InputGate::release(std::size_t index, const std::string& controller,
             is_namesake ? held_text(channel, controller)
                         : "'" + controller + "' does not hold channel " + channel.config.name};
   }
-  const bool is_in_step = channel.config.controller == scene::ControllerMode::lockstep && channel.pace == Pace::in_step;
+  const bool is_in_step =
+      channel.config.controller == scene::ControllerMode::lockstep && channel.state == LockstepState::in_step;
   if (is_in_step && based_on >= 0) {
     channel.last_value = based_on;
   } else {
@@ -225,10 +227,11 @@ bool InputGate::write(std::size_t index, const std::string& controller, double r
     ++rejected_no_lease_;
     return false;
   }
-  // even a wrong value is a sign of life, but it moves nothing
+  // a wrong value is a sign of life, without effect
   channel.written_ns = now_ns;
   if (!std::isfinite(raw)) ++rejected_not_finite_;
-  if (channel.config.controller == scene::ControllerMode::lockstep) return keep_early(channel, raw, now_step, based_on);
+  if (channel.config.controller == scene::ControllerMode::lockstep)
+    return keep_pending(channel, raw, now_step, based_on);
   if (!std::isfinite(raw)) return false;
   channel.controller_raw = accepted(channel, raw);
   channel.written_step = now_step;
@@ -239,15 +242,15 @@ bool InputGate::write(std::size_t index, const std::string& controller, double r
 
 // ---- lockstep -------------------------------------------------------------------------------------------------
 
-// (1); -1: since the begin there has been no such step
+// (1); -1: a step before the begin
 StepIndex InputGate::needed(const Channel& channel, StepIndex n) const noexcept {
   const StepIndex m = n - channel.config.delay;
   const StepIndex block = m < 0 ? kJoinStep : m - m % config_.variables_every;
   return block < begin_step_ ? kJoinStep : block;
 }
 
-// A value for a tick to come. The first one for a step counts: which of two is in time must not depend on the clock.
-bool InputGate::keep_early(Channel& channel, double raw, StepIndex now_step, StepIndex based_on) {
+// A value for a later tick. The first one for a step counts, so that the choice does not depend on the clock.
+bool InputGate::keep_pending(Channel& channel, double raw, StepIndex now_step, StepIndex based_on) {
   channel.last_sent = std::max(channel.last_sent, based_on);
   const StepIndex need = needed(channel, now_step);
   if (based_on < 0 || based_on < need || based_on > now_step || based_on % config_.variables_every != 0) {
@@ -255,18 +258,18 @@ bool InputGate::keep_early(Channel& channel, double raw, StepIndex now_step, Ste
     return false;
   }
   const bool is_finite = std::isfinite(raw);
-  Early* place = nullptr;
-  for (Early& early : channel.early) {
-    if (early.based_on == based_on) return is_finite;
-    if (early.based_on < need || early.based_on < 0) place = &early;
+  PendingValue* place = nullptr;
+  for (PendingValue& pending : channel.pending) {
+    if (pending.based_on == based_on) return is_finite;
+    if (pending.based_on < need || pending.based_on < 0) place = &pending;
   }
-  if (place == nullptr) return false;  // there is one for every step that passed the check
+  if (place == nullptr) return false;  // cannot be: every step that passed the check has a place
   *place = {based_on, is_finite ? accepted(channel, raw) : 0.0, is_finite};
   return is_finite;
 }
 
-// its controller has sent the last value that it wants to send
-bool InputGate::is_through(const Channel& channel, StepIndex n) const noexcept {
+// tick n is behind the last value of its controller
+bool InputGate::has_ended(const Channel& channel, StepIndex n) const noexcept {
   return channel.last_value >= 0 && needed(channel, n) > channel.last_value;
 }
 
@@ -283,9 +286,9 @@ SimDuration InputGate::awaited(StepIndex n) const noexcept {
   for (const Channel& channel : channels_) {
     if (channel.config.controller == scene::ControllerMode::sampled || channel.holder.empty()) continue;
     const StepIndex need = needed(channel, n);
-    if (channel.pace != Pace::in_step || need < 0 || is_through(channel, n)) continue;
-    const bool is_there = std::any_of(channel.early.begin(), channel.early.end(),
-                                      [need](const Early& early) { return early.based_on == need; });
+    if (channel.state != LockstepState::in_step || need < 0 || has_ended(channel, n)) continue;
+    const bool is_there = std::any_of(channel.pending.begin(), channel.pending.end(),
+                                      [need](const PendingValue& pending) { return pending.based_on == need; });
     if (!is_there) longest.ns = std::max(longest.ns, channel.config.wait.ns);
   }
   return longest;
@@ -293,7 +296,7 @@ SimDuration InputGate::awaited(StepIndex n) const noexcept {
 
 void InputGate::fall_out_of_step(std::size_t index, StepIndex n, std::int64_t now_ns) {
   Channel& channel = channels_[index];
-  channel.pace = Pace::holding;
+  channel.state = LockstepState::holding;
   channel.out_since = n;
   channel.out_since_ns = now_ns;
   ++fell_out_of_step_;
@@ -311,25 +314,25 @@ void InputGate::advance_lockstep(std::size_t index, StepIndex n, std::int64_t no
   Channel& channel = channels_[index];
   const StepIndex need = needed(channel, n);
   if (need < 0) return;
-  const auto early = std::find_if(channel.early.begin(), channel.early.end(),
-                                  [need](const Early& value) { return value.based_on == need; });
-  if (early != channel.early.end()) {
-    if (channel.pace != Pace::in_step) {
-      channel.pace = Pace::in_step;
+  const auto pending = std::find_if(channel.pending.begin(), channel.pending.end(),
+                                    [need](const PendingValue& value) { return value.based_on == need; });
+  if (pending != channel.pending.end()) {
+    if (channel.state != LockstepState::in_step) {
+      channel.state = LockstepState::in_step;
       notices_.push_back({index, channel.holder, true,
                           "'" + channel.holder + "' is in step from tick " + std::to_string(n) + " on; channel " +
                               channel.config.name + " had been without it since tick " +
                               std::to_string(channel.out_since)});
     }
-    if (early->is_finite) channel.controller_raw = early->raw;
+    if (pending->is_finite) channel.controller_raw = pending->raw;
     channel.based_on = need;
     channel.age = static_cast<std::uint32_t>(n - need);
     return;
   }
-  if (channel.pace == Pace::in_step) fall_out_of_step(index, n, now_ns);
+  if (channel.state == LockstepState::in_step) fall_out_of_step(index, n, now_ns);
   channel.age = static_cast<std::uint32_t>(channel.based_on < 0 ? 0 : n - channel.based_on);
-  if (channel.pace == Pace::holding && now_ns - channel.out_since_ns > config_.neutral_after.ns) {
-    channel.pace = Pace::neutral;
+  if (channel.state == LockstepState::holding && now_ns - channel.out_since_ns > config_.neutral_after.ns) {
+    channel.state = LockstepState::neutral;
     channel.controller_raw = channel.config.neutral;
     channel.based_on = kJoinStep;
     ++went_neutral_;
@@ -356,21 +359,21 @@ void InputGate::advance_sampled(std::size_t index, StepIndex n, std::int64_t now
   channel.age = static_cast<std::uint32_t>(std::max<StepIndex>(0, n - channel.written_step));
 }
 
-void InputGate::advance(StepIndex n, std::span<const SignalCourse> script, std::int64_t now_ns) {
+void InputGate::advance(StepIndex n, std::span<const SignalCourse> signals, std::int64_t now_ns) {
   next_step_ = n + 1;
   latest_ns_ = now_ns;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Channel& channel = channels_[i];
     const bool is_lockstep = channel.config.controller == scene::ControllerMode::lockstep;
-    // who is in step has sent what was asked of it, however long ago
+    // a controller in step has sent all values that were due, however long ago
     const std::int64_t silent_since_ns =
         is_lockstep ? std::max(channel.written_ns, channel.out_since_ns) : channel.written_ns;
-    const bool may_be_silent = is_lockstep && channel.pace == Pace::in_step;
+    const bool may_be_silent = is_lockstep && channel.state == LockstepState::in_step;
     if (!may_be_silent && !channel.holder.empty() && now_ns - silent_since_ns > config_.release_after.ns) {
       take_lease(i, "no value came for " + milliseconds_text(config_.release_after) + ": channel " +
                         channel.config.name + " is free; acquire it again to go on");
     }
-    if (!channel.holder.empty() && is_through(channel, n)) set_free(i, n);
+    if (!channel.holder.empty() && has_ended(channel, n)) set_free(i, n);
     // source
     raw_.clear();
     if (!channel.holder.empty()) {
@@ -379,7 +382,7 @@ void InputGate::advance(StepIndex n, std::span<const SignalCourse> script, std::
     } else {
       channel.age = 0;
       channel.based_on = kJoinStep;
-      if (i >= script.size() || !accept_script(channel, script[i])) {
+      if (i >= signals.size() || !accept_signal(channel, signals[i])) {
         raw_.assign({{1, channel.config.neutral, channel.config.neutral}});
       }
     }
@@ -387,8 +390,8 @@ void InputGate::advance(StepIndex n, std::span<const SignalCourse> script, std::
   }
 }
 
-// Into raw_. False where the script has no value, or none that is finite, which is counted.
-bool InputGate::accept_script(Channel& channel, std::span<const SignalPiece> course) noexcept {
+// Into raw_. False if the signal has no value, or one that is not finite, which is counted.
+bool InputGate::accept_signal(Channel& channel, std::span<const SignalPiece> course) noexcept {
   for (const SignalPiece& piece : course) {
     if (std::isfinite(piece.begin) && std::isfinite(piece.end)) continue;
     ++rejected_not_finite_;

@@ -1,4 +1,4 @@
-// What dead zone and ramp make of an input's raw signal over one step.
+// Effect of dead zone and ramp on an input's raw signal over one step.
 //
 // w(t): the raw value, 0 where |raw| is less than the dead zone
 // r(t): follows w, |r'| <= most / H                                                                    (1)
@@ -15,8 +15,8 @@ namespace slew::io_node {
 inline constexpr double kAnyChange = std::numeric_limits<double>::infinity();
 
 struct ShapedStep {
-  double raw_mean = 0;  // of the raw value, -1..1
-  double mean = 0;      // of r, -1..1
+  double raw_mean = 0;  // mean of the raw value, -1..1
+  double mean = 0;      // mean of r, -1..1
   double end = 0;       // r at the end of the step
 };
 

@@ -309,7 +309,7 @@ bool IoNode::advance(std::int64_t now_ns) {
 bool IoNode::advance_name_check(std::int64_t now_ns) {
   if (deadline_ns_ == 0) {
     deadline_ns_ = now_ns + config_.name_check.ns;
-    // of two that start together each must receive the other's claim
+    // two that start together must receive each other's claim
     if (config_.name_check.ns > 0) publish_session(Phase::join);
   }
   if (now_ns < deadline_ns_) return false;
@@ -428,7 +428,7 @@ bool IoNode::recorder_allows_tick() const noexcept {
   return recorder.header.epoch != member_.epoch() || recorder.recorded_step >= n_ - kRecorderWindow;
 }
 
-// of the next tick; a session that is late catches up at no more than twice real time
+// Time of the next tick; a session that is late catches up at no more than twice real time.
 std::int64_t IoNode::due_ns() const noexcept {
   if (!is_paced()) return 0;
   return std::max(clock_.due_ns(n_), times_.last_tick_ns() + config_.session.step_duration().ns / 2);
@@ -547,7 +547,7 @@ void IoNode::shed_load() {
     has_controllers |= gate.is_held(i) || gate.config(i).controller == scene::ControllerMode::lockstep;
   }
   const std::string event = shedding_.look(n_, timing().response.count(), timing().overruns,
-                                           has_controllers ? Steering::controllers : Steering::nobody);
+                                           has_controllers ? Steering::controllers : Steering::none);
   if (event.empty()) return;
   requests_.publish_event(event, n_);
   ++timing().transitions;
@@ -614,7 +614,7 @@ void IoNode::advance_loading(std::int64_t now_ns) {
   keeper_.load(upload);
 }
 
-// The process of the role is gone. False: it cannot be replaced, and the session ends.
+// Holds the role of a process that is gone. False: it cannot be replaced, and the session ends.
 bool IoNode::hold_role(Role role, std::int64_t now_ns) {
   if (stage_ != Stage::ticking || !keeper_.hold_role(role, n_, samples_, now_ns)) return false;
   clock_.forget_under_way();
@@ -687,7 +687,7 @@ bool IoNode::advance_ending(std::int64_t now_ns) {
   return false;
 }
 
-// Of several nodes that failed at the same time the one of the earliest step, then in the order of roles.
+// The node that ended first: by its step, then in the order of roles.
 const node::Peer* IoNode::first_ended() const noexcept {
   const node::Peer* first = nullptr;
   for (const Role role : wire::kNodeRoles) {

@@ -111,13 +111,13 @@ class IoNode final : public node::Node {
   // Warnings that standard error has received; later ones of their kind are in the recording alone.
   struct Warned {
     bool slip = false;
-    std::uint32_t levels = 0;  // of shedding, a bit each
+    std::uint32_t levels = 0;  // levels of shedding, a bit each
   };
 
   node::SessionMember member_;
   IoConfig config_;
   Stage stage_ = Stage::checking_name;
-  std::int64_t deadline_ns_ = 0;  // of the stage
+  std::int64_t deadline_ns_ = 0;  // end of the stage, or of its wait
   StepIndex n_ = 0;               // next tick
   SessionInputs inputs_;
   Requests requests_;

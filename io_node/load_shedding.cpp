@@ -22,10 +22,11 @@ const char* left_out(ShedLoad level) {
 
 }  // namespace
 
-// the next level (way 1) or the one before (-1)
-ShedLoad LoadShedding::beside(ShedLoad level, int way) const noexcept {
-  const auto next = static_cast<ShedLoad>(static_cast<int>(level) + way);
-  return next == ShedLoad::view && view_ == View::none ? static_cast<ShedLoad>(static_cast<int>(next) + way) : next;
+// the next level (direction 1) or the one before (-1)
+ShedLoad LoadShedding::beside(ShedLoad level, int direction) const noexcept {
+  const auto next = static_cast<ShedLoad>(static_cast<int>(level) + direction);
+  return next == ShedLoad::view && view_ == View::none ? static_cast<ShedLoad>(static_cast<int>(next) + direction)
+                                                       : next;
 }
 
 std::string LoadShedding::change_to(ShedLoad level, StepIndex n, const std::string& why) {
@@ -38,7 +39,7 @@ std::string LoadShedding::look(StepIndex n, std::uint64_t judged, std::uint64_t 
     calm_overruns_ = overruns;
     calm_from_ = judged;
   }
-  // a controller needs its variables, whatever was left out before it came
+  // a controller needs its variables
   const ShedLoad of_controllers = view_ == View::none ? ShedLoad::none : ShedLoad::view;
   const ShedLoad most = steering == Steering::controllers ? std::min(most_, of_controllers) : most_;
   if (level_ > most) return change_to(most, n, "a controller steers");

@@ -175,7 +175,7 @@ Status write_saved(const std::filesystem::path& path, const SavedSession& saved,
   const int file = open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (file < 0) return failed(path, errno);
   int error = write_and_close(file, bytes_of(saved));
-  // a file that came meanwhile is not replaced either, where the file system can tell
+  // a file written in the meantime is not replaced either, if the file system supports the check
   const unsigned how = replace == Replace::never ? RENAME_NOREPLACE : 0;
   if (error == 0 && renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, path.c_str(), how) != 0) {
     const bool cannot_tell = how != 0 && errno == EINVAL;

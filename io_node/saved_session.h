@@ -1,12 +1,11 @@
-// A session at one step as a file: the scene, and the state of every node, so that it can go on as if it had never
-// stopped.
+// A session at one step as a file: the scene, and the state of every node, from which it continues to the same bits.
 //
 //   "SLEWSAVE" | format version u32 | build | session | scene name | scene text | H i64 | step i64
 //   | number of files u32, each: name, size u64, SHA-256 | number of states u32, each: role u32, hash u64, bytes
 //   | XXH3 of all before u64
 //
-// Texts and bytes have their length (u64) in front; little-endian. The states are those of node/checkpoint.h, readable
-// to the program that wrote them and to those that keep its layouts.
+// Texts and bytes have their length (u64) in front; little-endian. The states are those of node/checkpoint.h: the
+// program that wrote them can read them, and those that keep its layouts.
 #pragma once
 
 #include <cstdint>
@@ -29,14 +28,14 @@ struct SavedState {
 };
 
 struct SavedSession {
-  std::string build;         // of the io that saved it
-  std::string session_name;  // of the session that was saved
+  std::string build;         // build of the io that saved it
+  std::string session_name;  // session that was saved
   std::string scene_name;
   std::string scene_text;  // after includes and --set
   std::vector<wire::Asset> assets;
   SimDuration communication_step;
   StepIndex step = 0;
-  std::vector<SavedState> states;  // of io and of every physics node
+  std::vector<SavedState> states;  // states of io and of every physics node
 
   [[nodiscard]] const node::Checkpoint* find(wire::Role role) const noexcept;
   // Simulated time of the step [s].
@@ -47,11 +46,11 @@ struct SavedSession {
 
 enum class Replace : std::uint8_t { never, existing };
 
-// Written beside its place under another name, put onto the disk and renamed: there is never half a file. Errors:
-// bad_input when it exists and may not be replaced, storage.
+// Writes a file of another name beside it, puts it onto the disk and renames it: there is never half a file. Errors:
+// bad_input if the file exists and may not be replaced, storage.
 [[nodiscard]] Status write_saved(const std::filesystem::path& path, const SavedSession& saved, Replace replace);
 
-// Any bytes may come. Errors: bad_input, with what is wrong and what to do.
+// Accepts any bytes. Errors: bad_input, with the fault and the remedy.
 [[nodiscard]] Status read_saved(const std::filesystem::path& path, SavedSession& saved);
 
 }  // namespace slew::io_node

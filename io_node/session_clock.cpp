@@ -10,7 +10,7 @@ using scene::OverrunPolicy;
 namespace {
 
 constexpr auto kRelaxed = std::memory_order_relaxed;
-// so long without giving up time: the machine keeps up again
+// time without a slip after which the machine keeps up again
 constexpr std::int64_t kCalmNs = 1'000'000'000;
 
 std::string milliseconds_text(std::int64_t ns) {
@@ -48,7 +48,7 @@ void SessionClock::excuse(StepIndex n, std::int64_t now_ns) noexcept {
   excused_ns_ += late_ns;
   base_ns_ += late_ns;
   if (slipped_ns_ != 0) slipped_ns_ += late_ns;
-  cpu_ns_ = 0;  // what was done meanwhile is of no step
+  cpu_ns_ = 0;  // the CPU time in between belongs to no step
 }
 
 std::string SessionClock::in_words(const char* what, StepIndex n) const {
@@ -102,7 +102,7 @@ StepIndex SessionClock::give_up(StepIndex n, std::int64_t lag_ns) noexcept {
 
 OverrunAction SessionClock::overrun(StepIndex n, const std::string& why) {
   add(timing_.transitions, 1);
-  timing_.overrun_run.store(0, kRelaxed);  // of a session that is resumed they are counted anew
+  timing_.overrun_run.store(0, kRelaxed);  // a session that is resumed counts them from 0
   return {policy_, in_words(policy_ == OverrunPolicy::hold ? "hold" : "stop", n) + why};
 }
 

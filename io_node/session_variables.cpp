@@ -13,7 +13,7 @@ struct SessionVariable {
   const char* name;
   const char* unit;
 };
-// of the session, and of each physics node from its last health message
+// variables of the session, and of each physics node from its last health message
 constexpr SessionVariable kSessionVariables[] = {{"session.slip", "s"},
                                                  {"session.rejected_inputs", "1"},
                                                  {"session.clamped_inputs", "1"},

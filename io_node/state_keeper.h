@@ -99,7 +99,7 @@ class StateKeeper {
   struct HeldChange {
     enum class Kind : std::uint8_t { rejected, filled, expired } kind;
     wire::Role role;
-    std::string reason;  // of the end of the session, if the time has expired
+    std::string reason;  // cause of the session's end, if the time has expired
   };
   // Replacements that are ready, or have ended; roles whose time has expired. Warns of the first two.
   [[nodiscard]] std::vector<HeldChange> watch_held(StepIndex n, std::int64_t now_ns);

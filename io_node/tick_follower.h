@@ -28,7 +28,7 @@ class TickFollower {
  private:
   const IoConfig& config_;
   LiveParameters parameters_;
-  std::vector<double> controls_, before_;  // of the last two ticks
+  std::vector<double> controls_, before_;  // control values of the last two ticks
 };
 
 }  // namespace slew::io_node

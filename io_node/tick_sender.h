@@ -1,9 +1,10 @@
-// The tick that is sent next, and the ones sent before, for nodes that request them.
+// The tick that is sent next, and the ticks sent before, for nodes that request them.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
+#include "core/check.h"
 #include "node/sent_cache.h"
 #include "node/session_member.h"
 
@@ -12,15 +13,36 @@ namespace slew::io_node {
 class TickSender {
  public:
   // channels: number of control values. depth: ticks that are kept, at least.
-  TickSender(node::SessionMember& member, std::size_t channels, std::size_t depth);
+  TickSender(node::SessionMember& member, std::size_t channels, std::size_t depth) : member_(member), sent_(depth) {
+    tick_.controls.resize(channels);
+    tick_.age.resize(channels);
+    if (transport::encode(tick_, buffer_)) sent_.reserve(buffer_.size());
+  }
 
   [[nodiscard]] wire::Tick& tick() noexcept { return tick_; }
   // Sends tick() and keeps it as that of this step.
-  void send(StepIndex step);
+  void send(StepIndex step) {
+    const bool is_encoded = transport::encode(tick_, buffer_);
+    SLEW_CHECK(is_encoded);
+    sent_.keep(step, buffer_);
+    member_.send(wire::Topic::tick, buffer_);
+  }
   // An epoch begins: no earlier tick can be requested, and tick() is empty.
-  void restart();
+  void restart() {
+    sent_.clear();
+    tick_ = wire::Tick{};
+  }
   // Sends the kept ticks of these steps again. Number of ticks.
-  std::uint64_t resend(StepIndex first, StepIndex last);
+  std::uint64_t resend(StepIndex first, StepIndex last) {
+    std::uint64_t ticks = 0;
+    for (StepIndex step = first; step <= last; ++step) {
+      const std::span<const std::byte> sent = sent_.find(step);
+      if (sent.empty()) continue;
+      member_.send(wire::Topic::tick, sent);
+      ++ticks;
+    }
+    return ticks;
+  }
 
  private:
   node::SessionMember& member_;

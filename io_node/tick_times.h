@@ -41,7 +41,7 @@ class TickTimes {
 
  private:
   SimDuration step_;
-  std::vector<std::int64_t> tick_ns_;  // of the last ticks, by step modulo their number
+  std::vector<std::int64_t> tick_ns_;  // wall time of the last ticks, by step modulo their number
   std::int64_t last_tick_ns_ = 0;
   std::optional<wire::Role> waits_for_;
   std::int64_t waits_since_ns_ = 0;

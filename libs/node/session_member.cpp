@@ -481,7 +481,7 @@ std::string SessionMember::end_text(Role about, const std::string& reason) const
   // the peers may have given this node up and exited
   if (peer.is_lost && stood_still_ns_ > 0 && watched_ns_ - stood_until_ns_ <= session_.give_up_ns + linger().ns) {
     return reason + "; this node itself had " + stood_still + ", and after " + give_up_text() +
-           " the other nodes give a node up" + remedy;
+           " the others give a node up" + remedy;
   }
   return reason;
 }

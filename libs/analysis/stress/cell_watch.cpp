@@ -52,8 +52,8 @@ CellWatch::CellWatch(const YardstickRules& rules, StepIndex steps, SimDuration g
       cell_(cell),
       slices_(slices_of(rules, steps)),
       steps_(steps),
-      first_slice_(std::min((grace.ns + kJudgedFirst.ns) / rules.step().ns, steps - kLeftAfterwards.ns / rules.step().ns)) {
-}
+      first_slice_(
+          std::min((grace.ns + kJudgedFirst.ns) / rules.step().ns, steps - kLeftAfterwards.ns / rules.step().ns)) {}
 
 void CellWatch::look(observer::Observer& observer, std::int64_t now_ns) {
   const observer::SessionView& view = observer.view();

@@ -127,7 +127,7 @@ TEST(InputGate, LeaseIsRefusedWithTheHoldersName) {
   EXPECT_TRUE(gate.acquire(0, "joystick", 0).is_granted);
 }
 
-TEST(InputGate, AskingAgainForAHeldChannelMovesNothing) {
+TEST(InputGate, ARepeatedAcquireOfAHeldChannelChangesNothing) {
   InputGate gate = crane_gate();
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
   gate.write(1, "pid", 0.5, 0, 10 * kMs);
@@ -155,7 +155,7 @@ TEST(InputGate, SilentControllerGoesToNeutralAndLaterLosesTheChannel) {
   EXPECT_TRUE(gate.acquire(1, "joystick", 5002 * kMs).is_granted);
 }
 
-TEST(InputGate, WhoeverLosesAChannelWithoutReleasingItIsNamedOnce) {
+TEST(InputGate, AControllerThatLosesItsChannelIsNamedOnce) {
   InputGate gate = crane_gate();
   ASSERT_TRUE(gate.acquire(0, "joystick", 0).is_granted);
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
@@ -200,10 +200,10 @@ TEST(InputGate, DigitalInputIsZeroOrOne) {
   EXPECT_EQ(gate.control(0), 0);
 }
 
-TEST(InputGate, WhoWritesWithoutHoldingTheChannelIsToldWhoHoldsItOnceASecond) {
+TEST(InputGate, AWriteWithoutTheLeaseIsRefusedOnceASecondNamingTheHolder) {
   InputGate gate = crane_gate();
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
-  // silent for so long that it loses the channel, and does not hear that
+  // the channel is lost by silence, and the notice does not arrive
   gate.advance(0, held({0, 0}), 5001 * kMs);
   static_cast<void>(gate.take_notices());
   EXPECT_FALSE(gate.write(1, "pid", 1, 1, 5500 * kMs));
@@ -219,22 +219,22 @@ TEST(InputGate, WhoWritesWithoutHoldingTheChannelIsToldWhoHoldsItOnceASecond) {
   ASSERT_TRUE(told.has_value());
   EXPECT_EQ(told->holder, "joystick");
   EXPECT_NE(told->reason.find("channel Input_Lift is held by 'joystick'"), std::string::npos) << told->reason;
-  // another channel is another matter, and who holds the channel is told nothing
+  // another channel has a refusal of its own, and the holder receives none
   EXPECT_TRUE(gate.answer_to_write(0, "pid", 8000 * kMs).has_value());
   EXPECT_FALSE(gate.answer_to_write(1, "joystick", 20'000 * kMs));
   EXPECT_FALSE(gate.answer_to_write(1, "", 20'000 * kMs));
 }
 
-TEST(InputGate, AfterAResetWhoGoesOnWritingIsToldThatTheChannelIsFree) {
+TEST(InputGate, AWriteAfterAResetIsRefusedSinceTheChannelIsFree) {
   InputGate gate = crane_gate();
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
   gate.advance(0, held({0, 0}), kMs);
   gate.reset();
-  EXPECT_FALSE(gate.answer_to_write(1, "pid", 2 * kMs)) << "what it wrote before it heard of the reset";
+  EXPECT_FALSE(gate.answer_to_write(1, "pid", 2 * kMs)) << "written before the notice of the reset";
   EXPECT_TRUE(gate.answer_to_write(1, "pid", 1500 * kMs).has_value());
 }
 
-TEST(InputGate, HoweverManyWriteWithoutAChannelAFewAreToldASecond) {
+TEST(InputGate, FewRefusalsASecondAreSentHoweverManyWriteWithoutALease) {
   InputGate gate = crane_gate();
   int told = 0;
   for (int i = 0; i < 10'000; ++i) {
@@ -270,7 +270,7 @@ TEST(InputGate, ASecondProcessOfTheHoldersNameIsRefusedAndMovesNothing) {
   const std::optional<LeaseAnswer> told = gate.answer_to_write(0, "pid", 2000 * kMs, 8);
   ASSERT_TRUE(told.has_value());
   EXPECT_EQ(told->reason, refused.reason);
-  // a transport that does not know its writers cannot tell them apart
+  // without the writer from the transport the processes are not distinguished
   EXPECT_TRUE(gate.write(0, "pid", 0.6, 0, 0));
   // when the first has fallen silent the second has it
   gate.advance(1, held({0}), 8000 * kMs);
@@ -278,7 +278,7 @@ TEST(InputGate, ASecondProcessOfTheHoldersNameIsRefusedAndMovesNothing) {
   EXPECT_FALSE(gate.write(0, "pid", -1, 1, 8000 * kMs, kJoinStep, 7));
 }
 
-TEST(InputGate, AControllerThatIsStartedAgainHasItsChannelAtOnceWhenItsOldProcessIsKnownToBeGone) {
+TEST(InputGate, ARestartedControllerHasItsChannelAtOnceWhenItsOldProcessIsSeenToBeGone) {
   bool has_left = false;
   GateConfig config;
   config.see_writer = [&has_left](std::uint64_t) { return transport::WriterSight{.has_left = has_left}; };
@@ -290,7 +290,7 @@ TEST(InputGate, AControllerThatIsStartedAgainHasItsChannelAtOnceWhenItsOldProces
   EXPECT_FALSE(gate.acquire(0, "joystick", 10 * kMs, 9).is_granted) << "another name waits for the silence";
   EXPECT_TRUE(gate.acquire(0, "pid", 10 * kMs, 8).is_granted);
   gate.advance(0, held({0}), 11 * kMs);
-  EXPECT_EQ(gate.raw(0), 0) << "the new one has said nothing yet";
+  EXPECT_EQ(gate.raw(0), 0) << "the new one has written no value";
   EXPECT_TRUE(gate.write(0, "pid", -0.5, 1, 12 * kMs, kJoinStep, 8));
 }
 
@@ -305,14 +305,14 @@ TEST(InputGate, OnlyTheSupervisorTakesAChannelFromItsHolder) {
   ASSERT_TRUE(gate.acquire(1, "trainee", 0).is_granted);
   gate.write(0, "trainee", 0.5, 0, 0);
 
-  EXPECT_FALSE(gate.acquire(0, "instructor", 0).is_granted) << "it did not ask to take over";
+  EXPECT_FALSE(gate.acquire(0, "instructor", 0).is_granted) << "it did not request a take-over";
   const LeaseAnswer stranger = gate.take_over(0, "stranger", 0);
   EXPECT_FALSE(stranger.is_granted);
   EXPECT_EQ(stranger.holder, "trainee");
   EXPECT_EQ(stranger.reason,
             "channel Lever is held by 'trainee', and only 'instructor' may take it over (Lever.supervisor)");
   EXPECT_EQ(gate.take_over(1, "instructor", 0).reason,
-            "channel Other is held by 'trainee', and nobody may take it over: name a controller in Other.supervisor of "
+            "channel Other is held by 'trainee', and it has no supervisor: name a controller in Other.supervisor of "
             "the scene");
   EXPECT_TRUE(gate.take_notices().empty());
 
@@ -332,8 +332,8 @@ TEST(InputGate, OnlyTheSupervisorTakesAChannelFromItsHolder) {
 
 TEST(InputGate, TakingOverAFreeChannelIsAcquiringIt) {
   InputGate gate = crane_gate();
-  EXPECT_TRUE(gate.take_over(0, "anybody", 0).is_granted);
-  EXPECT_TRUE(gate.take_over(0, "anybody", 0).is_granted);
+  EXPECT_TRUE(gate.take_over(0, "any", 0).is_granted);
+  EXPECT_TRUE(gate.take_over(0, "any", 0).is_granted);
 }
 
 // ---- lockstep -------------------------------------------------------------------------------------------------
@@ -397,7 +397,7 @@ TEST(InputGate, AReleaseTakesEffectAfterTheTicksOfItsLastValue) {
   gate.write(0, "pid", 0.5, 1, 0, 0);
   gate.write(0, "pid", 0.6, 1, 0, 1);
   EXPECT_TRUE(gate.release(0, "pid", 1).is_granted);
-  EXPECT_FALSE(gate.write(0, "pid", 0.7, 1, 0, 1)) << "it has said that this was the last";
+  EXPECT_FALSE(gate.write(0, "pid", 0.7, 1, 0, 1)) << "it has released the channel after its last value";
   for (StepIndex n = 1; n < 4; ++n) {
     EXPECT_EQ(gate.awaited(n).ns, 0);
     gate.advance(n, held({0.3}), 0);
@@ -406,7 +406,7 @@ TEST(InputGate, AReleaseTakesEffectAfterTheTicksOfItsLastValue) {
   gate.advance(4, held({0.3}), 0);
   EXPECT_EQ(gate.raw(0), 0.3) << "the script's";
   EXPECT_TRUE(gate.acquire(0, "other", 0).is_granted);
-  // the user is told that nobody answers for it, and nobody else
+  // a notice for the user alone reports that it has no holder
   const std::vector<Notice> told = gate.take_notices();
   ASSERT_EQ(told.size(), 1u);
   EXPECT_EQ(told[0].controller, "");
@@ -494,7 +494,7 @@ TEST(InputGate, ALockstepChannelThatIsTakenOverKeepsItsValueUntilTheNewHolderIsI
   EXPECT_EQ(told[0].reason, "'instructor' is in step from tick 6 on; channel Lever had been without it since tick 5");
 }
 
-TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
+TEST(InputGate, NoSequenceOfMessagesPutsAValueOutOfRangeOrInTooEarlyATick) {
   std::mt19937_64 random(1);
   const auto below = [&random](std::uint64_t n) { return static_cast<std::int64_t>(random() % n); };
   const std::string names[] = {"a", "b", "c", ""};

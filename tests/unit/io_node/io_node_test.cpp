@@ -1,4 +1,4 @@
-// The session as its owner runs it: its name, its time, its overruns and its end.
+// The owner of a session: its name, its time, its overruns and its end.
 #include "tests/unit/io_node/played_io.h"
 
 namespace slew::io_node {
@@ -9,35 +9,35 @@ namespace io_node_test {
 class TwoOfOneName : public Io {
  protected:
   // another io of the name, whose id is lower or higher than any that was drawn
-  void say_rival(Phase phase, std::uint8_t id_byte) {
-    wire::SessionDescription rival = played.session;
-    rival.header.session.fill(id_byte);
-    rival.header.phase = phase;
-    played.publish(Topic::session, rival);
+  void publish_claimant(Phase phase, std::uint8_t id_byte) {
+    wire::SessionDescription claimant = played.session;
+    claimant.header.session.fill(id_byte);
+    claimant.header.phase = phase;
+    played.publish(Topic::session, claimant);
     poll(kMs);
   }
-  Phase last_said() {
+  Phase last_phase() {
     const auto sessions = played.received<wire::SessionDescription>(Topic::session);
     return sessions.empty() ? Phase::init : sessions.back().header.phase;
   }
 };
 
-TEST_F(TwoOfOneName, WhoHoldsTheNameStaysBeforeOneThatClaimsIt) {
+TEST_F(TwoOfOneName, TheHolderOfTheNameStaysBeforeOneThatClaimsIt) {
   poll();
-  ASSERT_EQ(last_said(), Phase::running);
-  say_rival(Phase::join, 0);
+  ASSERT_EQ(last_phase(), Phase::running);
+  publish_claimant(Phase::join, 0);
   EXPECT_FALSE(node->is_finished());
 }
 
 TEST_F(TwoOfOneName, OfTwoThatHoldTheNameTheHigherIdTakesItsSessionBack) {
   poll();
-  ASSERT_EQ(last_said(), Phase::running);
-  say_rival(Phase::running, 0xff);
+  ASSERT_EQ(last_phase(), Phase::running);
+  publish_claimant(Phase::running, 0xff);
   EXPECT_FALSE(node->is_finished());
-  say_rival(Phase::running, 0);
+  publish_claimant(Phase::running, 0);
   EXPECT_TRUE(node->is_finished());
   EXPECT_EQ(node->member().exit_code(), ExitCode::bad_input);
-  EXPECT_EQ(last_said(), Phase::ended);
+  EXPECT_EQ(last_phase(), Phase::ended);
 }
 
 TEST_F(TwoOfOneName, OneThatOnlyClaimsItHasNothingToTakeBack) {
@@ -45,10 +45,10 @@ TEST_F(TwoOfOneName, OneThatOnlyClaimsItHasNothingToTakeBack) {
   slow.name_check = milliseconds(300);
   restart(std::move(slow));
   poll();
-  ASSERT_EQ(last_said(), Phase::join);
-  say_rival(Phase::join, 0);
+  ASSERT_EQ(last_phase(), Phase::join);
+  publish_claimant(Phase::join, 0);
   EXPECT_TRUE(node->is_finished());
-  EXPECT_EQ(last_said(), Phase::init) << "nothing more";
+  EXPECT_EQ(last_phase(), Phase::init) << "nothing more";
 }
 
 // ---- pause and time -------------------------------------------------------------------------------------------
@@ -63,7 +63,7 @@ TEST_F(Io, SleepsWhileItIsPaused) {
   }
 }
 
-TEST_F(Io, SaysThatItRunsWhileItDoesSingleSteps) {
+TEST_F(Io, RunsWhileItDoesSingleSteps) {
   get_running();
   run_to(10);
   ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
@@ -77,8 +77,8 @@ TEST_F(Io, SaysThatItRunsWhileItDoesSingleSteps) {
   EXPECT_EQ(statuses.back().header.step, 13);
 }
 
-// Who does not hear an answer asks again: with the same number it is the same request.
-TEST_F(Io, AnswersARequestThatIsSentAgainAndDoesItOnce) {
+// A client repeats its request until it receives the answer: the same number means the same request.
+TEST_F(Io, AnswersARepeatedRequestAndExecutesItOnce) {
   get_running();
   run_to(10);
   ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
@@ -98,7 +98,7 @@ TEST_F(Io, AnswersARequestThatIsSentAgainAndDoesItOnce) {
   }
   const auto go_on = [&] {
     for (int i = 0; i < 10; ++i) {
-      say_samples(node->next_step());
+      publish_samples(node->next_step());
       poll(kMs);
     }
   };
@@ -119,7 +119,7 @@ TEST_F(Io, CountsNoPauseAsSlip) {
   ASSERT_TRUE(request(wire::ControlAction::resume).is_accepted);
   run_to(50);
   EXPECT_EQ(node->health().slip_ns.load(), 0);
-  // and what is asked twice moves nothing: a lag beyond the limit is still counted
+  // a second request changes nothing: a lag beyond the limit is still counted
   poll(200 * kMs);
   ASSERT_TRUE(request(wire::ControlAction::resume).is_accepted);
   run_to(52);
@@ -138,7 +138,7 @@ TEST_F(Io, HoldsASessionThatIsTooSlowUntilItIsResumed) {
   const auto late = [this](int steps) {
     for (int i = 0; i < steps; ++i) {
       poll(5 * kMs);
-      say_samples(node->next_step());
+      publish_samples(node->next_step());
     }
     poll();
   };
@@ -152,7 +152,7 @@ TEST_F(Io, HoldsASessionThatIsTooSlowUntilItIsResumed) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("the last 3 steps were longer than 1.0 ms"), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[0].find("'slewring control resume'"), std::string::npos) << warnings[0];
-  // an event in the recording: an answer that nobody asked for
+  // an event in the recording: an answer without a request
   const auto replies = played.received<wire::ControlReply>(Topic::control_reply);
   ASSERT_EQ(replies.size(), 1u);
   EXPECT_EQ(replies[0].request, 0u);
@@ -167,7 +167,7 @@ TEST_F(Io, HoldsASessionThatIsTooSlowUntilItIsResumed) {
   EXPECT_EQ(node->health().slip_ns, 0);
   late(4);
   EXPECT_TRUE(node->is_paused());
-  EXPECT_EQ(node->member().take_warnings().size(), 1u) << "somebody has to resume it again";
+  EXPECT_EQ(node->member().take_warnings().size(), 1u) << "it needs another request to resume";
 }
 
 TEST_F(Io, StopsASessionThatIsTooFarBehindWithCode3) {
@@ -177,7 +177,7 @@ TEST_F(Io, StopsASessionThatIsTooFarBehindWithCode3) {
   get_running();
   run_to(10);
   poll(60 * kMs);
-  say_samples(node->next_step());
+  publish_samples(node->next_step());
   poll();
   EXPECT_EQ(node->member().exit_code(), ExitCode::losses);
   EXPECT_NE(node->member().reason().find("behind the wall clock (session.overrun_lag 50.0 ms)"), std::string::npos)
@@ -194,14 +194,14 @@ TEST_F(Io, KeepsBooksThatBalanceOverLagsPausesAndSingleSteps) {
   EXPECT_EQ(books(), "");
   EXPECT_EQ(node->timing().books.read().due, 10u);
   poll(75 * kMs);
-  say_samples(node->next_step());
+  publish_samples(node->next_step());
   poll();
   EXPECT_EQ(books(), "");
   EXPECT_GT(node->timing().books.read().skipped, 60u);
   // the step under way is done before the pause
-  say_samples(node->next_step());
+  publish_samples(node->next_step());
   poll();
-  say_samples(node->next_step());
+  publish_samples(node->next_step());
   played.forget();
   ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
   const std::uint64_t overruns = node->timing().overruns;
@@ -216,11 +216,11 @@ TEST_F(Io, KeepsBooksThatBalanceOverLagsPausesAndSingleSteps) {
   EXPECT_EQ(node->timing().overruns, overruns) << "a pause is no overrun";
 }
 
-TEST_F(Io, CountsForWhomTicksWaitThatAreDue) {
+TEST_F(Io, CountsTheWaitOfADueTickForTheMissingRole) {
   get_running();
   run_to(10);
   const auto waited = [this](Role role) { return node->timing().waited_ns[static_cast<std::size_t>(role)].load(); };
-  EXPECT_EQ(waited(Role::mechanics), 0) << "nobody was late";
+  EXPECT_EQ(waited(Role::mechanics), 0) << "no sample was late";
   poll(5 * kMs);
   played.publish_mechanism(10);
   poll();
@@ -241,13 +241,13 @@ TEST_F(Io, MeasuresFromAControllersValueToTheSamplesThatUsedIt) {
   restart(std::move(lever));
   get_running();
   run_to(3);
-  const auto say = [this](wire::ControllerAction action) {
+  const auto send = [this](wire::ControllerAction action) {
     played.publish(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, 0.5, 1, kJoinStep});
     poll();
   };
-  say(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::acquire);
   EXPECT_EQ(node->timing().input_latency.count(), 0u);
-  say(wire::ControllerAction::write);
+  send(wire::ControllerAction::write);
   run_to(6);
   EXPECT_EQ(node->timing().input_latency.count(), 1u);
   EXPECT_GT(node->timing().input_latency.max(), 0);
@@ -270,10 +270,10 @@ class LateValue : public Io {
     input.action = wire::ControllerAction::write;
     played.publish(Topic::controller_input, input);
     sleep_until_monotonic(monotonic_ns() + 30 * kMs);
-    say_samples(node->next_step());
+    publish_samples(node->next_step());
     taken_ns = now_ns = monotonic_ns();
     poll();
-    say_samples(node->next_step());
+    publish_samples(node->next_step());
     used_ns = now_ns = monotonic_ns();
     poll();
     EXPECT_EQ(node->timing().input_latency.count(), 1u);
@@ -299,20 +299,20 @@ TEST_F(Io, MeasuresFromTheOldestValueThatATickUses) {
   restart(std::move(levers));
   get_running();
   run_to(3);
-  const auto say = [this](const char* channel, wire::ControllerAction action) {
+  const auto send = [this](const char* channel, wire::ControllerAction action) {
     played.publish(Topic::controller_input, wire::ControllerInput{"s", "pid", channel, action, 0.5, 1, kJoinStep});
     poll();
   };
-  for (const char* channel : {"Lever", "Pedal"}) say(channel, wire::ControllerAction::acquire);
-  say("Lever", wire::ControllerAction::write);
+  for (const char* channel : {"Lever", "Pedal"}) send(channel, wire::ControllerAction::acquire);
+  send("Lever", wire::ControllerAction::write);
   poll(20 * kMs);
-  say("Pedal", wire::ControllerAction::write);
+  send("Pedal", wire::ControllerAction::write);
   run_to(6);
   EXPECT_EQ(node->timing().input_latency.count(), 1u);
   EXPECT_GE(node->timing().input_latency.max(), 20 * kMs);
 }
 
-TEST_F(Io, TellsTheOthersToLeaveOutWhatItMayWhenStepsOverrun) {
+TEST_F(Io, FlagsTheDataToOmitWhenStepsOverrun) {
   IoConfig shedding = config();
   shedding.session.shed = scene::ShedLoad::variables;
   shedding.session.overrun_lag = 1000;
@@ -325,7 +325,7 @@ TEST_F(Io, TellsTheOthersToLeaveOutWhatItMayWhenStepsOverrun) {
   EXPECT_EQ(flags() & kShed, 0u);
   for (int late = 0; late < 150; ++late) {
     poll(2 * kMs);
-    say_samples(node->next_step());
+    publish_samples(node->next_step());
     poll();
   }
   EXPECT_EQ(flags(), kShed);
@@ -363,7 +363,7 @@ TEST_F(Io, SendsTicksOfTheTimeAfterWhichANodeIsGivenUpAgain) {
   EXPECT_FALSE(has_tick(5600 - 5501));
 }
 
-TEST_F(Io, AsksForSamplesOnlyWhenTheyAreDue) {
+TEST_F(Io, RequestsSamplesOnlyWhenTheyAreDue) {
   IoConfig slow = config();
   slow.session.step = 0.01;
   restart(std::move(slow));
@@ -387,11 +387,11 @@ TEST_F(Io, HoldsUntilTheLastSilentNodeIsBack) {
   EXPECT_NE(node->member().reason().find("hydraulics"), std::string::npos) << node->member().reason();
   played.publish_status(Role::hydraulics, NodeState::running, 1);
   poll(kMs);
-  // heard again, but the sample of step 1 has not come all the while
+  // both are back, but the sample of step 1 is still missing
   EXPECT_EQ(node->member().state(), NodeState::holding);
   EXPECT_NE(node->member().reason().find("waits for mechanism of step 1"), std::string::npos)
       << node->member().reason();
-  say_samples(1);
+  publish_samples(1);
   poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::running);
   EXPECT_EQ(node->member().reason(), "");
@@ -400,7 +400,7 @@ TEST_F(Io, HoldsUntilTheLastSilentNodeIsBack) {
 TEST_F(Io, NamesTheNodeThatASignalEnded) {
   get_running();
   run_to(10);
-  say_fault(Role::mechanics, 10, ExitCode::terminated, "ended by a signal");
+  publish_fault(Role::mechanics, 10, ExitCode::terminated, "ended by a signal");
   poll(kMs);
   poll(kFaultGathering.ns);
   EXPECT_EQ(node->member().exit_code(), ExitCode::terminated);
@@ -411,15 +411,15 @@ TEST_F(Io, NamesTheNodeThatASignalEnded) {
   EXPECT_EQ(statuses.back().reason, node->member().reason());
 }
 
-TEST_F(Io, SaysItselfWhoIsLostThoughAnotherOneTellsItFirst) {
+TEST_F(Io, NamesALostNodeItselfThoughAnotherNodeReportsItFirst) {
   get_running();
   run_to(10);
   for (int i = 0; i < 19; ++i) {
     played.publish_status(Role::mechanics, NodeState::holding, 10);
     poll(100 * kMs);
   }
-  say_fault(Role::mechanics, 10, ExitCode::node_lost,
-            "hydraulics (process 1002 on elsewhere) is gone; this node stopped after step 10");
+  publish_fault(Role::mechanics, 10, ExitCode::node_lost,
+                "hydraulics (process 1002 on elsewhere) is gone; this node stopped after step 10");
   poll(50 * kMs);
   EXPECT_EQ(node->member().state(), NodeState::holding);
   poll(60 * kMs);
@@ -429,12 +429,12 @@ TEST_F(Io, SaysItselfWhoIsLostThoughAnotherOneTellsItFirst) {
             "recorded up to there is valid");
 }
 
-TEST_F(Io, NamesTheNodeThatLostAnotherOneWhichIsHeardHere) {
+TEST_F(Io, NamesTheNodeThatLostAnotherOneWhichIoReceives) {
   get_running();
   run_to(10);
   const wire::NodeStatus fault =
-      say_fault(Role::mechanics, 10, ExitCode::node_lost,
-                "hydraulics (process 1002 on elsewhere) is gone; this node stopped after step 10");
+      publish_fault(Role::mechanics, 10, ExitCode::node_lost,
+                    "hydraulics (process 1002 on elsewhere) is gone; this node stopped after step 10");
   poll(kMs);
   poll(kLossGathering.ns - kMs);
   EXPECT_NE(node->member().state(), NodeState::ended);
@@ -443,11 +443,11 @@ TEST_F(Io, NamesTheNodeThatLostAnotherOneWhichIsHeardHere) {
   EXPECT_EQ(node->member().reason(), "mechanics (process 1001 on elsewhere): " + fault.reason);
 }
 
-TEST_F(Io, SaysEndInTheLastTickAndWhyInItsStatus) {
+TEST_F(Io, FlagsTheEndInTheLastTickAndPublishesTheCauseInItsStatus) {
   get_running();
   run_to(10);
   played.forget();
-  say_fault(Role::mechanics, 10, ExitCode::diverged, "diverged");
+  publish_fault(Role::mechanics, 10, ExitCode::diverged, "diverged");
   poll(kMs);
   poll(kFaultGathering.ns);
   const auto ticks = played.received<wire::Tick>(Topic::tick);
@@ -476,7 +476,7 @@ TEST_F(Io, EndsWhenATickCannotBeSent) {
   node = std::make_unique<IoNode>(transport, config());
   get_running();
   transport.break_down(Topic::tick);
-  say_samples(1);
+  publish_samples(1);
   poll(kMs);
   EXPECT_EQ(node->member().exit_code(), ExitCode::failed);
   EXPECT_EQ(node->member().state(), NodeState::fault);
@@ -509,7 +509,7 @@ TEST_F(Io, NamesTheNodeThatDoesNotGetReady) {
   EXPECT_EQ(node->member().reason().find("mechanics"), std::string::npos) << node->member().reason();
 }
 
-TEST_F(Io, RefusesWhatCannotBeDoneNowSayingWhen) {
+TEST_F(Io, RefusesARequestThatIsTooEarlyWithTheTimeToRepeatIt) {
   wire::ControlRequest set;
   set.session = "s";
   set.action = wire::ControlAction::set_parameter;
@@ -534,27 +534,27 @@ TEST_F(Io, RefusesWhatCannotBeDoneNowSayingWhen) {
   EXPECT_FALSE(refused.is_accepted);
   EXPECT_EQ(refused.reason, "16 changes already wait for the next step; send it again after that step");
   EXPECT_TRUE(request(wire::ControlAction::step, 1).is_accepted);
-  say_samples(node->next_step());
+  publish_samples(node->next_step());
   poll(kMs);
   EXPECT_TRUE(answer_to().is_accepted);
 }
 
-TEST_F(Io, PublishesWhatItHeldAtABoundAndWhoFellSilent) {
+TEST_F(Io, PublishesClampedInputsAndSilentControllers) {
   IoConfig lever = config();
   lever.channels.push_back({.name = "Lever"});
   lever.variables_every = 1;
   restart(std::move(lever));
   get_running();
-  const auto say = [this](wire::ControllerAction action, double value) {
+  const auto send = [this](wire::ControllerAction action, double value) {
     played.publish(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, value, 1, kJoinStep});
   };
-  say(wire::ControllerAction::acquire, 0);
-  say(wire::ControllerAction::write, 7);
+  send(wire::ControllerAction::acquire, 0);
+  send(wire::ControllerAction::write, 7);
   poll();
   run_to(250);
   const auto values = last_variables();
   EXPECT_EQ(values.at("session.clamped_inputs"), 1);
-  EXPECT_EQ(values.at("Lever.loop_delay"), -1) << "it did not say what its value was computed from";
+  EXPECT_EQ(values.at("Lever.loop_delay"), -1) << "its value carries no step";
   EXPECT_EQ(values.at("Lever.loop_time_ms"), -1);
   EXPECT_EQ(values.at("session.silent_controllers"), 1);
   EXPECT_EQ(values.at("Lever.raw"), 0);
@@ -565,13 +565,13 @@ TEST_F(Io, AStandstillOfTheSessionIsNoSilenceOfAController) {
   lever.channels.push_back({.name = "Lever"});
   restart(std::move(lever));
   get_running();
-  const auto say = [this](wire::ControllerAction action, double value) {
+  const auto send = [this](wire::ControllerAction action, double value) {
     played.publish(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, value, 1, kJoinStep});
     poll();
   };
-  say(wire::ControllerAction::acquire, 0);
+  send(wire::ControllerAction::acquire, 0);
   run_to(3);
-  say(wire::ControllerAction::write, 0.5);
+  send(wire::ControllerAction::write, 0.5);
   ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
   live(8000);
   ASSERT_TRUE(request(wire::ControlAction::resume).is_accepted);
@@ -610,8 +610,8 @@ TEST_F(Io, DoesNotBelieveASampleThatCannotExist) {
   get_running();
   run_to(5);
   const std::uint64_t refused = node->member().refusals().too_far_ahead;
-  say_samples(node->next_step() + 1);
-  say_samples(StepIndex{1} << 52);
+  publish_samples(node->next_step() + 1);
+  publish_samples(StepIndex{1} << 52);
   poll(kMs);
   EXPECT_EQ(node->next_step(), 5) << "a tick went out without the samples it waits for";
   EXPECT_EQ(node->member().refusals().too_far_ahead, refused + 4);

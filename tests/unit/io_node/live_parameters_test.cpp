@@ -1,4 +1,4 @@
-// What io_node says about a parameter is what the nodes compute with.
+// The values that io_node publishes of a parameter are those with which the nodes compute.
 #include "io_node/live_parameters.h"
 
 #include <gtest/gtest.h>

@@ -18,7 +18,7 @@ class Shedding : public ::testing::Test {
     return events;
   }
   LoadShedding shedding{scene::ShedLoad::variables, View::flex};
-  Steering steering = Steering::nobody;
+  Steering steering = Steering::none;
   StepIndex n = 0;
   std::uint64_t judged = 0, overruns = 0;
 };
@@ -42,7 +42,7 @@ TEST_F(Shedding, ComesBackLevelByLevelAfterACalmTime) {
   EXPECT_NE(go(200, 0).find("none of the last 2000 steps overran"), std::string::npos);
   EXPECT_EQ(shedding.level(), scene::ShedLoad::view);
   go(1000, 1);
-  EXPECT_EQ(shedding.level(), scene::ShedLoad::view) << "one overrun begins the calm time anew";
+  EXPECT_EQ(shedding.level(), scene::ShedLoad::view) << "one overrun restarts the calm time";
   EXPECT_NE(go(2100, 0).find("nothing is left out"), std::string::npos);
   EXPECT_EQ(shedding.level(), scene::ShedLoad::none);
 }

@@ -14,13 +14,13 @@ class LockstepController : public Io {
     restart(std::move(lever));
     join_all();
   }
-  void say(wire::ControllerAction action, double value = 0, StepIndex based_on = kJoinStep) {
+  void send(wire::ControllerAction action, double value = 0, StepIndex based_on = kJoinStep) {
     played.publish(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, value, 1, based_on});
     poll();
   }
   // every sample is there: what may hold the next tick back is the controller
-  void give_samples() {
-    say_samples(node->next_step());
+  void publish_next_samples() {
+    publish_samples(node->next_step());
     poll(kMs);
   }
   std::vector<wire::ControllerLease> leases() {
@@ -34,12 +34,12 @@ TEST_F(LockstepController, StepZeroWaitsUntilItsChannelIsTaken) {
   EXPECT_EQ(node->next_step(), 0);
   EXPECT_EQ(node->member().state(), NodeState::holding);
   EXPECT_EQ(node->member().reason(), "step 0 waits for a controller on channel Lever");
-  say(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::acquire);
   EXPECT_EQ(node->member().state(), NodeState::running);
   EXPECT_EQ(node->next_step(), 1);
 }
 
-TEST_F(LockstepController, ASessionWhoseControllerNeverComesEndsSayingSo) {
+TEST_F(LockstepController, ASessionWithoutItsControllerEndsWithTheReason) {
   start(1);
   live(1200);
   EXPECT_EQ(node->next_step(), 0);
@@ -60,17 +60,17 @@ TEST_F(LockstepController, APausedSessionWaitsForItWithoutEnd) {
 
 TEST_F(LockstepController, TheTickWaitsForTheValueOfItsStepAndTakesNoOther) {
   start(2);
-  say(wire::ControllerAction::acquire);
-  give_samples();
+  send(wire::ControllerAction::acquire);
+  publish_next_samples();
   ASSERT_EQ(node->next_step(), 2) << "ticks 0 and 1 are within the delay";
-  give_samples();
+  publish_next_samples();
   EXPECT_EQ(node->next_step(), 2);
-  say(wire::ControllerAction::write, 0.9, 1);
+  send(wire::ControllerAction::write, 0.9, 1);
   EXPECT_EQ(node->next_step(), 2) << "that is the value of the tick after the next";
-  say(wire::ControllerAction::write, 0.4, 0);
+  send(wire::ControllerAction::write, 0.4, 0);
   EXPECT_EQ(node->next_step(), 3);
-  say(wire::ControllerAction::write, -1, 0);  // too late
-  give_samples();
+  send(wire::ControllerAction::write, -1, 0);  // too late
+  publish_next_samples();
   EXPECT_EQ(node->next_step(), 4);
   const auto ticks = played.received<wire::Tick>(Topic::tick);
   ASSERT_GE(ticks.size(), 4u);
@@ -84,30 +84,30 @@ TEST_F(LockstepController, TheTickWaitsForTheValueOfItsStepAndTakesNoOther) {
 
 TEST_F(LockstepController, TheTimeForWhichTicksWaitForItIsCounted) {
   start(1);
-  say(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::acquire);
   for (StepIndex n = 0; n < 5; ++n) {
-    say(wire::ControllerAction::write, 0.5, n);
-    give_samples();
+    send(wire::ControllerAction::write, 0.5, n);
+    publish_next_samples();
   }
   const std::int64_t before_ns = node->timing().waited_ns[0];
-  give_samples();
+  publish_next_samples();
   poll(30 * kMs);
-  say(wire::ControllerAction::write, 0.5, 5);
+  send(wire::ControllerAction::write, 0.5, 5);
   EXPECT_EQ(node->next_step(), 7);
   EXPECT_NEAR(static_cast<double>(node->timing().waited_ns[0] - before_ns), 30.0 * kMs, 1.0 * kMs);
   EXPECT_EQ(node->timing().waited_ns[1], 0) << "mechanics' sample was there";
 }
 
-TEST_F(LockstepController, OneThatDiesIsHeldThenPutToNeutralAndEachIsTold) {
+TEST_F(LockstepController, AfterItsDeathTheChannelHoldsThenGoesToNeutralWithANoticeEach) {
   start(1);
-  say(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::acquire);
   for (StepIndex n = 0; n < 5; ++n) {
-    say(wire::ControllerAction::write, 0.5, n);
-    give_samples();
+    send(wire::ControllerAction::write, 0.5, n);
+    publish_next_samples();
   }
   ASSERT_EQ(node->next_step(), 6);
   static_cast<void>(leases());
-  give_samples();
+  publish_next_samples();
   EXPECT_EQ(node->next_step(), 6) << "it waits for 100 ms";
   poll(98 * kMs);
   EXPECT_EQ(node->next_step(), 6);
@@ -138,70 +138,70 @@ TEST_F(LockstepController, OneThatDiesIsHeldThenPutToNeutralAndEachIsTold) {
 
 TEST_F(LockstepController, OneThatIsBackInTimeIsWaitedForAgain) {
   start(1);
-  say(wire::ControllerAction::acquire);
-  say(wire::ControllerAction::write, 0.5, 0);
-  give_samples();
-  give_samples();
+  send(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::write, 0.5, 0);
+  publish_next_samples();
+  publish_next_samples();
   poll(100 * kMs);
   run_to(50);
   static_cast<void>(leases());
-  say(wire::ControllerAction::write, 0.7, 30);  // too late still
+  send(wire::ControllerAction::write, 0.7, 30);  // too late still
   run_to(51);
   EXPECT_TRUE(leases().empty());
-  say(wire::ControllerAction::write, 0.6, 50);
-  give_samples();
+  send(wire::ControllerAction::write, 0.6, 50);
+  publish_next_samples();
   const auto told = leases();
   ASSERT_EQ(told.size(), 1u);
   EXPECT_EQ(told[0].reason, "'pid' is in step from tick 51 on; channel Lever had been without it since tick 2");
   EXPECT_EQ(played.received<wire::Tick>(Topic::tick).back().controls[0], 0.6);
-  give_samples();
+  publish_next_samples();
   EXPECT_EQ(node->next_step(), 52);
 }
 
 TEST_F(LockstepController, ValuesOfStepsWithoutVariablesAreNotWaitedFor) {
   start(1, 10);
-  say(wire::ControllerAction::acquire);
-  say(wire::ControllerAction::write, 0.5, 0);
+  send(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::write, 0.5, 0);
   run_to(11);
-  give_samples();
+  publish_next_samples();
   EXPECT_EQ(node->next_step(), 11) << "tick 11 takes the value of step 10";
-  say(wire::ControllerAction::write, 0.6, 10);
+  send(wire::ControllerAction::write, 0.6, 10);
   EXPECT_EQ(node->next_step(), 12);
   run_to(21);
 }
 
 TEST_F(LockstepController, AValueThatIsNoNumberHoldsTheLastOneAndDoesNotStopTheTicks) {
   start(1);
-  say(wire::ControllerAction::acquire);
-  say(wire::ControllerAction::write, 0.5, 0);
-  give_samples();
-  say(wire::ControllerAction::write, std::numeric_limits<double>::quiet_NaN(), 1);
-  give_samples();
+  send(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::write, 0.5, 0);
+  publish_next_samples();
+  send(wire::ControllerAction::write, std::numeric_limits<double>::quiet_NaN(), 1);
+  publish_next_samples();
   EXPECT_EQ(node->next_step(), 3);
   EXPECT_EQ(played.received<wire::Tick>(Topic::tick).back().controls[0], 0.5);
 }
 
 TEST_F(LockstepController, APauseIsNotItsFault) {
   start(1);
-  say(wire::ControllerAction::acquire);
-  say(wire::ControllerAction::write, 0.5, 0);
-  give_samples();
+  send(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::write, 0.5, 0);
+  publish_next_samples();
   ASSERT_EQ(node->next_step(), 2);
   ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
   live(8000);
   ASSERT_TRUE(request(wire::ControlAction::resume).is_accepted);
-  give_samples();
+  publish_next_samples();
   EXPECT_EQ(node->next_step(), 2);
-  say(wire::ControllerAction::write, 0.4, 1);
+  send(wire::ControllerAction::write, 0.4, 1);
   EXPECT_EQ(node->next_step(), 3);
   for (const auto& lease : leases()) EXPECT_EQ(lease.reason, "");
 }
 
 TEST_F(LockstepController, AResetWaitsForItAgain) {
   start(1);
-  say(wire::ControllerAction::acquire);
-  say(wire::ControllerAction::write, 0.5, 0);
-  give_samples();
+  send(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::write, 0.5, 0);
+  publish_next_samples();
   ASSERT_TRUE(request(wire::ControlAction::reset).is_accepted);
   poll(kMs);
   for (const Role role : {Role::mechanics, Role::hydraulics}) {
@@ -209,26 +209,26 @@ TEST_F(LockstepController, AResetWaitsForItAgain) {
     ready.header.epoch = 1;
     played.publish(Topic::node_status, ready);
   }
-  say_samples(0);
+  publish_samples(0);
   poll(kMs);
   poll(kMs);
   EXPECT_EQ(node->next_step(), 0);
-  say(wire::ControllerAction::write, 0.5, 0);
+  send(wire::ControllerAction::write, 0.5, 0);
   EXPECT_EQ(node->next_step(), 0) << "it has no channel";
-  say(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::acquire);
   EXPECT_EQ(node->next_step(), 1);
 }
 
 TEST_F(LockstepController, OneThatLeavesInMidRunIsAnEventAndAWarning) {
   start(1);
-  say(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::acquire);
   for (StepIndex n = 0; n < 5; ++n) {
-    say(wire::ControllerAction::write, 0.5, n);
-    give_samples();
+    send(wire::ControllerAction::write, 0.5, n);
+    publish_next_samples();
   }
   static_cast<void>(leases());
   static_cast<void>(node->member().take_warnings());
-  say(wire::ControllerAction::release, 0, 4);
+  send(wire::ControllerAction::release, 0, 4);
   run_to(20);
   const std::string expected =
       "'pid' has released channel Lever (controller: lockstep): it is free from tick 6 on, and no tick waits for a "
@@ -242,16 +242,16 @@ TEST_F(LockstepController, OneThatLeavesInMidRunIsAnEventAndAWarning) {
   EXPECT_TRUE(told[0].is_granted);
 }
 
-TEST_F(LockstepController, OneThatDidNotHearOfAResetIsToldWhenItGoesOnWriting) {
+TEST_F(LockstepController, AControllerThatMissedAResetIsRefusedWhenItWrites) {
   start(1);
-  say(wire::ControllerAction::acquire);
-  say(wire::ControllerAction::write, 0.5, 0);
-  give_samples();
+  send(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::write, 0.5, 0);
+  publish_next_samples();
   ASSERT_TRUE(request(wire::ControlAction::reset).is_accepted);
   static_cast<void>(leases());
   poll(1500 * kMs);
-  say(wire::ControllerAction::write, 0.5, 1);
-  say(wire::ControllerAction::write, 0.5, 2);
+  send(wire::ControllerAction::write, 0.5, 1);
+  send(wire::ControllerAction::write, 0.5, 2);
   const auto told = leases();
   ASSERT_EQ(told.size(), 1u);
   EXPECT_FALSE(told[0].is_granted);
@@ -262,10 +262,10 @@ TEST_F(LockstepController, OneThatDidNotHearOfAResetIsToldWhenItGoesOnWriting) {
 
 TEST_F(LockstepController, LoopDelayIsAVariableInStepsAndInMilliseconds) {
   start(2);
-  say(wire::ControllerAction::acquire);
+  send(wire::ControllerAction::acquire);
   for (StepIndex n = 0; n < 5; ++n) {
-    say(wire::ControllerAction::write, 0.5, n);
-    give_samples();
+    send(wire::ControllerAction::write, 0.5, n);
+    publish_next_samples();
   }
   const auto values = last_variables();
   EXPECT_EQ(values.at("Lever.loop_delay"), 2);

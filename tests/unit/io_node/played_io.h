@@ -1,4 +1,4 @@
-// The owner of a session, with the physics nodes and the clock played by the test.
+// The owner of a session; the test plays the physics nodes and the clock.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ class Io : public ::testing::Test {
     poll(kMs);
     played.publish_status(Role::mechanics, NodeState::ready, 0);
     played.publish_status(Role::hydraulics, NodeState::ready, 0);
-    say_samples(0);
+    publish_samples(0);
     poll(kMs);
   }
   // the session runs: tick 0 is out
@@ -62,14 +62,14 @@ class Io : public ::testing::Test {
     poll();
     ASSERT_EQ(node->next_step(), 1);
   }
-  void say_samples(StepIndex step) {
+  void publish_samples(StepIndex step) {
     played.publish_mechanism(step, Phase::running, node->member().epoch());
     played.publish_actuators(step, Phase::running, node->member().epoch());
   }
   // steps in time: each tick is answered at once
   void run_to(StepIndex step) {
     while (node->next_step() < step) {
-      say_samples(node->next_step());
+      publish_samples(node->next_step());
       poll(kMs);
     }
   }
@@ -87,7 +87,7 @@ class Io : public ::testing::Test {
   }
 
   // a node that ends with this reason
-  wire::NodeStatus say_fault(Role role, StepIndex step, ExitCode code, std::string reason) {
+  wire::NodeStatus publish_fault(Role role, StepIndex step, ExitCode code, std::string reason) {
     wire::NodeStatus fault = played.status(role, NodeState::fault, step);
     fault.exit_code = static_cast<std::int32_t>(code);
     fault.reason = std::move(reason);

@@ -1,4 +1,4 @@
-// The place of a lost physics node, with the nodes and the clock played by the test.
+// The role of a lost physics node; the test plays the nodes and the clock.
 #include <gtest/gtest.h>
 
 #include "io_node/io_node.h"
@@ -58,9 +58,9 @@ class Rejoin : public ::testing::Test {
     get_ready(std::move(with));
     if (HasFatalFailure()) return;
     if (holds_places) {
-      EXPECT_EQ(node->next_step(), 0) << "a tick before everybody can be replaced";
-      say_checkpoint(Role::mechanics, 0);
-      say_checkpoint(Role::hydraulics, 0);
+      EXPECT_EQ(node->next_step(), 0) << "a tick before every node can be replaced";
+      publish_checkpoint(Role::mechanics, 0);
+      publish_checkpoint(Role::hydraulics, 0);
       poll(kMs);
     }
     ASSERT_EQ(node->next_step(), 1);
@@ -73,17 +73,17 @@ class Rejoin : public ::testing::Test {
       if (n % 50 == 0) {
         played.publish_status(Role::mechanics, NodeState::running, n);
         played.publish_status(Role::hydraulics, NodeState::running, n);
-        say_recorded(recorded);
+        publish_recorded(recorded);
       }
       poll(kMs);
     }
   }
-  void say_recorded(StepIndex step) {
+  void publish_recorded(StepIndex step) {
     wire::NodeStatus status = played.status(Role::recorder, NodeState::running, step);
     status.recorded_step = step;
     played.publish(Topic::node_status, status);
   }
-  void say_checkpoint(Role role, StepIndex step) {
+  void publish_checkpoint(Role role, StepIndex step) {
     wire::StatePart part;
     part.header = played.header(role, step);
     part.role = role;
@@ -98,7 +98,7 @@ class Rejoin : public ::testing::Test {
   void lose_hydraulics(std::int64_t ms) {
     for (const std::int64_t end_ns = now_ns + ms * kMs; now_ns < end_ns;) {
       played.publish_status(Role::mechanics, NodeState::holding, node->next_step());
-      say_recorded(recorded);
+      publish_recorded(recorded);
       poll(100 * kMs);
     }
   }
@@ -108,7 +108,7 @@ class Rejoin : public ::testing::Test {
     status.pid = 4711;
     return status;
   }
-  std::vector<wire::StatePart> ask_for_state(std::uint32_t incarnation = 99) {
+  std::vector<wire::StatePart> request_state(std::uint32_t incarnation = 99) {
     wire::ResendRequest request;
     request.header = played.header(Role::hydraulics, kJoinStep);
     request.header.incarnation = incarnation;
@@ -129,7 +129,7 @@ class Rejoin : public ::testing::Test {
 TEST_F(Rejoin, HoldsThePlaceGivesTheStateAndGoesOn) {
   get_running(config(milliseconds(30'000)));
   run_to(140);
-  say_checkpoint(Role::hydraulics, 128);
+  publish_checkpoint(Role::hydraulics, 128);
   played.publish_mechanism(140);
   poll(kMs);
   played.forget();
@@ -139,18 +139,18 @@ TEST_F(Rejoin, HoldsThePlaceGivesTheStateAndGoesOn) {
   EXPECT_NE(node->member().reason().find("gone at step 140; its place is held for 30 s"), std::string::npos)
       << node->member().reason();
   EXPECT_NE(node->member().reason().find("the state of step 128"), std::string::npos);
-  // everybody is told who is heard no more, and where the session is
+  // the session is published with the process that is ignored, and with its step
   const auto sessions = played.received<wire::SessionDescription>(Topic::session);
   ASSERT_EQ(sessions.size(), 1u);
   EXPECT_EQ(sessions[0].header.step, 140);
   ASSERT_EQ(sessions[0].given_up.size(), 1u);
   EXPECT_EQ(sessions[0].given_up[0], (wire::GivenUp{Role::hydraulics, PlayedSession::incarnation(Role::hydraulics)}));
   EXPECT_EQ(sessions[0].rejoin_ns, 30'000 * kMs);
-  // nobody else gets the state
-  EXPECT_TRUE(ask_for_state().empty());
+  // no other process gets the state
+  EXPECT_TRUE(request_state().empty());
   played.publish(Topic::node_status, second(NodeState::joining));
   poll(kMs);
-  const auto parts = ask_for_state();
+  const auto parts = request_state();
   ASSERT_EQ(parts.size(), 1u);
   EXPECT_EQ(parts[0].header.step, 128);
   EXPECT_EQ(parts[0].role, Role::hydraulics);
@@ -177,9 +177,9 @@ TEST_F(Rejoin, HoldsThePlaceGivesTheStateAndGoesOn) {
       << warnings.back();
 }
 
-TEST_F(Rejoin, AFirstStateThatDoesNotComeIsTold) {
+TEST_F(Rejoin, WarnsOfAFirstStateThatIsMissing) {
   get_ready(config(milliseconds(30'000)));
-  say_checkpoint(Role::mechanics, 0);
+  publish_checkpoint(Role::mechanics, 0);
   static_cast<void>(node->member().take_warnings());  // of other builds
   for (std::int64_t ms = 0; ms < 2 * kSaveTimeout.ns / kMs && node->next_step() == 0; ms += 100) {
     EXPECT_TRUE(node->member().take_warnings().empty());
@@ -201,7 +201,7 @@ TEST_F(Rejoin, TheHoldAndWhatIsComputedAgainAreNoLagOfTheMachine) {
   strict.session.overrun = scene::OverrunPolicy::stop;
   get_running(std::move(strict));
   run_to(140);
-  say_checkpoint(Role::hydraulics, 128);
+  publish_checkpoint(Role::hydraulics, 128);
   played.publish_mechanism(140);
   poll(kMs);
   const std::uint64_t judged = node->timing().response.count();
@@ -238,8 +238,8 @@ TEST_F(Rejoin, GivesNoStateFromWhichTheOthersWouldMissASample) {
   get_running(config(milliseconds(30'000)));
   run_to(140);
   // it was ahead: its last samples may have been lost with it
-  say_checkpoint(Role::hydraulics, 128);
-  say_checkpoint(Role::hydraulics, 141);
+  publish_checkpoint(Role::hydraulics, 128);
+  publish_checkpoint(Role::hydraulics, 141);
   lose_hydraulics(2500);
   EXPECT_NE(node->member().reason().find("the state of step 128"), std::string::npos) << node->member().reason();
 }
@@ -247,12 +247,12 @@ TEST_F(Rejoin, GivesNoStateFromWhichTheOthersWouldMissASample) {
 TEST_F(Rejoin, TwoLostNodesBeginAtTheSameStep) {
   get_running(config(milliseconds(30'000)));
   run_to(140);
-  say_checkpoint(Role::hydraulics, 128);
+  publish_checkpoint(Role::hydraulics, 128);
   static_cast<void>(node->member().take_warnings());
   for (int i = 0; i < 25; ++i) poll(100 * kMs);
   const std::vector<std::string> warnings = node->member().take_warnings();
   ASSERT_EQ(warnings.size(), 2u);
-  // mechanics can say nothing between 0 and 128, so hydraulics must not begin there
+  // mechanics cannot resend its samples between 0 and 128, so hydraulics must not begin there
   for (const std::string& warning : warnings) {
     EXPECT_NE(warning.find("gets the state of step 0"), std::string::npos) << warning;
   }
@@ -262,15 +262,15 @@ TEST_F(Rejoin, OneThatIsLostWhileItsPartnerCatchesUpBeginsWhereThatBegan) {
   get_running(config(milliseconds(30'000)));
   for (const StepIndex step : {0, 128, 256}) {
     run_to(step + 2);
-    say_checkpoint(Role::mechanics, step);
-    if (step < 256) say_checkpoint(Role::hydraulics, step);
+    publish_checkpoint(Role::mechanics, step);
+    if (step < 256) publish_checkpoint(Role::hydraulics, step);
   }
   run_to(300);
   played.publish_mechanism(300);
   played.publish_actuators(300);
   lose_hydraulics(2500);
   EXPECT_NE(node->member().reason().find("the state of step 128"), std::string::npos) << node->member().reason();
-  // it has come, and has said its samples up to 200 again when mechanics is lost
+  // the replacement has resent its samples up to 200 when mechanics is lost
   for (int i = 0; i < 25; ++i) {
     played.publish(Topic::node_status, second(NodeState::running));
     wire::ActuatorMessage message;
@@ -289,7 +289,7 @@ TEST_F(Rejoin, GivesTheStateFromWhichTheRecorderMissesNothing) {
   get_running(config(milliseconds(30'000), true));
   for (const StepIndex step : {0, 128, 256}) {
     run_to(step + 2);
-    say_checkpoint(Role::hydraulics, step);
+    publish_checkpoint(Role::hydraulics, step);
   }
   recorded = 127;
   run_to(300);
@@ -311,7 +311,7 @@ TEST_F(Rejoin, WithACheckpointThatIsTooOldOrWithoutRejoinTheSessionEnds) {
   EXPECT_EQ(node->member().exit_code(), ExitCode::node_lost);
 }
 
-TEST_F(Rejoin, EndsWhenNobodyComesInTime) {
+TEST_F(Rejoin, EndsWithoutAReplacementInTime) {
   get_running(config(milliseconds(3000)));
   run_to(20);
   lose_hydraulics(4000);
@@ -337,7 +337,7 @@ TEST_F(Rejoin, OneThatComesAndFailsLeavesThePlaceToTheNext) {
   EXPECT_EQ(node->member().state(), NodeState::holding);
   played.publish(Topic::node_status, second(NodeState::joining, 100));
   poll(kMs);
-  EXPECT_EQ(ask_for_state(100).size(), 1u);
+  EXPECT_EQ(request_state(100).size(), 1u);
   played.publish(Topic::node_status, second(NodeState::ready, 100));
   poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::running);

@@ -1,4 +1,4 @@
-// A session that is saved, goes on from there, or is put there, with the nodes and the clock played by the test.
+// A session that is saved, continued or loaded; the test plays the nodes and the clock.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -20,7 +20,7 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-// moves the stick to and fro, so that the ramp is never at rest
+// Moves the stick back and forth, so that the ramp is never at rest.
 class Swinging final : public InputSource {
  public:
   [[nodiscard]] std::span<const std::string> channels() const noexcept override { return names_; }
@@ -34,7 +34,7 @@ class Swinging final : public InputSource {
   std::vector<std::string> names_{"Input_Lift"};
 };
 
-// One io_node and those it talks to.
+// One io_node and its partners.
 class World {
  public:
   static IoConfig config(StepIndex unit = 1) {
@@ -76,17 +76,17 @@ class World {
       played.publish(Topic::node_status, ready);
     }
     poll(kMs);
-    say_samples(begin);
+    publish_samples(begin);
     poll(kMs);
     ASSERT_EQ(node->next_step(), begin + 1);
   }
-  void say_samples(StepIndex step) {
+  void publish_samples(StepIndex step) {
     played.publish_mechanism(step, Phase::running, node->member().epoch());
     played.publish_actuators(step, Phase::running, node->member().epoch());
   }
   void run_to(StepIndex step) {
     for (int i = 0; node->next_step() < step && i < 1000; ++i) {
-      say_samples(node->next_step());
+      publish_samples(node->next_step());
       poll(kMs);
     }
   }
@@ -95,7 +95,7 @@ class World {
       if (tick.header.phase == Phase::running) ticks[tick.header.step] = tick;
     }
   }
-  void ask(ControlAction action, std::uint64_t number) {
+  void control(ControlAction action, std::uint64_t number) {
     wire::ControlRequest request;
     request.session = "s";
     request.request = number;
@@ -103,14 +103,14 @@ class World {
     played.publish(Topic::control_request, request);
     poll();
   }
-  // to requests; events are told without one
+  // replies to requests, without events
   std::vector<wire::ControlReply> replies() {
     std::vector<wire::ControlReply> all = played.received<wire::ControlReply>(Topic::control_reply);
     std::erase_if(all, [](const wire::ControlReply& reply) { return reply.request == 0; });
     return all;
   }
 
-  // what io asks of the nodes is answered
+  // the nodes answer io's requests
   void give_states() {
     for (const auto& asked : played.received<wire::ResendRequest>(Topic::resend)) {
       if (asked.topic != static_cast<std::uint8_t>(Topic::checkpoint)) continue;
@@ -147,10 +147,10 @@ TEST(Saved, AsOneRequestHoweverOftenItIsSent) {
   World world;
   world.get_running(World::config());
   world.run_to(110);
-  world.ask(ControlAction::save, 9);
-  world.say_samples(110);
+  world.control(ControlAction::save, 9);
+  world.publish_samples(110);
   world.poll(kMs);
-  world.ask(ControlAction::save, 9);
+  world.control(ControlAction::save, 9);
   EXPECT_TRUE(world.replies().empty());
   world.give_states();
   for (int copy = 0; copy < 3; ++copy) {
@@ -158,7 +158,7 @@ TEST(Saved, AsOneRequestHoweverOftenItIsSent) {
     ASSERT_EQ(answers.size(), 1u) << copy;
     EXPECT_TRUE(answers[0].is_accepted) << answers[0].reason;
     EXPECT_EQ(answers[0].header.step, 110);
-    world.ask(ControlAction::save, 9);
+    world.control(ControlAction::save, 9);
   }
   EXPECT_EQ(world.states_of(9).size(), 3u);
   world.run_to(120);
@@ -169,9 +169,9 @@ TEST(Saved, AtAStepBoundaryWithTheStatesOfAllAndGoesOnToTheSameTicks) {
   World world;
   world.get_running(World::config());
   world.run_to(110);
-  world.ask(ControlAction::save, 9);
+  world.control(ControlAction::save, 9);
   EXPECT_TRUE(world.replies().empty());
-  world.say_samples(110);
+  world.publish_samples(110);
   world.poll(kMs);
   EXPECT_EQ(world.node->next_step(), 110) << "a tick went out before the states were there";
   world.give_states();
@@ -212,18 +212,18 @@ TEST(Saved, OnlyWhereAllNodesHaveExchanged) {
   World world;
   world.get_running(World::config(4));
   world.run_to(9);
-  world.ask(ControlAction::pause, 1);
-  world.ask(ControlAction::save, 2);
+  world.control(ControlAction::pause, 1);
+  world.control(ControlAction::save, 2);
   const auto refused = world.replies();
   ASSERT_EQ(refused.size(), 2u);
   EXPECT_FALSE(refused[1].is_accepted);
   EXPECT_NE(refused[1].reason.find("go on to step 12 first ('slewring control step 3')"), std::string::npos)
       << refused[1].reason;
-  world.ask(ControlAction::resume, 3);
-  world.ask(ControlAction::save, 4);
+  world.control(ControlAction::resume, 3);
+  world.control(ControlAction::save, 4);
   static_cast<void>(world.replies());
   world.run_to(12);
-  world.say_samples(12);
+  world.publish_samples(12);
   world.poll(kMs);
   EXPECT_EQ(world.node->next_step(), 12);
   world.give_states();
@@ -236,11 +236,11 @@ TEST(Saved, NotWithoutTheStateOfANodeAndTheSessionGoesOn) {
   World world;
   world.get_running(World::config());
   world.run_to(20);
-  world.ask(ControlAction::save, 2);
+  world.control(ControlAction::save, 2);
   for (int i = 0; i < 60; ++i) {
     world.played.publish_status(Role::mechanics, NodeState::running, 20);
     world.played.publish_status(Role::hydraulics, NodeState::running, 20);
-    world.say_samples(20);
+    world.publish_samples(20);
     world.poll(100 * kMs);
   }
   const auto answers = world.replies();
@@ -249,8 +249,8 @@ TEST(Saved, NotWithoutTheStateOfANodeAndTheSessionGoesOn) {
   EXPECT_NE(answers[0].reason.find("has not given its state of step 20 within 5 s"), std::string::npos)
       << answers[0].reason;
   EXPECT_GT(world.node->next_step(), 20);
-  // one that says that it has none
-  world.ask(ControlAction::save, 3);
+  // a node that reports that it has none
+  world.control(ControlAction::save, 3);
   wire::StatePart nothing;
   nothing.header = world.played.header(Role::hydraulics, world.node->next_step());
   nothing.role = Role::hydraulics;
@@ -259,14 +259,14 @@ TEST(Saved, NotWithoutTheStateOfANodeAndTheSessionGoesOn) {
   const auto more = world.replies();
   ASSERT_EQ(more.size(), 1u);
   EXPECT_NE(more[0].reason.find("the hydraulics node's state cannot be saved"), std::string::npos) << more[0].reason;
-  // a scene that says so itself
+  // a scene whose state cannot be saved
   World other;
   IoConfig config = World::config();
   config.save_obstacle = "its clock decides";
   other.get_running(std::move(config));
-  other.ask(ControlAction::save, 4);
+  other.control(ControlAction::save, 4);
   EXPECT_NE(other.replies().back().reason.find("cannot be saved: its clock decides"), std::string::npos);
-  other.ask(ControlAction::load, 5);
+  other.control(ControlAction::load, 5);
   EXPECT_NE(other.replies().back().reason.find("takes no saved state: its clock decides"), std::string::npos);
 }
 
@@ -274,7 +274,7 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
   World world;
   world.get_running(World::config());
   world.run_to(110);
-  world.ask(ControlAction::save, 9);
+  world.control(ControlAction::save, 9);
   world.give_states();
   const std::vector<SavedState> states = world.states_of(9);
   std::map<StepIndex, wire::Tick> ticks, again;
@@ -292,7 +292,7 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
   };
   // one state is missing
   upload(20, 2);
-  world.ask(ControlAction::load, 20);
+  world.control(ControlAction::load, 20);
   EXPECT_TRUE(world.replies().empty());
   for (int i = 0; i < 25; ++i) {
     world.run_to(world.node->next_step() + 1);
@@ -305,7 +305,7 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
   EXPECT_EQ(world.node->member().epoch(), 0u);
   // all of them
   upload(21, 3);
-  world.ask(ControlAction::load, 21);
+  world.control(ControlAction::load, 21);
   answers = world.replies();
   ASSERT_EQ(answers.size(), 1u);
   EXPECT_TRUE(answers[0].is_accepted) << answers[0].reason;
@@ -336,7 +336,7 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
     ready.header.epoch = 1;
     world.played.publish(Topic::node_status, ready);
   }
-  world.say_samples(110);
+  world.publish_samples(110);
   world.poll(kMs);
   world.run_to(140);
   world.collect(again);
@@ -345,13 +345,13 @@ TEST(Saved, StatesThatAnObserverGivesBeginAnEpoch) {
   }
 }
 
-TEST(Saved, TicksOfARecordingTellWhereIoIs) {
+TEST(Saved, TheTicksOfARecordingGiveTheStateOfIo) {
   World world;
   world.get_running(World::config());
   world.run_to(120);
   std::map<StepIndex, wire::Tick> ticks;
   world.collect(ticks);
-  world.ask(ControlAction::save, 9);
+  world.control(ControlAction::save, 9);
   world.give_states();
   const IoConfig config = World::config();
   TickFollower follower(config);
@@ -416,7 +416,7 @@ TEST_F(SavedFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(read.find(Role::flex), nullptr);
 }
 
-// found by a fuzzer: to copy no bytes to nowhere is undefined (the sanitizers tell)
+// found by a fuzzer: a copy of no bytes to a null pointer is undefined (a sanitizer reports it)
 TEST_F(SavedFile, OfANodeWithoutBytesComesBackToo) {
   SavedSession saved = some();
   saved.states.push_back({Role::flex, {1234, 7, {}}});
@@ -454,7 +454,7 @@ TEST_F(SavedFile, CutOrChangedAnywhereIsRefused) {
   EXPECT_EQ(read_saved(folder_.path() / "none", read).code, ExitCode::bad_input);
 }
 
-TEST_F(SavedFile, ReplacesAnotherOnlyWhenAskedAndLeavesNothingBeside) {
+TEST_F(SavedFile, ReplacesAnotherOnlyOnRequestAndLeavesNoOtherFile) {
   std::ofstream(path_) << "mine";
   EXPECT_EQ(write_saved(path_, some(), Replace::never).code, ExitCode::bad_input);
   EXPECT_EQ(std::filesystem::file_size(path_), 4u);

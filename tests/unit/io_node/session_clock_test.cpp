@@ -1,4 +1,4 @@
-// The books of a paced session on a clock that is a number.
+// Books of a paced session, with a number as the clock.
 #include "io_node/session_clock.h"
 
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ TEST_F(Clock, GivesUpWholeStepsOfALagBeyondItsLimit) {
   EXPECT_EQ(clock->skipped(), 59u);
   EXPECT_EQ(clock->slip_ns(), 59 * kMs);
   EXPECT_EQ(problem(), "");
-  // told once while it goes on, and again when it is over
+  // reported once while it lasts, and again when it is over
   step(100 * kMs);
   const std::optional<OverrunAction> again = step(kMs / 10);
   ASSERT_TRUE(again);
