@@ -49,13 +49,13 @@ TEST(SampleProgress, OnlyAFreeRunningNodeCanBeAheadOfTheTicks) {
   EXPECT_EQ(lockstep.receive(Role::mechanics, 11, 10), Receipt::too_far_ahead);
   EXPECT_EQ(lockstep.newest(Role::mechanics), kJoinStep);
   session.mode = scene::ExchangeMode::free_running;
-  SampleProgress free_running(session, 1, kRoles);
+  SampleProgress free_running(session, 1, 10, kRoles);
   EXPECT_EQ(free_running.receive(Role::mechanics, 15, 10), Receipt::later);
   EXPECT_EQ(free_running.receive(Role::mechanics, 16, 10), Receipt::too_far_ahead);
 }
 
 TEST(SampleProgress, AFlexNodeFollowsAndDoesNotDelayTheStatistics) {
-  SampleProgress samples({}, 4, kRoles | bit(Role::flex));
+  SampleProgress samples({}, 4, 10, kRoles | bit(Role::flex));
   samples.restart(0);
   for (const Role role : {Role::mechanics, Role::hydraulics}) samples.receive(role, 100, 100);
   EXPECT_EQ(samples.needed(Role::flex, 63), kJoinStep);
