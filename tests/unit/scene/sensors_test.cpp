@@ -42,7 +42,9 @@ sensors:
 recording: {every: 20}
 )",
                                 "test");
-  for (const Scene& read : {scene, load_text(scene.expanded_text, "again")}) {
+  const Scene again = load_text(scene.expanded_text, "again");
+  for (const Scene* one : {&scene, &again}) {
+    const Scene& read = *one;
     ASSERT_EQ(read.sensors.size(), 3u);
     EXPECT_EQ(read.sensors[0].limit, 0.1);
     EXPECT_EQ(read.sensors[0].to, (std::vector<std::string>{"Floor", "Plate"}));

@@ -82,7 +82,7 @@ TEST(FallingBall, IsSeenAtTheHeightAndSpeedOfItsFall) {
 TEST(CraneWithSensors, ComputesTheSamePhysicsAsWithout) {
   const std::string file = SLEWRING_SOURCE_DIR "/scenes/truck_crane_sensors.yaml";
   const scene::Scene with = scene::load_file(file);
-  scene::Scene without = with;
+  scene::Scene without = scene::load_file(file);
   without.sensors.clear();
   DirectSession one(with), other(without);
   ASSERT_TRUE(one.start().is_ok());
