@@ -64,6 +64,9 @@ class Validator {
     const FrameDef* frame = find_named(def_.frames, shape.frame);
     if (frame == nullptr) {
       add(shape.name, "frame", fmt::format("there is no frame '{}'", shape.frame), "the name of a frame");
+    } else if (shape.type == ShapeType::plane && !frame->is_static) {
+      add(shape.name, "frame", fmt::format("a plane cannot move, and '{}' does", frame->name),
+          "a frame that does not move, or a convex shape");
     }
     if (!is_finite(shape.position)) add(shape.name, "position", "it is not finite", "three numbers in m");
     if (!is_finite(shape.orientation)) add(shape.name, "orientation", "it is not finite", "three numbers in rad");

@@ -66,8 +66,6 @@ TEST(SensorSection, RefusesWhatCannotWorkWithItsPlace) {
   EXPECT_NE(problem_of("  S: {type: clearance, of: [Ball], to: [Round]}").find("can move relative to"),
             std::string::npos);
   EXPECT_NE(problem_of("  S: {type: zone, zone: Sheet, watch: [Ball]}").find("has no inside"), std::string::npos);
-  EXPECT_NE(problem_of("  S: {type: clearance, of: [Ball], to: [Floor], hysteresis: 1 m}").find("S.hysteresis"),
-            std::string::npos);
   EXPECT_NE(problem_of("  S: {type: zone, zone: Gate, watch: [Ball, Ball]}").find("named twice"), std::string::npos);
   EXPECT_NE(problem_of("  S: {type: camera}").find("camera"), std::string::npos);
 }
