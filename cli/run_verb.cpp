@@ -13,8 +13,7 @@
 #include "core/failure.h"
 #include "core/printable.h"
 #include "observer/observer.h"
-#include "session/distributed_run.h"
-#include "session/in_process_run.h"
+#include "session/run.h"
 #include "session/unrecorded.h"
 
 namespace slew::cli {
