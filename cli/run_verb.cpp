@@ -14,8 +14,7 @@
 #include "core/node_names.h"
 #include "core/printable.h"
 #include "observer/observer.h"
-#include "session/distributed_run.h"
-#include "session/in_process_run.h"
+#include "session/run.h"
 #include "session/unrecorded.h"
 
 namespace slew::cli {
