@@ -1,5 +1,6 @@
 #include "transport/fastdds/fastdds_participant.h"
 
+#include <arpa/inet.h>
 #include <fastdds/rtps/attributes/RTPSParticipantAttributes.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
@@ -8,10 +9,13 @@
 #include <fmt/format.h>
 #include <netdb.h>
 #include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 #include <fastdds/dds/log/Log.hpp>
 
-#include <cstring>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <mutex>
 
 #include "transport/host_network.h"
@@ -87,9 +91,8 @@ void add_security(const SecurityFiles& files, rtps::PropertyPolicy& policy) {
   add("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
 }
 
-Status attributes_of(const Network& network, const std::string& name, rtps::RTPSParticipantAttributes& attributes) {
-  std::string own_address;
-  if (Status status = find_address(network.interface, own_address); !status.is_ok()) return status;
+Status attributes_of(const Network& network, const std::string& own_address, const std::string& name,
+                     rtps::RTPSParticipantAttributes& attributes) {
   attributes.setName(network.security ? "" : name.c_str());
 
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
@@ -107,7 +110,6 @@ Status attributes_of(const Network& network, const std::string& name, rtps::RTPS
   }
 
   auto& builtin = attributes.builtin;
-  builtin.mutation_tries = kMaxProcesses;
   builtin.discovery_config.leaseDuration = {2, 0};
   builtin.discovery_config.leaseDuration_announcementperiod = {0, 500'000'000};
   builtin.metatrafficUnicastLocatorList.push_back(locator_of(own_address));
@@ -122,6 +124,52 @@ Status attributes_of(const Network& network, const std::string& name, rtps::RTPS
   attributes.allocation.send_buffers.dynamic = true;
   if (network.security) add_security(*network.security, attributes.properties);
   return Status::ok();
+}
+
+[[nodiscard]] sockaddr_in address_of(const std::string& address, std::uint32_t port) {
+  sockaddr_in found{};
+  found.sin_family = AF_INET;
+  found.sin_port = htons(static_cast<std::uint16_t>(port));
+  inet_pton(AF_INET, address.c_str(), &found.sin_addr);
+  return found;
+}
+
+[[nodiscard]] bool is_free(const sockaddr_in& address) {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool is_bound = ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  ::close(fd);
+  return is_bound;
+}
+
+// Whether a socket of this process is bound to it.
+[[nodiscard]] bool is_ours(const sockaddr_in& address) {
+  std::error_code gone;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", gone)) {
+    sockaddr_in found{};
+    socklen_t size = sizeof found;
+    const int fd = std::atoi(entry.path().filename().c_str());
+    if (getsockname(fd, reinterpret_cast<sockaddr*>(&found), &size) != 0 || found.sin_family != AF_INET) continue;
+    if (found.sin_port == address.sin_port && found.sin_addr.s_addr == address.sin_addr.s_addr) return true;
+  }
+  return false;
+}
+
+// Creates the participant on the first free port of discovery: on ports beyond those of kMaxProcesses other processes
+// do not look for it. Null without an error: all of them are in use. Throws what Fast DDS throws.
+Participant create_participant(const Network& network, const std::string& own_address,
+                               rtps::RTPSParticipantAttributes& attributes, FastDiscovery& discovery,
+                               bool& is_refused) {
+  for (std::uint32_t index = 0; index < static_cast<std::uint32_t>(kMaxProcesses); ++index) {
+    const std::uint32_t port = kFirstPort + kPortsOfDomain * network.domain + 10 + 2 * index;
+    const sockaddr_in address = address_of(own_address, port);
+    if (!is_free(address)) continue;
+    attributes.builtin.metatrafficUnicastLocatorList.begin()->port = port;
+    Participant made(rtps::RTPSDomain::createParticipant(network.domain, attributes, &discovery));
+    is_refused = made == nullptr;
+    // Fast DDS goes on without the port when another process has taken it meanwhile
+    if (is_refused || is_ours(address)) return made;
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -142,16 +190,27 @@ Status open_participant(const Network& network, const std::string& name, FastDis
   if (Status status = check(network); !status.is_ok()) return status;
   configure_process();
   rtps::RTPSParticipantAttributes attributes;
-  if (Status status = attributes_of(network, name, attributes); !status.is_ok()) return status;
+  std::string own_address;
+  if (Status status = find_address(network.interface, own_address); !status.is_ok()) return status;
+  if (Status status = attributes_of(network, own_address, name, attributes); !status.is_ok()) return status;
   process_log().set_echo(MiddlewareLog::Echo::off);
   std::string reason;
+  bool is_refused = false;
   try {
-    participant.reset(rtps::RTPSDomain::createParticipant(network.domain, attributes, &discovery));
+    participant = create_participant(network, own_address, attributes, discovery, is_refused);
   } catch (const std::exception& error) {
+    is_refused = true;
     reason = std::string("; ") + error.what();
   }
-  if (participant == nullptr) reason += last_message();
+  if (is_refused) reason += last_message();
   process_log().set_echo(MiddlewareLog::Echo::on);
+  if (participant == nullptr && !is_refused) {
+    return Status::error(
+        ExitCode::resources,
+        fmt::format("cannot join DDS domain {0} on {1}; {2} processes use DDS domain {0} on this host: "
+                    "end some or choose another with --domain",
+                    network.domain, network.interface, kMaxProcesses));
+  }
   if (participant != nullptr) return Status::ok();
   if (network.security) {
     return Status::error(
@@ -161,9 +220,7 @@ Status open_participant(const Network& network, const std::string& name, FastDis
                     reason));
   }
   return Status::error(ExitCode::resources,
-                       fmt::format("cannot join DDS domain {} on {}{}; when {} processes use it on this host, end some "
-                                   "or choose another with --domain",
-                                   network.domain, network.interface, reason, kMaxProcesses));
+                       fmt::format("cannot join DDS domain {} on {}{}", network.domain, network.interface, reason));
 }
 
 }  // namespace slew::transport
