@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <ostream>
 #include <vector>
 
 #include "build_paths.h"
@@ -23,6 +24,10 @@ struct Mix {
   std::vector<Role> roles;  // nodes over `middleware`, the others over Cyclone
   const char* middleware = "fastdds";
 };
+// in the names of tests
+void PrintTo(const Mix& mix, std::ostream* out) {
+  *out << mix.name;
+}
 
 void start(Session& session, Role role, const Mix& mix) {
   const bool is_other = std::ranges::find(mix.roles, role) != mix.roles.end();

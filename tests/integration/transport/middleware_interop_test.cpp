@@ -2,6 +2,7 @@
 #include <dds/dds.h>
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <random>
 #include <tuple>
 
@@ -263,6 +264,10 @@ struct QosMisfit {
   void (*change)(dds_qos_t* qos);
   const char* problem;
 };
+// in the names of tests
+void PrintTo(const QosMisfit& misfit, std::ostream* out) {
+  *out << misfit.name;
+}
 
 bool take_part_with(std::uint32_t domain, const QosMisfit& misfit) {
   TypedProgram program(domain, misfit.change);

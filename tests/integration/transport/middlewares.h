@@ -5,6 +5,7 @@
 
 #include <cctype>
 #include <memory>
+#include <ostream>
 #include <string>
 
 #include "tests/support/test_domain.h"
@@ -50,3 +51,11 @@ inline const auto kAllMiddlewares = ::testing::Values(transport::Middleware::cyc
                                                       transport::Middleware::fastdds_shared);
 
 }  // namespace slew::testing
+
+namespace slew::transport {
+
+inline void PrintTo(Middleware middleware, std::ostream* out) {
+  *out << kMiddlewares[static_cast<std::size_t>(middleware)];
+}
+
+}  // namespace slew::transport
