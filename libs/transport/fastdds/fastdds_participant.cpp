@@ -7,8 +7,10 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/format.h>
+#include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 #include <fastdds/dds/log/Log.hpp>
@@ -26,8 +28,9 @@ namespace {
 
 using eprosima::fastdds::dds::Log;
 
-constexpr std::uint32_t kSocketBuffer = 1 << 20;   // bytes, as Cyclone requests them; the kernel may grant less
-constexpr std::uint32_t kDatagram = 14720;         // bytes, as Cyclone's: ten frames of an Ethernet
+constexpr std::uint32_t kSocketBuffer = 1 << 20;  // bytes, as Cyclone requests them; the kernel may grant less
+constexpr std::uint32_t kDatagram = 14720;        // bytes, as Cyclone's: ten frames of an Ethernet
+constexpr SimDuration kCarrierTimeout = milliseconds(3000);
 constexpr std::uint32_t kSharedSegment = 8 << 20;  // bytes, above the greatest scene's fragments in flight
 
 // Fast DDS has one log per process.
@@ -126,6 +129,31 @@ Status attributes_of(const Network& network, const std::string& own_address, con
   return Status::ok();
 }
 
+[[nodiscard]] bool has_carrier(const std::string& interface) {
+  ifreq request{};
+  interface.copy(request.ifr_name, sizeof request.ifr_name - 1);
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool is_running = ioctl(fd, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_RUNNING) != 0;
+  ::close(fd);
+  return is_running;
+}
+
+// Fast DDS leaves out an interface without a carrier, and never looks again. One that has just been brought up gets it
+// within a second.
+Status wait_for_carrier(const std::string& interface) {
+  const std::int64_t deadline = monotonic_ns() + kCarrierTimeout.ns;
+  while (!has_carrier(interface)) {
+    if (monotonic_ns() >= deadline) {
+      return Status::error(ExitCode::resources,
+                           fmt::format("network interface '{}' has no carrier, and Fast DDS cannot use it; connect its "
+                                       "cable, choose another with --interface, or use --middleware cyclone",
+                                       interface));
+    }
+    sleep_until_monotonic(monotonic_ns() + 10'000'000);
+  }
+  return Status::ok();
+}
+
 [[nodiscard]] sockaddr_in address_of(const std::string& address, std::uint32_t port) {
   sockaddr_in found{};
   found.sin_family = AF_INET;
@@ -192,6 +220,7 @@ Status open_participant(const Network& network, const std::string& name, FastDis
   rtps::RTPSParticipantAttributes attributes;
   std::string own_address;
   if (Status status = find_address(network.interface, own_address); !status.is_ok()) return status;
+  if (Status status = wait_for_carrier(network.interface); !status.is_ok()) return status;
   if (Status status = attributes_of(network, own_address, name, attributes); !status.is_ok()) return status;
   process_log().set_echo(MiddlewareLog::Echo::off);
   std::string reason;

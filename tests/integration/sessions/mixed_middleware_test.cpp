@@ -63,7 +63,7 @@ TEST_P(Mixed, MiddlewaresGiveTheBitsOfOneProcess) {
   expect_bits_of_one_process(session, 1600);
 }
 
-TEST_P(Mixed, NightlyMiddlewaresOverACableThatLosesDatagramsToo) {
+TEST_P(Mixed, MiddlewaresOverACableThatLosesDatagramsToo) {
   NamespacePair cable;
   if (!cable.problem().empty()) GTEST_SKIP() << "network namespaces are not possible here: " << cable.problem();
   Session session({"--pace", "free", "--duration", "1.6s"});
@@ -75,7 +75,7 @@ TEST_P(Mixed, NightlyMiddlewaresOverACableThatLosesDatagramsToo) {
   EXPECT_GT(cable.lost(cable.right()), 0u) << "nothing was lost: the test shows nothing";
 }
 
-TEST_P(Mixed, NightlyMiddlewaresWhoseMechanicsIsKilledAndReplacedToo) {
+TEST_P(Mixed, MiddlewaresWhoseMechanicsIsKilledAndReplacedToo) {
   Session session({"--pace", "real", "--duration", "1.6s", "--set", "session.rejoin=20s"});
   Observer& observer = session.observer();
   start_all(session, GetParam());
