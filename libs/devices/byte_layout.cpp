@@ -9,6 +9,7 @@
 #include "core/failure.h"
 #include "core/suggestion.h"
 #include "devices/field_rules.h"
+#include "devices/raw_bits.h"
 
 namespace slew::devices {
 namespace {
@@ -79,7 +80,6 @@ ByteType type_of_checksum(Checksum kind) {
   }
 }
 
-// Bounds of the raw number as doubles: the largest double within a 64-bit integer is not its largest value.
 void set_bounds(PlacedField& field) {
   if (field.type == ByteType::boolean) {
     field.least = 0, field.most = 1;
@@ -88,10 +88,8 @@ void set_bounds(PlacedField& field) {
                                                  : std::numeric_limits<double>::max();
     field.least = -field.most;
   } else {
-    const bool has_sign = is_signed(field.type);
-    const double beyond = std::ldexp(1.0, static_cast<int>(field.bits) - (has_sign ? 1 : 0));
-    field.least = has_sign ? -beyond : 0;
-    field.most = field.bits > 53 ? std::nextafter(beyond, 0.0) : beyond - 1;
+    field.least = least_number(field.bits, is_signed(field.type));
+    field.most = greatest_number(field.bits, is_signed(field.type));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "devices/raw_bits.h"
 
 namespace slew::devices {
 namespace {
@@ -25,10 +26,6 @@ void write_number(ByteOrder order, std::uint64_t number, std::span<std::byte> by
   }
 }
 
-std::uint64_t mask_of(unsigned bits) noexcept {
-  return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
-}
-
 std::uint64_t read_bits(const ByteLayout& layout, const PlacedField& field,
                         std::span<const std::byte> packet) noexcept {
   const std::uint64_t number = read_number(layout.byte_order, packet.subspan(field.byte, field.bytes));
@@ -47,18 +44,14 @@ double raw_of(const PlacedField& field, std::uint64_t bits) noexcept {
     default:
       break;
   }
-  if (!is_signed(field.type)) return static_cast<double>(bits);
-  const std::uint64_t sign = std::uint64_t{1} << (field.bits - 1);
-  return static_cast<double>(static_cast<std::int64_t>((bits ^ sign) - sign));
+  return number_of(bits, field.bits, is_signed(field.type));
 }
 
 // Pre-condition: raw within the field's bounds, a whole number for integers.
 std::uint64_t bits_of_raw(const PlacedField& field, double raw) noexcept {
   if (field.type == ByteType::float32) return std::bit_cast<std::uint32_t>(static_cast<float>(raw));
   if (field.type == ByteType::float64) return std::bit_cast<std::uint64_t>(raw);
-  const std::uint64_t bits =
-      raw < 0 ? static_cast<std::uint64_t>(static_cast<std::int64_t>(raw)) : static_cast<std::uint64_t>(raw);
-  return bits & mask_of(field.bits);
+  return word_of(raw, field.bits);
 }
 
 std::uint32_t checksum_of_packet(const ByteLayout& layout, std::span<const std::byte> packet) noexcept {

@@ -6,8 +6,8 @@
 //   done
 //
 // Result of an axis: lowest and highest are the counts met, centre is the middle of all counts at rest, dead_zone
-// covers them with a margin. An axis that rests in the outer quarter of the device's range and at an end of its travel
-// is a pedal: its centre is that end. One that rests elsewhere must have moved to both sides.
+// covers them with a margin, 0.5 at most. An axis that rests in the outer quarter of the device's range and at an end
+// of its travel is a pedal: its centre is that end. One that rests elsewhere must have moved to both sides.
 #pragma once
 
 #include <cstdint>
