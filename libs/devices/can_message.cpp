@@ -119,6 +119,23 @@ bool is_selected(const CanSignal& signal, std::uint64_t choice) noexcept {
                      [&](const SelectorRange& range) { return range.first <= choice && choice <= range.last; });
 }
 
+std::vector<unsigned> bits_of(const CanSignal& signal) {
+  std::vector<unsigned> bits;
+  unsigned bit = signal.start_bit;
+  for (unsigned i = 0; i < signal.bits; ++i, bit = next_bit(signal.order, bit)) bits.push_back(bit);
+  return bits;
+}
+
+// Some number of the selector has both in the message.
+bool can_be_together(const CanSignal& a, const CanSignal& b) {
+  if (a.selected_by.empty() || b.selected_by.empty()) return true;
+  return std::any_of(a.selected_by.begin(), a.selected_by.end(), [&](const SelectorRange& range) {
+    return std::any_of(b.selected_by.begin(), b.selected_by.end(), [&](const SelectorRange& other) {
+      return range.first <= other.last && other.first <= range.last;
+    });
+  });
+}
+
 // Bits of a value, held at the signal's bounds; counts when it was.
 std::uint64_t word_of_value(const CanSignal& signal, double value, ReservedCodes codes, std::uint64_t& held) noexcept {
   const double allowed = signal.has_range() ? std::clamp(value, signal.lowest, signal.highest) : value;
@@ -202,6 +219,21 @@ void validate(std::string_view path, const CanMessage& message, Problems& proble
   if (selectors > 1) refuse("signals", "the message has two multiplexers", "one");
   if (is_any_selected && selectors == 0)
     refuse("signals", "signals are multiplexed, but there is no multiplexer M", "");
+}
+
+void check_overlaps(std::string_view path, const CanMessage& message, Problems& problems) {
+  for (const CanSignal& a : message.signals) {
+    const std::vector<unsigned> bits = bits_of(a);
+    for (const CanSignal& b : message.signals) {
+      if (&b == &a) break;
+      const auto is_shared = [&](unsigned bit) { return std::find(bits.begin(), bits.end(), bit) != bits.end(); };
+      const std::vector<unsigned> others = bits_of(b);
+      if (can_be_together(a, b) && std::any_of(others.begin(), others.end(), is_shared)) {
+        problems.push_back({fmt::format("{}.{}", path, a.name), fmt::format("it shares bits with {}", b.name),
+                            "signals of their own bits in a message that is sent", ""});
+      }
+    }
+  }
 }
 
 std::uint64_t raw_bits(const CanSignal& signal, std::span<const std::byte> frame) noexcept {

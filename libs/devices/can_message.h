@@ -59,6 +59,9 @@ struct CanMessage {
 // signals are selected. path: of the message.
 void validate(std::string_view path, const CanMessage& message, Problems& problems);
 
+// For a message that is to be sent: appends a problem for signals that can be in one frame and share bits.
+void check_overlaps(std::string_view path, const CanMessage& message, Problems& problems);
+
 // Codes that are no numbers (SAE J1939-71, 5.2.2): for one, two, three or four whole bytes the top byte 0xFF means not
 // available, 0xFE error, 0xFB to 0xFD are reserved; for other sizes of two bits and more all ones mean not available,
 // one less error. Unsigned integers only.

@@ -15,7 +15,7 @@ namespace slew::devices {
 namespace {
 
 constexpr std::size_t kMaxProblems = 20;
-constexpr std::uint32_t kExtendedFlag = 0x80000000, kIdMask = 0x1FFFFFFF;
+constexpr std::uint32_t kExtendedFlag = 0x80000000;
 constexpr std::uint32_t kNoMessage = 0xC0000000;  // holder of signals without a message: VECTOR__INDEPENDENT_SIG_MSG
 
 // A problem of the statement at hand; caught at its begin.

@@ -317,6 +317,31 @@ TEST(CanMessage, HoldsValuesAtBoundsAndRefusesWhatIsNotFinite) {
             EncodeFault::not_finite);
 }
 
+TEST(CanMessage, WithSharedBitsIsRefusedForSending) {
+  const auto overlaps = [](const CanMessage& message) {
+    Problems problems;
+    check_overlaps(message.name, message, problems);
+    std::vector<std::string> texts;
+    for (const Problem& problem : problems) texts.push_back(problem.path + ": " + problem.what);
+    return texts;
+  };
+  for (const CanMessage& message : machine().messages) EXPECT_TRUE(overlaps(message).empty()) << message.name;
+  // an Intel one of byte 0 and 1, and a Motorola one whose last bit is bit 8
+  CanMessage message = {.name = "M",
+                        .signals = {{.name = "a", .start_bit = 0, .bits = 9},
+                                    {.name = "b", .start_bit = 15, .bits = 8, .order = ByteOrder::big},
+                                    {.name = "c", .start_bit = 23, .bits = 8, .order = ByteOrder::big}}};
+  EXPECT_EQ(overlaps(message), std::vector<std::string>{"M.b: it shares bits with a"});
+  message.signals[0].bits = 8;
+  EXPECT_TRUE(overlaps(message).empty());
+  message.signals[0].bits = 9;
+  message.signals[0].selected_by = {{0, 2}};
+  message.signals[1].selected_by = {{3, 4}};
+  EXPECT_TRUE(overlaps(message).empty());
+  message.signals[1].selected_by = {{2, 4}};
+  EXPECT_EQ(overlaps(message).size(), 1U);
+}
+
 TEST(CanMessage, AValueOutOfRangeIsNone) {
   const CanMessage message = {
       .name = "M", .signals = {{.name = "a", .start_bit = 0, .bits = 8, .scale = 0.1, .lowest = 0.1, .highest = 0.3}}};
