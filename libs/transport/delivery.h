@@ -11,8 +11,8 @@ inline constexpr SimDuration kFarewell = milliseconds(250);    // for the last m
 // blocks of variables that a writer keeps for a controller that finds it after the first ticks of its loop's delay
 inline constexpr std::int32_t kLastBlocks = 128;
 inline constexpr std::size_t kInFlight = 64;  // messages received and not taken, or written and not sent
-// variables: io, mechanics, hydraulics, flex; inputs: as many controllers
-inline constexpr std::int32_t kWriters = 4;
+// variables: io, mechanics, hydraulics, flex, sensor; inputs: as many controllers
+inline constexpr std::int32_t kWriters = 5;
 
 // Messages that a writer keeps for late readers; 0: volatile.
 [[nodiscard]] constexpr std::int32_t kept_by_writer(const TopicTraits& topic) {
