@@ -242,7 +242,8 @@ std::unique_ptr<Link> connect(Way way, std::uint32_t domain, Topic own) {
 // One process of the star: the last message received on every topic.
 class Process {
  public:
-  Process(Way way, std::uint32_t domain, Topic own) : own_(own), link_(connect(way, domain, own)) {}
+  Process(Way way, std::uint32_t domain, Topic own)
+      : own_(own), way_(kWays[static_cast<std::size_t>(way)]), link_(connect(way, domain, own)) {}
 
   // Publishes hello until a message of every other process has arrived, then a confirmation until all others have
   // published theirs.
@@ -263,7 +264,7 @@ class Process {
   void wait_for(Topic topic, StepIndex step) {
     const std::int64_t give_up = monotonic_ns() + kGiveUp;
     while (last_step(topic) < step) {
-      if (monotonic_ns() > give_up) fail("no message for 20 s");
+      if (monotonic_ns() > give_up) fail(fmt::format("{}: no message for 20 s", way_));
       hear(give_up);
     }
   }
@@ -294,6 +295,7 @@ class Process {
   static constexpr StepIndex kNothing = -3;
 
   Topic own_;
+  const char* way_;
   std::unique_ptr<Link> link_;
   std::array<StepIndex, wire::kTopics> last_steps_ = [] {
     std::array<StepIndex, wire::kTopics> last_step{};

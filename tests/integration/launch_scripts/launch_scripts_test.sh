@@ -190,6 +190,7 @@ help() {
 failed_test() {
   package_list run < /dev/null
   package_list test < /dev/null
+  package_list fastdds < /dev/null
   mkdir -p "$tree/tests/unit/math"
   : > "$tree/tests/unit/math/CMakeLists.txt"
   stand_in cmake
