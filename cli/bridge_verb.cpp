@@ -33,7 +33,7 @@ ExitCode run(Options options) {
   node::install_signal_handlers();
   options.lcm.is_insecure_lan = options.session.is_insecure_lan;
   bridge::Bridge bridge(options.lcm);
-  const auto access = bridge.is_door() ? session::Access::steer : session::Access::look;
+  const auto access = bridge.is_door() ? session::Access::control : session::Access::look;
   const auto observer = session::find_session(options.session, access, &bridge.receiver());
   if (!options.types.empty()) return write_types(options, bridge, *observer);
   const wire::SessionDescription& session = observer->view().session();
@@ -51,8 +51,8 @@ ExitCode run(Options options) {
 bridge::SceneView lcm_scene(const scene::Scene& scene) {
   bridge::SceneView view;
   for (const scene::InputDef& input : scene.inputs) {
-    view.channels.push_back({input.name, input.type == scene::InputType::digital,
-                             input.controller == scene::ControllerMode::lockstep});
+    view.channels.push_back(
+        {input.name, input.type == scene::InputType::digital, input.controller == scene::ControllerMode::lockstep});
   }
   view.variables_every = scene.recording.every;
   view.neutral_after = duration_of_seconds(scene.session.controller_timeout);
@@ -78,7 +78,8 @@ void add_lcm_options(options::Command& verb, bridge::Settings& settings) {
 void add_bridge(options::Command& program) {
   options::Command verb = program.command("bridge", "carry a running session to programs of another middleware");
   verb.require_command();
-  options::Command lcm = verb.command("lcm", "variables, health and signal lists to LCM; inputs and parameters from it");
+  options::Command lcm =
+      verb.command("lcm", "variables, health and signal lists to LCM; inputs and parameters from it");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   node::add_session_options(lcm, options->session, false);
   add_lcm_options(lcm, options->lcm);

@@ -121,14 +121,17 @@ ExitCode export_input(const Options& options, const std::vector<std::string>& pa
 }
 
 // The session as its observers saw it.
-void write_log(const Options& options, const recording::Reader& reader, const scene::Scene& scene, std::ofstream& file) {
-  bridge::LogExport log(options.for_lcm, reader.identity().session_name, lcm_scene(scene),
-                        [&file](std::string_view bytes) { file.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+void write_log(const Options& options, const recording::Reader& reader, const scene::Scene& scene,
+               std::ofstream& file) {
+  bridge::LogExport log(
+      options.for_lcm, reader.identity().session_name, lcm_scene(scene),
+      [&file](std::string_view bytes) { file.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
   const session::TimeRange range = session::recorded_range(options.from, options.to);
   log.choose(range.from_ns, range.to_ns);
   observer::SessionView view;
   session::watch_recording(reader, view, log.receiver(view));
-  if (log.events() == 0) throw Failure(ExitCode::bad_input, "the recording has no variables in this time; nothing was written");
+  if (log.events() == 0)
+    throw Failure(ExitCode::bad_input, "the recording has no variables in this time; nothing was written");
   for (const std::string& input : log.missing_inputs()) {
     fmt::print(stderr, "warning: {}.raw is not recorded (recording.variables): the log has no inputs for {}\n", input,
                input);
@@ -203,10 +206,11 @@ void add_export(options::Command& program) {
       verb.flag("--input", options->is_input,
                 "the operator's inputs, in the format of 'run --input FILE'; as often as variables were recorded, "
                 "each value held for a step, straight lines between");
-  options::Option lcm = verb.option("--lcm", options->lcm,
-                                    "an LCM event log: the messages of 'slewring bridge lcm' at the session's times, and "
-                                    "the inputs for 'run --input FILE.lcm'")
-                            .value_name("FILE");
+  options::Option lcm =
+      verb.option("--lcm", options->lcm,
+                  "an LCM event log: the messages of 'slewring bridge lcm' at the session's times, and "
+                  "the inputs for 'run --input FILE.lcm'")
+          .value_name("FILE");
   csv.excludes(mat);
   input.excludes(mat);
   for (const options::Option& other : {csv, mat, input}) lcm.excludes(other);

@@ -51,24 +51,27 @@ std::string prefix_of(const Settings& settings, const std::string& session,
   std::size_t longest = kLongestSuffix.size();
   for (const lcm_log::SignalList& list : lists) longest = std::max(longest, list.name.size() + 1);
   if (prefix.size() + longest <= lcm_log::kMaxChannelLength) return prefix;
-  throw Failure(ExitCode::bad_input,
-                fmt::format("channels of LCM have at most {} characters, and '{}' with the longest ending has {}; nothing "
-                            "was started; choose a shorter prefix with --channel",
-                            lcm_log::kMaxChannelLength, prefix, prefix.size() + longest));
+  throw Failure(
+      ExitCode::bad_input,
+      fmt::format("channels of LCM have at most {} characters, and '{}' with the longest ending has {}; nothing "
+                  "was started; choose a shorter prefix with --channel",
+                  lcm_log::kMaxChannelLength, prefix, prefix.size() + longest));
 }
 
 std::vector<lcm_log::InputChannel> input_channels(const SceneView& scene) {
   std::vector<lcm_log::InputChannel> channels;
-  for (const Channel& channel : scene.channels) channels.push_back({channel.name, channel.is_digital, channel.is_lockstep});
+  for (const Channel& channel : scene.channels)
+    channels.push_back({channel.name, channel.is_digital, channel.is_lockstep});
   return channels;
 }
 
 void check_every(const Settings& settings, const SceneView& scene) {
   if (settings.every <= 0 || settings.every % scene.variables_every == 0) return;
-  throw Failure(ExitCode::bad_input,
-                fmt::format("--every {}: variables are there at every {}th step (recording.every of the scene); nothing "
-                            "was started; expected a multiple of {}",
-                            settings.every, scene.variables_every, scene.variables_every));
+  throw Failure(
+      ExitCode::bad_input,
+      fmt::format("--every {}: variables are there at every {}th step (recording.every of the scene); nothing "
+                  "was started; expected a multiple of {}",
+                  settings.every, scene.variables_every, scene.variables_every));
 }
 
 // A variable that no node has, with the one that was probably meant.
@@ -79,11 +82,11 @@ void check_names(const std::vector<lcm_log::SignalList>& lists, const observer::
     for (const std::string& variable : list.variables) {
       if (std::ranges::find(names, std::string_view(variable)) != names.end()) continue;
       const std::string meant = closest(variable, names);
-      throw Failure(ExitCode::bad_input,
-                    fmt::format("--signals {}: the session publishes no variable '{}'; nothing was sent; {}", list.name,
-                                variable,
-                                meant.empty() ? "'slewring variables SCENE' lists them"
-                                              : fmt::format("did you mean '{}'?", meant)));
+      throw Failure(
+          ExitCode::bad_input,
+          fmt::format(
+              "--signals {}: the session publishes no variable '{}'; nothing was sent; {}", list.name, variable,
+              meant.empty() ? "'slewring variables SCENE' lists them" : fmt::format("did you mean '{}'?", meant)));
     }
   }
 }
@@ -177,8 +180,9 @@ void Bridge::State::open(observer::Observer& observer, const SceneView& scene) {
   check_every(settings, scene);
   link.emplace(url, settings.is_insecure_lan ? Reach::network : Reach::this_machine);
   if (receives()) open_door(observer, scene, prefix);
-  outgoing.emplace(prefix, lists, settings.every,
-                   [this](const std::string& channel, std::string_view bytes, StepIndex) { link->publish(channel, bytes); });
+  outgoing.emplace(
+      prefix, lists, settings.every,
+      [this](const std::string& channel, std::string_view bytes, StepIndex) { link->publish(channel, bytes); });
   for (const wire::VariableDirectory& directory : early) outgoing->take(directory);
 }
 
@@ -191,11 +195,12 @@ void Bridge::State::open_door(observer::Observer& observer, const SceneView& sce
                     "message that LCM may lose; nothing was started; run the session with "
                     "--set <input>.controller=sampled");
     }
-    incoming.emplace(input_channels(scene), settings.controllers, [this, &observer](const wire::ControllerInput& input) {
-      wire::ControllerInput message = input;
-      message.session = observer.session_name();
-      if (!observer.send(message).is_ok()) ++unsent_inputs;
-    });
+    incoming.emplace(input_channels(scene), settings.controllers,
+                     [this, &observer](const wire::ControllerInput& input) {
+                       wire::ControllerInput message = input;
+                       message.session = observer.session_name();
+                       if (!observer.send(message).is_ok()) ++unsent_inputs;
+                     });
     link->subscribe(prefix + "_INPUT", [this, &observer](std::span<const std::byte> bytes) {
       incoming->take(bytes, monotonic_ns(), observer.view().step());
     });
@@ -266,8 +271,8 @@ Json Bridge::summary() const {
                {"incomplete_signals", state.outgoing ? state.outgoing->incomplete() : 0}};
   if (state.incoming) {
     const lcm_log::InputCounts& counts = state.incoming->counts();
-    json["inputs"] = {{"applied", counts.applied}, {"gaps", counts.gaps}, {"lost", counts.lost},
-                      {"unsent", state.unsent_inputs}};
+    json["inputs"] = {
+        {"applied", counts.applied}, {"gaps", counts.gaps}, {"lost", counts.lost}, {"unsent", state.unsent_inputs}};
     for (std::size_t i = 0; i < lcm_log::kCauses; ++i)
       json["inputs"]["refused"][std::string(to_text(static_cast<lcm_log::Cause>(i)))] = counts.refused[i];
   }
@@ -308,8 +313,9 @@ struct LogExport::State final : observer::Receiver {
       : scene(std::move(of_scene)),
         write(std::move(write_bytes)),
         prefix(prefix_of(settings, session, read_lists(settings))),
-        outgoing(prefix, read_lists(settings), settings.every,
-                 [this](const std::string& channel, std::string_view bytes, StepIndex step) { put(channel, bytes, step); }),
+        outgoing(
+            prefix, read_lists(settings), settings.every,
+            [this](const std::string& channel, std::string_view bytes, StepIndex step) { put(channel, bytes, step); }),
         inputs(scene.channels.size()) {
     check_every(settings, scene);
   }
@@ -358,9 +364,10 @@ void LogExport::State::take_block(const wire::VariableBlock& block, std::span<co
   step_ns = view->session().step_ns;
   const StepIndex step = block.header.step;
   if (epoch && block.header.epoch != *epoch) {
-    throw Failure(ExitCode::bad_input,
-                  "the session was reset on the way, so its time is no one line; nothing was written; record it without "
-                  "a reset");
+    throw Failure(
+        ExitCode::bad_input,
+        "the session was reset on the way, so its time is no one line; nothing was written; record it without "
+        "a reset");
   }
   epoch = block.header.epoch;
   // blocks of several nodes; the events of a log are in the order of time

@@ -21,9 +21,9 @@ namespace slew::bridge {
 inline constexpr const char* kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
 
 struct Settings {
-  std::string prefix;                    // of the channels; empty: SLEWRING_<session>
-  std::vector<std::string> signals;      // NAME=var,var...
-  StepIndex every = 0;                   // blocks of steps that are multiples of it; 0: all
+  std::string prefix;                // of the channels; empty: SLEWRING_<session>
+  std::vector<std::string> signals;  // NAME=var,var...
+  StepIndex every = 0;               // blocks of steps that are multiples of it; 0: all
   std::string url = kDefaultUrl;
   std::vector<std::string> controllers;  // whose inputs are accepted
   bool takes_parameters = false;
@@ -71,7 +71,8 @@ class Bridge {
   std::unique_ptr<State> state_;
 };
 
-// Writes a session that a view is fed with as an LCM event log. Times are those of the session; the first event is at 0.
+// Writes a session that a view is fed with as an LCM event log. Times are those of the session; the first event is at
+// 0.
 class LogExport {
  public:
   // write: takes the next bytes of the log. Throws Failure.

@@ -2,8 +2,8 @@
 //
 // A lease is requested when the first accepted input for it arrives, and again while inputs go on. The value of an
 // input that comes before the lease is not kept: an old value must not move the machine later. Values are forwarded
-// one by one and never repeated, so that a silent sender is a silent controller: the session puts the channel to neutral
-// after session.controller_timeout.
+// one by one and never repeated, so that a silent sender is a silent controller: the session puts the channel to
+// neutral after session.controller_timeout.
 #pragma once
 
 #include <cstdint>

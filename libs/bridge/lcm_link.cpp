@@ -150,8 +150,9 @@ LcmUrl read_url(const std::string& text, Reach reach) {
 LcmLink::LcmLink(const LcmUrl& url, Reach reach) : url_(url), reach_(reach), sockets_before_(inodes()) {
   lcm_ = lcm_create(url.text().c_str());
   if (lcm_ == nullptr) {
-    throw Failure(ExitCode::resources, fmt::format("LCM cannot open {}; nothing was started; multicast needs a route: {}",
-                                                   url.text(), remedy(url)));
+    throw Failure(
+        ExitCode::resources,
+        fmt::format("LCM cannot open {}; nothing was started; multicast needs a route: {}", url.text(), remedy(url)));
   }
 }
 
@@ -168,8 +169,8 @@ void LcmLink::begin_receiving() {
                               url_.address, remedy(url_)));
   }
   if (lcm_subscribe(lcm_, "", drop, nullptr) == nullptr) {
-    throw Failure(ExitCode::resources, fmt::format("LCM cannot receive from {}; nothing was started; {}", url_.text(),
-                                                   remedy(url_)));
+    throw Failure(ExitCode::resources,
+                  fmt::format("LCM cannot receive from {}; nothing was started; {}", url_.text(), remedy(url_)));
   }
   if (reach_ == Reach::network) return;
   for (const UdpSocket& socket : udp_sockets()) {
@@ -185,8 +186,7 @@ void LcmLink::begin_receiving() {
 void LcmLink::subscribe(const std::string& channel, Take take) {
   if (takers_.empty()) begin_receiving();
   takers_.push_back(std::make_unique<Take>(std::move(take)));
-  lcm_subscription_t* subscription =
-      lcm_subscribe(lcm_, literal(channel).c_str(), hand_over, takers_.back().get());
+  lcm_subscription_t* subscription = lcm_subscribe(lcm_, literal(channel).c_str(), hand_over, takers_.back().get());
   if (subscription == nullptr)
     throw Failure(ExitCode::resources, fmt::format("LCM cannot subscribe to {}; nothing was started", channel));
   lcm_subscription_set_queue_capacity(subscription, kQueue);

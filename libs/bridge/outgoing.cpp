@@ -160,8 +160,7 @@ void Outgoing::publish(const lcm_log::InputCounts& counts, std::uint64_t paramet
     message.cause.emplace_back(cause);
     message.number.push_back(static_cast<std::int64_t>(number));
   };
-  for (std::size_t i = 0; i < lcm_log::kCauses; ++i)
-    add(to_text(static_cast<lcm_log::Cause>(i)), counts.refused[i]);
+  for (std::size_t i = 0; i < lcm_log::kCauses; ++i) add(to_text(static_cast<lcm_log::Cause>(i)), counts.refused[i]);
   add("parameter requests", parameter_refusals);
   message.count = static_cast<std::int32_t>(message.cause.size());
   emit("_BRIDGE", message, step);

@@ -49,8 +49,7 @@ void ParameterDoor::take(std::span<const std::byte> bytes, std::int64_t now_ns) 
     }
     entries_.erase(answered);
   }
-  entry.request.action =
-      asked.is_change ? wire::ControlAction::set_parameter : wire::ControlAction::get_parameter;
+  entry.request.action = asked.is_change ? wire::ControlAction::set_parameter : wire::ControlAction::get_parameter;
   entry.request.path = asked.path;
   entry.request.value = asked.is_change ? asked.value : 0;
   entry.request.over_ns = asked.is_change && asked.over >= 0 ? std::llround(asked.over * 1e9) : -1;

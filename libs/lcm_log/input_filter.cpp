@@ -15,8 +15,8 @@ constexpr std::size_t kMostControllers = 256;
 
 std::string_view to_text(Cause cause) noexcept {
   constexpr std::array<std::string_view, kCauses> kTexts = {
-      "damaged",           "another type",   "not finite",   "no such channel",     "lockstep channel",
-      "other controller",  "another sender", "old sequence", "step not come yet", "channel not held"};
+      "damaged",          "another type",   "not finite",   "no such channel",   "lockstep channel",
+      "other controller", "another sender", "old sequence", "step not come yet", "channel not held"};
   return kTexts[static_cast<std::size_t>(cause)];
 }
 
@@ -67,23 +67,23 @@ std::optional<Input> InputFilter::take(std::span<const std::byte> bytes, std::in
     case Decoded::ok:
       break;
   }
-  const bool is_accepted =
-      controllers_.empty() || std::find(controllers_.begin(), controllers_.end(), input.controller) != controllers_.end();
+  const bool is_accepted = controllers_.empty() ||
+                           std::find(controllers_.begin(), controllers_.end(), input.controller) != controllers_.end();
   if (!is_accepted) {
-    return refuse(Cause::other_controller,
-                  fmt::format("'{0}' is no controller of this bridge; start it with --controller {0}",
-                              input.controller));
+    return refuse(
+        Cause::other_controller,
+        fmt::format("'{0}' is no controller of this bridge; start it with --controller {0}", input.controller));
   }
   // a message with a wrong content still counts in its sequence
   if (const std::optional<Cause> cause = judge_sequence(input, now_ns)) {
     if (*cause == Cause::other_controller)
       return refuse(*cause, fmt::format("more than {} names of controllers", kMostControllers));
-    return refuse(*cause, *cause == Cause::other_sender
-                              ? fmt::format("a second sender uses the name '{}' (sender {}); the first one is "
-                                            "accepted until it is silent for 1 s",
-                                            input.controller, input.sender)
-                              : fmt::format("'{}' has sent number {} after a higher one", input.controller,
-                                            input.sequence));
+    return refuse(*cause,
+                  *cause == Cause::other_sender
+                      ? fmt::format("a second sender uses the name '{}' (sender {}); the first one is "
+                                    "accepted until it is silent for 1 s",
+                                    input.controller, input.sender)
+                      : fmt::format("'{}' has sent number {} after a higher one", input.controller, input.sequence));
   }
   const auto channel = std::find_if(channels_.begin(), channels_.end(),
                                     [&](const InputChannel& known) { return known.name == input.channel; });

@@ -39,8 +39,8 @@ class TableBuilder {
 
   // False: another controller has the channel.
   bool take(const Input& input, std::int64_t time_ns) {
-    const auto index = static_cast<std::size_t>(
-        std::ranges::find(channels_, input.channel, &TableChannel::name) - channels_.begin());
+    const auto index =
+        static_cast<std::size_t>(std::ranges::find(channels_, input.channel, &TableChannel::name) - channels_.begin());
     Track& track = tracks_[index];
     const bool is_free = track.controller.empty() || time_ns - track.last_ns > kHoldAfterSilence.ns;
     if (!is_free && track.controller != input.controller) return false;
@@ -146,8 +146,8 @@ InputTable input_table(std::string_view log, std::span<const TableChannel> chann
     const Decoded decoded = decode(event.data, input);
     if (!begin_us) begin_us = event.time_us;
     // unsigned: a damaged time may be any number
-    const auto since = static_cast<std::int64_t>(static_cast<std::uint64_t>(event.time_us) -
-                                                 static_cast<std::uint64_t>(*begin_us));
+    const auto since =
+        static_cast<std::int64_t>(static_cast<std::uint64_t>(event.time_us) - static_cast<std::uint64_t>(*begin_us));
     if (since < last_us || since > kLongestUs) {
       table.problem = fmt::format("has a time that falls, or is beyond 11 days, at event {}", reader.count());
       table.expected = "a log of one session without a reset";
@@ -179,7 +179,8 @@ InputTable input_table(std::string_view log, std::span<const TableChannel> chann
         fmt::format("{} inputs are missing in {} gaps of the log", filter.counts().lost, filter.counts().gaps));
   }
   if (builder.bounded_values() > 0)
-    table.warnings.push_back(fmt::format("{} values of the log beyond -1 to 1 are held at the bound", builder.bounded_values()));
+    table.warnings.push_back(
+        fmt::format("{} values of the log beyond -1 to 1 are held at the bound", builder.bounded_values()));
   return table;
 }
 

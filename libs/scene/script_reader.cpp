@@ -177,11 +177,9 @@ class ScriptReader {
 
   void read_log(const std::string& log, int source, TableFile& file) {
     std::vector<lcm_log::TableChannel> channels;
-    for (const InputDef& input : scene_.inputs)
-      channels.push_back({input.name, input.type == InputType::digital});
+    for (const InputDef& input : scene_.inputs) channels.push_back({input.name, input.type == InputType::digital});
     const SimDuration neutral_after = duration_of_seconds(scene_.session.controller_timeout);
-    lcm_log::InputTable table =
-        lcm_log::input_table(log, channels, scene_.session.step_duration(), neutral_after);
+    lcm_log::InputTable table = lcm_log::input_table(log, channels, scene_.session.step_duration(), neutral_after);
     if (!table.problem.empty()) {
       context_.report.add({source, 0, 0}, "", {std::move(table.problem), std::move(table.expected), ""});
       return;

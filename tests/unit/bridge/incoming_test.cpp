@@ -19,9 +19,9 @@ constexpr std::int64_t kMs = 1'000'000;
 // A bridge with its session's side.
 struct Pair {
   std::vector<wire::ControllerInput> sent;
-  bridge::Incoming incoming{{{"Input_Lift", false, false}},
-                            {"joystick"},
-                            [this](const wire::ControllerInput& input) { sent.push_back(input); }};
+  bridge::Incoming incoming{{{"Input_Lift", false, false}}, {"joystick"}, [this](const wire::ControllerInput& input) {
+                              sent.push_back(input);
+                            }};
 
   void give(std::int64_t sequence, double value, std::int64_t now_ns) {
     incoming.take(bytes_of(lift(sequence, value)), now_ns, 100);

@@ -38,8 +38,8 @@ TEST(LcmUrl, OtherTextsAreRefused) {
     EXPECT_NE(problem(text).find("only udpm:// carries a live session"), std::string::npos) << text;
   for (const char* text : {"udpm://10.0.0.1:7667", "udpm://localhost", "udpm://239.255.76"})
     EXPECT_NE(problem(text).find("is no multicast address"), std::string::npos) << text;
-  for (const char* text : {"udpm://239.255.76.67:", "udpm://239.255.76.67:0", "udpm://239.255.76.67:65536",
-                           "udpm://239.255.76.67:76 67"})
+  for (const char* text :
+       {"udpm://239.255.76.67:", "udpm://239.255.76.67:0", "udpm://239.255.76.67:65536", "udpm://239.255.76.67:76 67"})
     EXPECT_NE(problem(text).find("the port is no number"), std::string::npos) << text;
   for (const char* text : {"udpm://239.255.76.67?ttl", "udpm://239.255.76.67?ttl=-1", "udpm://239.255.76.67?ttl=256",
                            "udpm://239.255.76.67?tll=0", "udpm://239.255.76.67?ttl=0&&"})

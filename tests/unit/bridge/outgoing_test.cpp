@@ -21,9 +21,10 @@ struct Fixture {
   explicit Fixture(StepIndex every = 0) {
     lcm_log::SignalList list;
     EXPECT_TRUE(read_signal_list("crane=Cyl.stroke,Pump.pressure", list).is_ok());
-    outgoing.emplace("X", std::vector{list}, every, [this](const std::string& channel, std::string_view bytes, StepIndex) {
-      sent.push_back({channel, std::string(bytes)});
-    });
+    outgoing.emplace("X", std::vector{list}, every,
+                     [this](const std::string& channel, std::string_view bytes, StepIndex) {
+                       sent.push_back({channel, std::string(bytes)});
+                     });
     wire::VariableDirectory directory;
     directory.header.role = Role::mechanics;
     directory.total = 2;
@@ -43,7 +44,8 @@ struct Fixture {
     outgoing->take(block, static_cast<double>(step) * 1e-3);
   }
   [[nodiscard]] std::size_t count(const std::string& channel) const {
-    return static_cast<std::size_t>(std::count_if(sent.begin(), sent.end(), [&](const Sent& s) { return s.channel == channel; }));
+    return static_cast<std::size_t>(
+        std::count_if(sent.begin(), sent.end(), [&](const Sent& s) { return s.channel == channel; }));
   }
 
   std::vector<Sent> sent;
@@ -117,7 +119,8 @@ TEST(BridgeOutgoing, TheDirectoryHasEveryNameWithItsUnitInMessagesThatAreNotSpli
     EXPECT_LT(sent.bytes.size(), 60'000u);
     slewring::directory_t message;
     ASSERT_GT(message.decode(sent.bytes.data(), 0, static_cast<int>(sent.bytes.size())), 0);
-    for (int i = 0; i < message.count; ++i) units[message.name[static_cast<std::size_t>(i)]] = message.unit[static_cast<std::size_t>(i)];
+    for (int i = 0; i < message.count; ++i)
+      units[message.name[static_cast<std::size_t>(i)]] = message.unit[static_cast<std::size_t>(i)];
   }
   EXPECT_EQ(units.size(), 603u);
   EXPECT_EQ(units["Cyl.stroke"], "m");

@@ -72,8 +72,9 @@ TEST(LcmInputTable, RefusedMessagesAreNamedByCauseAndHaveNoEffect) {
                                .table();
   EXPECT_EQ(table.csv, "time,Input_Lift\n0,0\n0,0.5\n0.004,0.5\n0.004,1\n0.204,1\n0.204,0\n");
   ASSERT_EQ(table.warnings.size(), 3u);
-  EXPECT_EQ(table.warnings[0],
-            "inputs of the log that are not applied: 1 another type, 1 not finite, 1 for a channel of another controller");
+  EXPECT_EQ(
+      table.warnings[0],
+      "inputs of the log that are not applied: 1 another type, 1 not finite, 1 for a channel of another controller");
   EXPECT_EQ(table.warnings[1], "3 inputs are missing in 1 gaps of the log");
   EXPECT_EQ(table.warnings[2], "1 values of the log beyond -1 to 1 are held at the bound");
 }
@@ -85,17 +86,17 @@ TEST(LcmInputTable, LogsWithoutInputsAreProblems) {
   EXPECT_EQ(Log().add(0, "OTHER", "bytes").table().problem, "has no input_t message for an input of the scene");
   slewring::input_t wrong = lift(0, 1);
   wrong.channel = "Input_Jib";
-  EXPECT_EQ(Log().add(0, wrong).table().problem,
-            "has no input_t message for an input of the scene: 1 no such channel");
-  EXPECT_NE(Log().add(1000, lift(0, 1)).add(0, lift(1, 1)).table().problem.find("a time that falls"), std::string::npos);
+  EXPECT_EQ(Log().add(0, wrong).table().problem, "has no input_t message for an input of the scene: 1 no such channel");
+  EXPECT_NE(Log().add(1000, lift(0, 1)).add(0, lift(1, 1)).table().problem.find("a time that falls"),
+            std::string::npos);
   const auto least = std::numeric_limits<std::int64_t>::min(), most = std::numeric_limits<std::int64_t>::max();
   EXPECT_NE(Log().add(least, lift(0, 1)).add(most, lift(1, 1)).table().problem, "");
 }
 
 TEST(LcmInputTable, ACutLogIsUsedUpToTheCutWithAWarning) {
   const std::string whole = Log().add(0, lift(0, 1)).add(100'000, lift(1, 0.5)).bytes();
-  const InputTable table = input_table(std::string_view(whole).substr(0, whole.size() - 1), kChannels, milliseconds(1),
-                                       milliseconds(200));
+  const InputTable table =
+      input_table(std::string_view(whole).substr(0, whole.size() - 1), kChannels, milliseconds(1), milliseconds(200));
   EXPECT_EQ(table.csv, "time,Input_Lift\n0,0\n0,1\n0.2,1\n0.2,0\n");
   ASSERT_EQ(table.warnings.size(), 1u);
   EXPECT_NE(table.warnings[0].find("is cut or damaged behind event 1"), std::string::npos);
