@@ -21,6 +21,11 @@ typedef struct {
   int result; /* -1: goes on */
 } controller;
 
+/* The valve passes no oil below 32 % of the stick: proportional with a jump over that, at rest within 0.5 mm. */
+static double stick(double error) {
+  return fabs(error) < 0.5e-3 ? 0 : copysign(0.32 + 0.68 * fmin(1, fabs(20 * error)), error);
+}
+
 static void take_crane(const lcm_recv_buf_t* buffer, const char* channel, const slewring_crane_t* crane, void* user) {
   controller* c = user;
   double error = c->target - crane->Cyl_Lift_stroke;
@@ -36,7 +41,7 @@ static void take_crane(const lcm_recv_buf_t* buffer, const char* channel, const 
   if (fabs(error) > 1e-3) c->near_since = -1;
   else if (c->near_since < 0) c->near_since = crane->time;
   c->input.sequence += 1;
-  c->input.value = fmax(-1, fmin(1, 20 * error));
+  c->input.value = stick(error);
   c->input.based_on_step = crane->step;
   slewring_input_t_publish(buffer->lcm, c->input_channel, &c->input);
   if (c->near_since >= 0 && crane->time > c->near_since + 0.5) c->result = 0;

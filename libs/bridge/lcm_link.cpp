@@ -165,7 +165,7 @@ void LcmLink::begin_receiving() {
   if (reach_ == Reach::this_machine && !is_routed_to_loopback(url_)) {
     throw Failure(ExitCode::resources,
                   fmt::format("{} is not routed to the loopback: hosts of the network could send inputs; nothing was "
-                              "started; {}, or say --insecure-lan",
+                              "started; {}, or use --insecure-lan",
                               url_.address, remedy(url_)));
   }
   if (lcm_subscribe(lcm_, "", drop, nullptr) == nullptr) {
