@@ -113,7 +113,7 @@ void add_compare(options::Command& program) {
   verb.option("--set", options->settings.scene.overrides, "change a value of the scene; repeat for more")
       .value_name("PATH=VALUE")
       .one_value_each();
-  verb.option("--input", options->settings.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+  verb.option("--input", options->settings.scene.input, "script (the scene's own), none, or a .csv, .yaml or .lcm file")
       .value_name("SOURCE")
       .show_default();
   verb.option("-o,--output", options->picture, "picture, .svg or .html; without it SCENE_compare.svg")

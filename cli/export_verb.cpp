@@ -5,10 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <iostream>
 #include <memory>
 
+#include "bridge/bridge.h"
+#include "cli/lcm_scene.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/text_output.h"
@@ -25,6 +28,8 @@ struct Options {
   std::vector<std::string> only;
   std::string from, to;
   std::string output;
+  std::string lcm;
+  bridge::Settings for_lcm;
   bool is_csv = false;
   bool is_mat = false;
   bool is_input = false;
@@ -115,7 +120,49 @@ ExitCode export_input(const Options& options, const std::vector<std::string>& pa
   return write_file(options, [&](const std::filesystem::path& path) { return put_text(path, text); });
 }
 
+// The session as its observers saw it.
+void write_log(const Options& options, const recording::Reader& reader, const scene::Scene& scene,
+               std::ofstream& file) {
+  bridge::LogExport log(
+      options.for_lcm, reader.identity().session_name, lcm_scene(scene),
+      [&file](std::string_view bytes) { file.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+  const session::TimeRange range = session::recorded_range(options.from, options.to);
+  log.choose(range.from_ns, range.to_ns);
+  observer::SessionView view;
+  session::watch_recording(reader, view, log.receiver(view));
+  if (log.events() == 0)
+    throw Failure(ExitCode::bad_input, "the recording has no variables in this time; nothing was written");
+  for (const std::string& input : log.missing_inputs()) {
+    fmt::print(stderr, "warning: {}.raw is not recorded (recording.variables): the log has no inputs for {}\n", input,
+               input);
+  }
+}
+
+ExitCode export_lcm(Options options) {
+  bridge::require_lcm();
+  if (!options.variables.empty() || !options.only.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  "--lcm writes every variable; nothing was written; leave the names out, or choose some with "
+                  "--signals NAME=var,var");
+  }
+  if (!options.output.empty()) {
+    throw Failure(ExitCode::bad_input, "--lcm FILE and -o exclude each other; nothing was written; leave -o out");
+  }
+  options.output = options.lcm;
+  check_output(options);
+  const auto reader = session::open_recording(options.recording);
+  const scene::Scene scene = scene::load_text(session::recorded_scene_text(*reader), reader->identity().scene);
+  return write_file(options, [&](const std::filesystem::path& path) {
+    std::ofstream file(path, std::ios::binary);
+    write_log(options, *reader, scene, file);
+    file.close();
+    return file.good() ? Status::ok()
+                       : Status::error(ExitCode::storage, options.output + ": cannot be written; is the disk full?");
+  });
+}
+
 ExitCode export_variables(Options options) {
+  if (!options.lcm.empty()) return export_lcm(std::move(options));
   const bool is_named_mat = std::filesystem::path(options.output).extension() == ".mat";
   options.is_mat = options.is_mat || (is_named_mat && !options.is_csv && !options.is_input);
   check_output(options);
@@ -159,8 +206,15 @@ void add_export(options::Command& program) {
       verb.flag("--input", options->is_input,
                 "the operator's inputs, in the format of 'run --input FILE'; as often as variables were recorded, "
                 "each value held for a step, straight lines between");
+  options::Option lcm =
+      verb.option("--lcm", options->lcm,
+                  "an LCM event log: the messages of 'slewring bridge lcm' at the session's times, and "
+                  "the inputs for 'run --input FILE.lcm'")
+          .value_name("FILE");
   csv.excludes(mat);
   input.excludes(mat);
+  for (const options::Option& other : {csv, mat, input}) lcm.excludes(other);
+  add_lcm_options(verb, options->for_lcm);
   verb.option("--from", options->from, "leave out what lies before, such as '2.5 s'").value_name("TIME");
   verb.option("--to", options->to, "leave out what lies behind").value_name("TIME");
   verb.option("-o,--output", options->output, "file to write; without it standard output").value_name("FILE");
@@ -169,7 +223,8 @@ void add_export(options::Command& program) {
       "Examples:\n"
       "  slewring export runs/truck_crane-20260501-102030 --csv -o crane.csv\n"
       "  slewring export runs/truck_crane-20260501-102030 --mat --only 'Cyl_*' --from 2s --to 5s -o lift.mat\n"
-      "  slewring export runs/truck_crane-20260501-102030 --input -o levers.csv");
+      "  slewring export runs/truck_crane-20260501-102030 --input -o levers.csv\n"
+      "  slewring export runs/truck_crane-20260501-102030 --lcm crane.lcm");
   verb.action([options] { return export_variables(*options); });
 }
 

@@ -83,7 +83,7 @@ void add_simplify(options::Command& program) {
   verb.option("--set", settings.scene.overrides, "change a value of the scene first; repeat for more")
       .value_name("PATH=VALUE")
       .one_value_each();
-  verb.option("--input", settings.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+  verb.option("--input", settings.scene.input, "script (the scene's own), none, or a .csv, .yaml or .lcm file")
       .value_name("SOURCE")
       .show_default();
   verb.option("-o,--overlay", options->overlay, "file to write, beside the scene; without it SCENE_simplified.yaml")

@@ -110,7 +110,7 @@ void add_what(options::Command& verb, Options& options) {
       .value_name("PATH=VALUE");
   verb.option("--step", settings.scene.step, "communication step, such as '1 ms'; without it the scene's")
       .value_name("TIME");
-  verb.option("--input", settings.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+  verb.option("--input", settings.scene.input, "script (the scene's own), none, or a .csv, .yaml or .lcm file")
       .value_name("SOURCE")
       .show_default();
   verb.flag("!--no-record", settings.scene.is_recording, "without a recorder");

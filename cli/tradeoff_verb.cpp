@@ -129,7 +129,7 @@ void add_what(options::Command& verb, Options& options) {
   verb.option("--until", settings.scene.duration,
               "how long to simulate, such as '5 s'; without it the scene's duration")
       .value_name("TIME");
-  verb.option("--input", settings.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+  verb.option("--input", settings.scene.input, "script (the scene's own), none, or a .csv, .yaml or .lcm file")
       .value_name("SOURCE")
       .show_default();
 }

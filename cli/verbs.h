@@ -11,6 +11,7 @@ void add_sessions(options::Command& program);
 void add_watch(options::Command& program);
 void add_param(options::Command& program);
 void add_control(options::Command& program);
+void add_bridge(options::Command& program);
 void add_check(options::Command& program);
 void add_describe(options::Command& program);
 void add_import(options::Command& program);

@@ -37,7 +37,10 @@ void Observer::drain() {
   while (transport_->take(message)) {
     view_.take(message.topic, message.bytes, std::nullopt, options_.receiver);
     wire::ControlReply reply;
-    if (message.topic == Topic::control_reply && on_reply_ && transport::decode(message.bytes, reply)) on_reply_(reply);
+    const bool is_wanted = on_reply_ || options_.receiver != nullptr;
+    if (message.topic != Topic::control_reply || !is_wanted || !transport::decode(message.bytes, reply)) continue;
+    if (on_reply_) on_reply_(reply);
+    if (options_.receiver != nullptr) options_.receiver->take_reply(reply);
   }
 }
 

@@ -36,6 +36,8 @@ class Observer {
 
   [[nodiscard]] const SessionView& view() const noexcept { return view_; }
   [[nodiscard]] const std::string& session_name() const noexcept { return options_.session; }
+  // A stop was requested.
+  [[nodiscard]] bool is_stopped() const noexcept { return stop_code() != 0; }
 
   // Takes what has arrived. Does not wait.
   void drain();

@@ -69,6 +69,8 @@ class Receiver {
   virtual void take_sample(const wire::Header&, const wire::SampleState&) {}
   virtual void take_lease(const wire::ControllerLease&) {}
   virtual void take_state(const wire::StatePart&) {}
+  // Of a live session, whichever process requested it.
+  virtual void take_reply(const wire::ControlReply&) {}
 
  protected:
   Receiver(const Receiver&) = default;

@@ -81,7 +81,7 @@ void add_scene_options(options::Command& app, SceneOptions& options) {
       .one_of({"real", "free"})
       .value_name("PACE")
       .group("Scene");
-  app.option("--input", options.input, "script (the scene's own), none, keyboard, or a .csv or .yaml file")
+  app.option("--input", options.input, "script (the scene's own), none, keyboard, or a .csv, .yaml or .lcm file")
       .value_name("SOURCE")
       .show_default()
       .group("Scene");

@@ -18,7 +18,7 @@ struct SceneOptions {
   std::string step;                    // quantities; empty: the scene's
   std::string duration;
   std::string pace;
-  std::string input = "script";  // script, none, keyboard, or a .csv or .yaml file
+  std::string input = "script";  // script, none, keyboard, or a .csv, .yaml or .lcm file
   bool is_recording = true;
 
   [[nodiscard]] bool has_script() const noexcept { return input != "none" && input != "keyboard"; }

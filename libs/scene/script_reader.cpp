@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/suggestion.h"
+#include "lcm_log/input_table.h"
 #include "scene/csv_table.h"
 #include "scene/parameters.h"
 #include "scene/source.h"
@@ -113,8 +114,9 @@ class ScriptReader {
   void read_file(const Node& section, const Node& name) {
     const bool is_text = name.kind == Node::Kind::scalar && !name.text.empty();
     const bool is_yaml = is_text && (name.text.ends_with(".yaml") || name.text.ends_with(".yml"));
-    if (!is_text || (!is_yaml && !name.text.ends_with(".csv"))) {
-      report_problem(name.mark, "script.file", {"is " + describe(name), "the name of a .csv or .yaml file", ""});
+    const std::string_view ending = is_text && name.text.ends_with(".lcm") ? ".lcm" : ".csv";
+    if (!is_text || (!is_yaml && !name.text.ends_with(ending))) {
+      report_problem(name.mark, "script.file", {"is " + describe(name), "the name of a .csv, .lcm or .yaml file", ""});
       return;
     }
     // the text of a session gives the content
@@ -137,7 +139,7 @@ class ScriptReader {
     const std::size_t problems = context_.report.size();
     if (is_yaml) {
       read_yaml_file(name);
-    } else if (auto file = read_table_reference(reference, "script", context_)) {
+    } else if (auto file = read_table_reference(reference, "script", context_, ending)) {
       read_csv_file(name, std::move(*file));
     }
     if (context_.report.size() > problems && is_opened_)
@@ -166,10 +168,25 @@ class ScriptReader {
     const TableText opened = open_table(file, name.mark, context_);
     is_opened_ = opened.is_file;
     if (opened.text) read_csv(*opened.text, file);
+    if (opened.log) read_log(*opened.log, opened.source, file);
     const auto& tracks = scene_.script.tracks;
     const bool is_long = std::any_of(tracks.begin(), tracks.end(),
                                      [](const ScriptTrack& track) { return track.points.size() > kMaxPointsInText; });
     if (context_.report.size() == problems && (is_long || file.is_pinned)) scene_.script.file = std::move(file);
+  }
+
+  void read_log(const std::string& log, int source, TableFile& file) {
+    std::vector<lcm_log::TableChannel> channels;
+    for (const InputDef& input : scene_.inputs) channels.push_back({input.name, input.type == InputType::digital});
+    const SimDuration neutral_after = duration_of_seconds(scene_.session.controller_timeout);
+    lcm_log::InputTable table = lcm_log::input_table(log, channels, scene_.session.step_duration(), neutral_after);
+    if (!table.problem.empty()) {
+      context_.report.add({source, 0, 0}, "", {std::move(table.problem), std::move(table.expected), ""});
+      return;
+    }
+    for (const std::string& warning : table.warnings) scene_.warnings.push_back("script.file: " + warning);
+    const auto text = check_source(std::move(table.csv), source, context_.report, kMaxTableBytes);
+    if (text) read_csv(*text, file);
   }
 
   void read_csv(const SourceText& text, TableFile& file) {

@@ -9,6 +9,7 @@
 // or
 //   script: {file: manoeuvre.csv}      a column `time` and one for each input, in any order (csv_table.h)
 //   script: {file: log.csv, columns: [Stick]}       these columns of it
+//   script: {file: levers.lcm}         the inputs of an LCM event log (lcm_log/input_table.h)
 //   script: {file: manoeuvre.yaml}     the keys of `script:` except file
 #pragma once
 

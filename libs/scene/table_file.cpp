@@ -29,12 +29,12 @@ bool read_content(const Node& node, const std::string& path, TableFile& table, R
   return true;
 }
 
-bool read_name(const Node& node, const std::string& path, TableFile& table, Report& report) {
-  if (node.kind == Node::Kind::scalar && node.text.ends_with(".csv")) {
+bool read_name(const Node& node, const std::string& path, std::string_view ending, TableFile& table, Report& report) {
+  if (node.kind == Node::Kind::scalar && node.text.ends_with(ending)) {
     table.file = node.text;
     return true;
   }
-  report.add(node.mark, path, {"is " + describe(node), "the name of a .csv file", ""});
+  report.add(node.mark, path, {"is " + describe(node), fmt::format("the name of a {} file", ending), ""});
   return false;
 }
 
@@ -55,15 +55,16 @@ std::optional<std::vector<std::string>> read_column_names(const Node& node, cons
   return names;
 }
 
-std::optional<TableFile> read_table_reference(const Node& node, const std::string& path, const ReadContext& context) {
+std::optional<TableFile> read_table_reference(const Node& node, const std::string& path, const ReadContext& context,
+                                              std::string_view ending) {
   TableFile table{.path = path, .file = {}, .columns = {}, .found = {}};
   if (node.kind == Node::Kind::scalar)
-    return read_name(node, path, table, context.report) ? std::optional(std::move(table)) : std::nullopt;
+    return read_name(node, path, ending, table, context.report) ? std::optional(std::move(table)) : std::nullopt;
   const std::size_t problems = context.report.size();
   report_duplicates(node, path, context.report);
   for (const Node::Entry& entry : node.entries) {
     if (entry.key == "file") {
-      (void)read_name(entry.value, path + ".file", table, context.report);
+      (void)read_name(entry.value, path + ".file", ending, table, context.report);
     } else if (entry.key == "columns") {
       if (auto names = read_column_names(entry.value, path + ".columns", context.report))
         table.columns = std::move(*names);
@@ -97,6 +98,7 @@ TableText open_table(TableFile& table, const Mark& mark, const ReadContext& cont
   opened.is_file = true;
   table.found = around->has_folder ? around->path_of(table.file) : around->asset_path_of(table.file);
   const int source = context.report.add_source(table.found);
+  opened.source = source;
   std::string bytes;
   if (auto fault = read_input(table.found, kMaxTableBytes, bytes)) {
     context.report.add({source, 0, 0}, "", {std::move(fault->what), std::move(fault->expected), ""});
@@ -112,7 +114,11 @@ TableText open_table(TableFile& table, const Mark& mark, const ReadContext& cont
   table.sha256 = sum;
   table.size = bytes.size();
   if (!around->is_confined) table.file = std::filesystem::path(table.file).filename().string();
-  opened.text = check_source(std::move(bytes), source, context.report, kMaxTableBytes);
+  if (table.file.ends_with(".lcm")) {
+    opened.log = std::move(bytes);
+  } else {
+    opened.text = check_source(std::move(bytes), source, context.report, kMaxTableBytes);
+  }
   return opened;
 }
 

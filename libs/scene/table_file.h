@@ -13,6 +13,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "scene/field_reader.h"
 #include "scene/scene.h"
@@ -22,8 +23,10 @@
 namespace slew::scene {
 
 // The file that a value names; nothing after a reported problem. path: of the value in messages.
+// ending: of its name.
 [[nodiscard]] std::optional<TableFile> read_table_reference(const Node& node, const std::string& path,
-                                                            const ReadContext& context);
+                                                            const ReadContext& context,
+                                                            std::string_view ending = ".csv");
 
 // The columns of `columns: [NAME, ...]`; nothing after a reported problem.
 [[nodiscard]] std::optional<std::vector<std::string>> read_column_names(const Node& node, const std::string& path,
@@ -31,6 +34,8 @@ namespace slew::scene {
 
 struct TableText {
   std::optional<SourceText> text;  // nothing after a reported problem, or without a folder
+  std::optional<std::string> log;  // the bytes of an LCM event log (.lcm) in the place of a text
+  int source = 0;                  // for marks
   bool is_file = false;            // problems belong to a file
 };
 

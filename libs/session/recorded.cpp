@@ -211,6 +211,16 @@ RecordedView view_recording(const Reader& reader, const std::vector<std::string>
   return seen;
 }
 
+void watch_recording(const Reader& reader, observer::SessionView& view, observer::Receiver& receiver) {
+  const auto take = [&](const recording::RecordedMessage& message) {
+    view.take(topic_of(*message.channel), message.payload, static_cast<double>(message.log_time_ns) / 1e9, &receiver);
+    return Visit::go_on;
+  };
+  read_all(reader, only({Topic::session}), take);
+  read_all(reader, only({Topic::variable_directory}), take);
+  read_all(reader, only({Topic::node_status, Topic::health, Topic::variables}), take);
+}
+
 namespace {
 
 Curves named_curves(const Reader& reader, std::span<const std::string> patterns) {

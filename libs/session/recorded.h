@@ -39,6 +39,10 @@ struct RecordedView {
 // patterns: of variables that the tally keeps as curves.
 [[nodiscard]] RecordedView view_recording(const recording::Reader& reader, const std::vector<std::string>& patterns);
 
+// Shows a recording to a view and its receiver, as to an observer of the live session that has all names at the begin:
+// state, health and variables in the order of the file.
+void watch_recording(const recording::Reader& reader, observer::SessionView& view, observer::Receiver& receiver);
+
 // Times of the recording, both included.
 struct TimeRange {
   std::uint64_t from_ns = 0;

@@ -99,8 +99,8 @@ std::vector<FoundSession> find_sessions(const node::SessionOptions& options, Sim
 std::unique_ptr<observer::Observer> find_session(node::SessionOptions options, Access access,
                                                  observer::Receiver* receiver) {
   if (options.session.empty()) options.session = only_session(options);
-  auto transport =
-      access == Access::look ? node::open_viewer(options) : node::open_transport(wire::Role::observer, options);
+  const wire::Role role = access == Access::control ? wire::Role::controller : wire::Role::observer;
+  auto transport = access == Access::look ? node::open_viewer(options) : node::open_transport(role, options);
   auto found = std::make_unique<observer::Observer>(
       std::move(transport),
       observer::ObserverOptions{.session = options.session, .receiver = receiver, .stop = &node::stop_requested});

@@ -25,8 +25,8 @@ struct FoundSession {
 [[nodiscard]] std::vector<FoundSession> find_sessions(const node::SessionOptions& options, SimDuration time,
                                                       SimDuration longest);
 
-// An observer with `look` can send no requests.
-enum class Access : std::uint8_t { look, steer };
+// An observer with `look` can send no requests; one with `control` has the rights of a controller.
+enum class Access : std::uint8_t { look, control, steer };
 
 // Opens an observer of the named session, or of the only one that runs on the domain, and waits until it receives from
 // it. Throws Failure when there is none, or more than one and no name. receiver: may be null.

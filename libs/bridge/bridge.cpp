@@ -1,0 +1,433 @@
+#include "bridge/bridge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "bridge/incoming.h"
+#include "bridge/lcm_link.h"
+#include "bridge/outgoing.h"
+#include "bridge/parameter_door.h"
+#include "core/failure.h"
+#include "core/suggestion.h"
+#include "lcm_log/event_log.h"
+
+namespace slew::bridge {
+namespace {
+
+constexpr SimDuration kDirectoryTimeout = milliseconds(5000);
+constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr SimDuration kLongestWait = milliseconds(20);
+constexpr int kInputWaitMs = 1;  // with inputs: variables leave this much later at most
+constexpr std::string_view kLongestSuffix = "_DIRECTORY";
+constexpr std::string_view kOwnSuffixes[] = {"VARIABLES", "DIRECTORY", "HEALTH", "BRIDGE",
+                                             "INPUT",     "PARAMETER", "REPLY"};
+constexpr const char* kOfRecording = "recording";  // controller in an exported log
+
+std::vector<lcm_log::SignalList> read_lists(const Settings& settings) {
+  std::vector<lcm_log::SignalList> lists;
+  for (const std::string& text : settings.signals) {
+    lcm_log::SignalList list;
+    require(read_signal_list(text, list));
+    const bool is_taken = std::ranges::find(kOwnSuffixes, list.name) != std::end(kOwnSuffixes) ||
+                          std::ranges::find(lists, list.name, &lcm_log::SignalList::name) != lists.end();
+    if (is_taken) {
+      throw Failure(ExitCode::bad_input, fmt::format("--signals {}: the name {} is taken; nothing was started; choose "
+                                                     "another",
+                                                     text, list.name));
+    }
+    lists.push_back(std::move(list));
+  }
+  return lists;
+}
+
+// Refuses channels that LCM cannot carry: a shortened name would be found by no one.
+std::string prefix_of(const Settings& settings, const std::string& session,
+                      const std::vector<lcm_log::SignalList>& lists) {
+  const std::string prefix = settings.prefix.empty() ? "SLEWRING_" + session : settings.prefix;
+  std::size_t longest = kLongestSuffix.size();
+  for (const lcm_log::SignalList& list : lists) longest = std::max(longest, list.name.size() + 1);
+  if (prefix.size() + longest <= lcm_log::kMaxChannelLength) return prefix;
+  throw Failure(
+      ExitCode::bad_input,
+      fmt::format("channels of LCM have at most {} characters, and '{}' with the longest ending has {}; nothing "
+                  "was started; choose a shorter prefix with --channel",
+                  lcm_log::kMaxChannelLength, prefix, prefix.size() + longest));
+}
+
+std::vector<lcm_log::InputChannel> input_channels(const SceneView& scene) {
+  std::vector<lcm_log::InputChannel> channels;
+  for (const Channel& channel : scene.channels)
+    channels.push_back({channel.name, channel.is_digital, channel.is_lockstep});
+  return channels;
+}
+
+void check_every(const Settings& settings, const SceneView& scene) {
+  if (settings.every <= 0 || settings.every % scene.variables_every == 0) return;
+  throw Failure(
+      ExitCode::bad_input,
+      fmt::format("--every {}: variables are there at every {}th step (recording.every of the scene); nothing "
+                  "was started; expected a multiple of {}",
+                  settings.every, scene.variables_every, scene.variables_every));
+}
+
+// A variable that no node has, with the one that was probably meant.
+void check_names(const std::vector<lcm_log::SignalList>& lists, const observer::SessionView& view) {
+  std::vector<std::string_view> names;
+  for (const observer::VariableView* variable : view.variables()) names.emplace_back(variable->name);
+  for (const lcm_log::SignalList& list : lists) {
+    for (const std::string& variable : list.variables) {
+      if (std::ranges::find(names, std::string_view(variable)) != names.end()) continue;
+      const std::string meant = closest(variable, names);
+      throw Failure(
+          ExitCode::bad_input,
+          fmt::format(
+              "--signals {}: the session publishes no variable '{}'; nothing was sent; {}", list.name, variable,
+              meant.empty() ? "'slewring variables SCENE' lists them" : fmt::format("did you mean '{}'?", meant)));
+    }
+  }
+}
+
+}  // namespace
+
+void require_lcm() {}
+
+// ---- a live session -------------------------------------------------------------------------------------------
+
+struct Bridge::State final : observer::Receiver {
+  explicit State(Settings chosen) : settings(std::move(chosen)), lists(read_lists(settings)) {}
+
+  void begin_session() override {
+    if (outgoing) outgoing->begin_session();
+    early.clear();
+    has_new_session = true;
+  }
+  void take_directory(const wire::VariableDirectory& directory) override {
+    outgoing ? outgoing->take(directory) : early.push_back(directory);
+  }
+  void take_block(const wire::VariableBlock& block, std::span<const std::byte>, double time) override {
+    if (incoming) incoming->take_epoch(block.header.epoch);
+    if (outgoing) outgoing->take(block, time);
+  }
+  void take_lease(const wire::ControllerLease& lease) override {
+    if (incoming) incoming->take(lease);
+  }
+  void take_reply(const wire::ControlReply& reply) override {
+    if (door) door->take(reply);
+  }
+
+  void open(observer::Observer& observer, const SceneView& scene);
+  void open_door(observer::Observer& observer, const SceneView& scene, const std::string& prefix);
+  void each_second(observer::Observer& observer);
+  [[nodiscard]] bool receives() const { return !settings.controllers.empty() || settings.takes_parameters; }
+
+  Settings settings;
+  std::vector<lcm_log::SignalList> lists;
+  LcmUrl url;
+  std::optional<LcmLink> link;
+  std::optional<Outgoing> outgoing;
+  std::optional<Incoming> incoming;
+  std::optional<ParameterDoor> door;
+  std::vector<wire::VariableDirectory> early;  // received before the channels had their names
+  bool has_new_session = false;
+  std::uint64_t unsent_inputs = 0;
+};
+
+Bridge::Bridge(Settings settings) : state_(std::make_unique<State>(std::move(settings))) {
+  State& state = *state_;
+  const Reach reach = state.settings.is_insecure_lan ? Reach::network : Reach::this_machine;
+  state.url = read_url(state.settings.url, reach);
+  for (const std::string& controller : state.settings.controllers) {
+    const std::size_t longest = wire::kMaxNameLength - std::string_view(kLeasePrefix).size();
+    if (!controller.empty() && controller.size() <= longest) continue;
+    throw Failure(ExitCode::bad_input, fmt::format("--controller {}: expected 1 to {} characters; nothing was started",
+                                                   controller, longest));
+  }
+}
+
+Bridge::~Bridge() = default;
+
+observer::Receiver& Bridge::receiver() noexcept {
+  return *state_;
+}
+
+bool Bridge::is_door() const noexcept {
+  return state_->receives();
+}
+
+std::string Bridge::types(observer::Observer& observer) {
+  if (state_->lists.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  "--write-types writes the types of signal lists, and there is none; nothing was written; add "
+                  "--signals crane=Cyl_Lift.stroke,Cyl_Lift.force");
+  }
+  observer.wait_for([&] { return observer.view().has_whole_directory() || observer.view().is_over(); },
+                    kDirectoryTimeout);
+  check_names(state_->lists, observer.view());
+  std::vector<std::vector<std::string>> units;
+  for (const lcm_log::SignalList& list : state_->lists) {
+    std::vector<std::string>& of_list = units.emplace_back();
+    for (const std::string& variable : list.variables) of_list.push_back(observer.view().find(variable)->unit);
+  }
+  return types_text(state_->lists, units);
+}
+
+void Bridge::State::open(observer::Observer& observer, const SceneView& scene) {
+  const std::string prefix = prefix_of(settings, observer.session_name(), lists);
+  check_every(settings, scene);
+  link.emplace(url, settings.is_insecure_lan ? Reach::network : Reach::this_machine);
+  if (receives()) open_door(observer, scene, prefix);
+  outgoing.emplace(
+      prefix, lists, settings.every,
+      [this](const std::string& channel, std::string_view bytes, StepIndex) { link->publish(channel, bytes); });
+  for (const wire::VariableDirectory& directory : early) outgoing->take(directory);
+}
+
+void Bridge::State::open_door(observer::Observer& observer, const SceneView& scene, const std::string& prefix) {
+  if (!settings.controllers.empty()) {
+    const bool is_all_lockstep = std::ranges::all_of(scene.channels, &Channel::is_lockstep);
+    if (is_all_lockstep) {
+      throw Failure(ExitCode::bad_input,
+                    "--controller: every input of the scene is lockstep, or there is none: each tick would wait for a "
+                    "message that LCM may lose; nothing was started; run the session with "
+                    "--set <input>.controller=sampled");
+    }
+    incoming.emplace(input_channels(scene), settings.controllers,
+                     [this, &observer](const wire::ControllerInput& input) {
+                       wire::ControllerInput message = input;
+                       message.session = observer.session_name();
+                       if (!observer.send(message).is_ok()) ++unsent_inputs;
+                     });
+    link->subscribe(prefix + "_INPUT", [this, &observer](std::span<const std::byte> bytes) {
+      incoming->take(bytes, monotonic_ns(), observer.view().step());
+    });
+  }
+  if (settings.takes_parameters) {
+    door.emplace([&observer](wire::ControlRequest request) { return observer.send(std::move(request)); },
+                 [this, prefix](const ParameterDoor::Reply& reply) {
+                   std::string bytes;
+                   encode(reply, bytes);
+                   link->publish(prefix + "_REPLY", bytes);
+                 });
+    link->subscribe(prefix + "_PARAMETER",
+                    [this](std::span<const std::byte> bytes) { door->take(bytes, monotonic_ns()); });
+  }
+}
+
+void Bridge::State::each_second(observer::Observer& observer) {
+  const StepIndex step = observer.view().step();
+  outgoing->publish_directory(step);
+  outgoing->publish_health(observer.view(), step);
+  if (receives())
+    outgoing->publish(incoming ? incoming->counts() : lcm_log::InputCounts(), door ? door->refused() : 0, step);
+}
+
+void Bridge::run(observer::Observer& observer, const SceneView& scene,
+                 const std::function<void(const std::string&)>& report) {
+  State& state = *state_;
+  state.open(observer, scene);
+  if (!state.lists.empty()) {
+    observer.wait_for([&] { return observer.view().has_whole_directory() || observer.view().is_over(); },
+                      kDirectoryTimeout);
+    check_names(state.lists, observer.view());
+  }
+  state.has_new_session = false;
+  report(fmt::format("session '{}' on {}, channels {}_*", observer.session_name(), state.url.text(),
+                     prefix_of(state.settings, observer.session_name(), state.lists)));
+  const auto report_notices = [&] {
+    if (!state.incoming) return;
+    for (const std::string& notice : state.incoming->take_notices()) report(notice);
+  };
+  std::int64_t next_ns = 0;
+  bool has_ended = false;
+  const auto is_over = [&] { return has_ended = observer.view().is_over() || state.has_new_session; };
+  while (!has_ended && !observer.is_stopped()) {
+    if (state.receives()) {
+      state.link->handle(kInputWaitMs);
+      observer.wait_for(is_over, {});
+    } else {
+      observer.wait_for(is_over, kLongestWait);
+    }
+    const std::int64_t now_ns = monotonic_ns();
+    if (state.door) state.door->poll(now_ns);
+    report_notices();
+    if (now_ns < next_ns) continue;
+    next_ns = now_ns + kSecondNs;
+    state.each_second(observer);
+  }
+  if (state.incoming && !has_ended) state.incoming->release();
+  state.each_second(observer);
+  report_notices();
+  if (state.has_new_session) report("another session of this name has begun; start the bridge again for it");
+}
+
+Json Bridge::summary() const {
+  const State& state = *state_;
+  Json json = {{"published", state.outgoing ? state.outgoing->published() : 0},
+               {"unsent", state.link ? state.link->unsent() : 0},
+               {"incomplete_signals", state.outgoing ? state.outgoing->incomplete() : 0}};
+  if (state.incoming) {
+    const lcm_log::InputCounts& counts = state.incoming->counts();
+    json["inputs"] = {
+        {"applied", counts.applied}, {"gaps", counts.gaps}, {"lost", counts.lost}, {"unsent", state.unsent_inputs}};
+    for (std::size_t i = 0; i < lcm_log::kCauses; ++i)
+      json["inputs"]["refused"][std::string(to_text(static_cast<lcm_log::Cause>(i)))] = counts.refused[i];
+  }
+  if (state.door) json["refused_parameter_requests"] = state.door->refused();
+  return json;
+}
+
+std::string Bridge::summary_text() const {
+  const State& state = *state_;
+  std::string text = fmt::format("{} messages published", state.outgoing ? state.outgoing->published() : 0);
+  const auto add = [&](std::uint64_t number, std::string_view what) {
+    if (number > 0) text += fmt::format(", {} {}", number, what);
+  };
+  add(state.link ? state.link->unsent() : 0, "not sent");
+  add(state.outgoing ? state.outgoing->incomplete() : 0, "signal lists incomplete");
+  if (state.incoming) {
+    const lcm_log::InputCounts& counts = state.incoming->counts();
+    text += fmt::format("\n{} inputs applied, {} lost in {} gaps", counts.applied, counts.lost, counts.gaps);
+    add(state.unsent_inputs, "not sent into the session");
+    std::string refused;
+    for (std::size_t i = 0; i < lcm_log::kCauses; ++i) {
+      if (counts.refused[i] == 0) continue;
+      refused += fmt::format("{}{} {}", refused.empty() ? "" : ", ", counts.refused[i],
+                             to_text(static_cast<lcm_log::Cause>(i)));
+    }
+    if (!refused.empty()) text += "\nnot applied: " + refused;
+  }
+  if (state.door && state.door->refused() > 0)
+    text += fmt::format("\n{} parameter requests damaged or refused by the bridge", state.door->refused());
+  return text;
+}
+
+// ---- a recording ----------------------------------------------------------------------------------------------
+
+struct LogExport::State final : observer::Receiver {
+  State(const Settings& settings, const std::string& session, SceneView of_scene,
+        std::function<void(std::string_view)> write_bytes)
+      : scene(std::move(of_scene)),
+        write(std::move(write_bytes)),
+        prefix(prefix_of(settings, session, read_lists(settings))),
+        outgoing(
+            prefix, read_lists(settings), settings.every,
+            [this](const std::string& channel, std::string_view bytes, StepIndex step) { put(channel, bytes, step); }),
+        inputs(scene.channels.size()) {
+    check_every(settings, scene);
+  }
+
+  struct RecordedInput {
+    std::optional<std::uint32_t> index;  // of its raw value among io's variables
+    std::optional<double> value{};
+    StepIndex step = 0;
+  };
+
+  void put(const std::string& channel, std::string_view bytes, StepIndex at_step) {
+    line.clear();
+    writer.add({(at_step * step_ns + 500) / 1000, channel, std::as_bytes(std::span<const char>(bytes))}, line);
+    write(line);
+  }
+  void take_directory(const wire::VariableDirectory& directory) override {
+    outgoing.take(directory);
+    for (std::size_t i = 0; i < directory.entries.size(); ++i) {
+      if (directory.header.role != wire::Role::io) continue;
+      for (std::size_t k = 0; k < inputs.size(); ++k) {
+        if (directory.entries[i].name == scene.channels[k].name + ".raw")
+          inputs[k].index = directory.first + static_cast<std::uint32_t>(i);
+      }
+    }
+  }
+  void take_block(const wire::VariableBlock& block, std::span<const std::byte>, double time) override;
+  void take_inputs(const wire::VariableBlock& block);
+
+  SceneView scene;
+  std::function<void(std::string_view)> write;
+  std::string prefix;
+  Outgoing outgoing;
+  std::vector<RecordedInput> inputs;  // by channel of the scene
+  lcm_log::EventLogWriter writer;
+  const observer::SessionView* view = nullptr;
+  std::int64_t step_ns = 0;
+  std::int64_t from_ns = 0, to_ns = INT64_MAX;
+  std::int64_t next_directory_ns = 0;
+  std::optional<std::uint32_t> epoch;
+  StepIndex last_step = 0;
+  std::int64_t sequence = 0;
+  std::string line, input_bytes;
+};
+
+void LogExport::State::take_block(const wire::VariableBlock& block, std::span<const std::byte>, double time) {
+  step_ns = view->session().step_ns;
+  const StepIndex step = block.header.step;
+  if (epoch && block.header.epoch != *epoch) {
+    throw Failure(
+        ExitCode::bad_input,
+        "the session was reset on the way, so its time is no one line; nothing was written; record it without "
+        "a reset");
+  }
+  epoch = block.header.epoch;
+  // blocks of several nodes; the events of a log are in the order of time
+  last_step = std::max(last_step, step);
+  const std::int64_t time_ns = step * step_ns;
+  if (writer.count() == 0) outgoing.publish_directory(0);
+  if (time_ns < from_ns || time_ns > to_ns) return;
+  if (time_ns >= next_directory_ns) {
+    next_directory_ns = (time_ns / kSecondNs + 1) * kSecondNs;
+    outgoing.publish_directory(step);
+    outgoing.publish_health(*view, step);
+  }
+  outgoing.take(block, time);
+  if (block.header.role == wire::Role::io) take_inputs(block);
+}
+
+// At each change, and often enough that a value that stays is no silence.
+void LogExport::State::take_inputs(const wire::VariableBlock& block) {
+  const StepIndex repeat = std::max<StepIndex>(1, scene.neutral_after.ns / 2 / step_ns);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    RecordedInput& input = inputs[i];
+    if (!input.index || *input.index < block.first) continue;
+    const std::size_t at = *input.index - block.first;
+    if (at >= block.values.size()) continue;
+    const double value = block.values[at];
+    const StepIndex step = block.header.step;
+    if (!std::isfinite(value) || (input.value == value && step - input.step < repeat)) continue;
+    input.value = value;
+    input.step = step;
+    encode(lcm_log::Input{kOfRecording, 0, sequence++, scene.channels[i].name, value, kJoinStep}, input_bytes);
+    put(prefix + "_INPUT", input_bytes, step);
+  }
+}
+
+LogExport::LogExport(const Settings& settings, const std::string& session, SceneView scene,
+                     std::function<void(std::string_view)> write)
+    : state_(std::make_unique<State>(settings, session, std::move(scene), std::move(write))) {}
+
+LogExport::~LogExport() = default;
+
+void LogExport::choose(std::uint64_t from_ns, std::uint64_t to_ns) {
+  state_->from_ns = static_cast<std::int64_t>(std::min<std::uint64_t>(from_ns, INT64_MAX));
+  state_->to_ns = static_cast<std::int64_t>(std::min<std::uint64_t>(to_ns, INT64_MAX));
+}
+
+observer::Receiver& LogExport::receiver(const observer::SessionView& view) {
+  state_->view = &view;
+  return *state_;
+}
+
+std::int64_t LogExport::events() const noexcept {
+  return state_->writer.count();
+}
+
+std::vector<std::string> LogExport::missing_inputs() const {
+  std::vector<std::string> missing;
+  for (std::size_t i = 0; i < state_->inputs.size(); ++i) {
+    if (!state_->inputs[i].index) missing.push_back(state_->scene.channels[i].name);
+  }
+  return missing;
+}
+
+}  // namespace slew::bridge

@@ -1,0 +1,326 @@
+#!/usr/bin/env python3
+"""A live crane on LCM, with the programs of the LCM package on the other side:
+
+lcm_test.py SOURCES BUILD SLEWRING 1|0
+
+lcm-gen generates a controller that closes the position loop through the bridge while 1 % of all LCM datagrams are dropped,
+lcm-logger records it, lcm-logplayer plays that back; damaged and false inputs are counted by cause; the session's recording
+is exported as a log, and a second run with the log as its input gives the same values. Everything is in a network
+namespace of its own.
+"""
+import csv
+import json
+import os
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+GROUP = "239.255.76.67"
+PORT = 7667
+SESSION = "lcm_test"
+PREFIX = f"SLEWRING_{SESSION}"
+SIGNALS = "crane=Cyl_Lift.stroke,Cyl_Lift.force"
+DEADLINE = 120  # s, of each wait
+
+
+def require(condition, text):
+    if not condition:
+        sys.exit(f"FAILED: {text}")
+
+
+def skip(reason):
+    print(f"SKIPPED: {reason}")
+    sys.exit(0)
+
+
+def wait_for(what, condition, deadline=DEADLINE):
+    end = time.monotonic() + deadline
+    while time.monotonic() < end:
+        result = condition()
+        if result:
+            return result
+        time.sleep(0.05)
+    sys.exit(f"FAILED: {what} did not happen within {deadline} s")
+
+
+def text_of(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+class Processes:
+    def __init__(self, folder):
+        self.folder = folder
+        self.all = []
+
+    def start(self, name, *command):
+        with open(f"{self.folder}/{name}.out", "w") as out, open(f"{self.folder}/{name}.err", "w") as err:
+            process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, cwd=self.folder)
+        self.all.append(process)
+        return process
+
+    def end(self):
+        for process in self.all:
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+
+
+def run(*command, code=0, cwd=None):
+    done = subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE, cwd=cwd)
+    require(done.returncode == code, f"{' '.join(command)} ended with {done.returncode}:\n{done.stdout}{done.stderr}")
+    return done.stdout + done.stderr
+
+
+def events(path):
+    """Channel, time [us] and data of each event of a log."""
+    found = []
+    with open(path, "rb") as file:
+        while head := file.read(28):
+            sync, _, stamp, channel, data = struct.unpack(">IqqII", head)
+            require(sync == 0xEDA1DA01, f"{path} is no event log")
+            found.append((file.read(channel).decode(), stamp, file.read(data)))
+    return found
+
+
+def lcm_string(text):
+    return struct.pack(">i", len(text) + 1) + text.encode() + b"\0"
+
+
+class Sender:
+    """Sends inputs without LCM's library: its small message is a magic word, a number, the channel and the data."""
+
+    def __init__(self, fingerprint):
+        self.fingerprint = fingerprint
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.number = 0
+
+    def send(self, data, channel=f"{PREFIX}_INPUT"):
+        self.number += 1
+        self.socket.sendto(struct.pack(">II", 0x4C433032, self.number) + channel.encode() + b"\0" + data, (GROUP, PORT))
+
+    def input(self, sequence, value=0.0, channel="Input_Slew", controller="other", step=-1):
+        return (self.fingerprint + lcm_string(controller) + struct.pack(">qq", 1, sequence) + lcm_string(channel)
+                + struct.pack(">dq", value, step))
+
+
+def close_the_loop(processes, handler, folder, slewring):
+    """The generated handler drives the lift cylinder to two places while 1 % of the datagrams are dropped."""
+    run("nft", "add", "table", "ip", "lossy")
+    run("nft", "add", "chain", "ip", "lossy", "in", "{ type filter hook input priority 0 ; }")
+    run("nft", "add", "rule", "ip", "lossy", "in", "udp", "dport", str(PORT), "numgen", "inc", "mod", "100", "==", "0",
+        "counter", "drop")
+    for target in ("0.80", "0.90"):
+        process = processes.start(f"handler{target}", handler, SESSION, target, "60")
+        wait_for("the end of the handler", lambda: process.poll() is not None)
+        out = text_of(f"{folder}/handler{target}.out")
+        require(process.returncode == 0 and "reached" in out,
+                f"the position was not reached: {out}{text_of(f'{folder}/handler{target}.err')}")
+        print(out.strip())
+    dropped = run("nft", "list", "table", "ip", "lossy")
+    require("packets 0 " not in dropped, f"no datagram was dropped:\n{dropped}")
+    print(dropped[dropped.index("counter"):].split(" drop")[0])
+    run("nft", "delete", "table", "ip", "lossy")
+    neutral = "channel Input_Lift goes to neutral"
+    wait_for("the neutral channel of a silent handler", lambda: neutral in text_of(f"{folder}/bridge.err"))
+    values = json.loads(run(slewring, "watch", "Input_Lift.raw", "--session", SESSION, "--count", "1", "--json"))
+    require(values["values"]["Input_Lift.raw"] == 0, f"the channel is not neutral: {values}")
+
+
+def send_wrong_inputs(fingerprint):
+    """Number of refusals by cause that the bridge must count."""
+    sender = Sender(fingerprint)
+    wrong = {
+        "damaged": [sender.input(0)[:-1], sender.input(0) + b"\0", sender.input(-5),
+                    fingerprint + struct.pack(">I", 0x80000000) + sender.input(0)[12:]],
+        "another type": [b"", b"\0" * 40, bytes([fingerprint[0] ^ 1]) + sender.input(0)[1:]],
+        "not finite": [sender.input(1, value) for value in (float("nan"), float("inf"))],
+        "no such channel": [sender.input(2, channel="Input_Slow")],
+        "other controller": [sender.input(3, controller="stranger")],
+        "step not come yet": [sender.input(3, step=1 << 40)],
+    }
+    wrong["not finite"][1] = sender.input(2, float("inf"))
+    wrong["no such channel"][0] = sender.input(3, channel="Input_Slow")
+    wrong["step not come yet"][0] = sender.input(4, step=1 << 40)
+    wrong["old sequence"] = [sender.input(4), sender.input(0)]
+    for messages in wrong.values():
+        for message in messages:
+            sender.send(message)
+    return {cause: len(messages) for cause, messages in wrong.items()}
+
+
+def play_back(processes, folder, live):
+    """lcm-logplayer's events, as a second lcm-logger records them, are those of the first."""
+    again = f"{folder}/again.log"
+    logger = processes.start("logger2", "lcm-logger", again)
+    # the file is there before the subscription: a message of this test's own shows that it stands
+    sender = Sender(b"")
+
+    def is_recording():
+        sender.send(b"ready", "READY")
+        return os.path.exists(again) and os.path.getsize(again) > 0
+
+    wait_for("the second lcm-logger", is_recording)
+    run("lcm-logplayer", live)
+    sender.send(b"end", "END")
+    wait_for("the end of the playback in the log", lambda: b"END" in open(again, "rb").read()[-4096:] or sender.send(b"", "END"))
+    logger.send_signal(signal.SIGINT)
+    wait_for("the end of lcm-logger", lambda: logger.poll() is not None)
+    played = [event for event in events(again) if event[0] not in ("READY", "END")]
+    first = events(live)
+    require([(e[0], e[2]) for e in played] == [(e[0], e[2]) for e in first],
+            f"the playback differs: {len(first)} events live, {len(played)} played")
+    print(f"lcm-logplayer: {len(played)} events, as recorded live")
+
+
+def check_log(path):
+    """Counts by channel, and the order of the steps of one node."""
+    counts = {}
+    last = -1
+    for channel, _, data in events(path):
+        counts[channel] = counts.get(channel, 0) + 1
+        if channel == f"{PREFIX}_crane":
+            step = struct.unpack(">q", data[8:16])[0]
+            require(step > last and step % 10 == 0, f"step {step} behind {last}")
+            last = step
+    for name in ("VARIABLES", "DIRECTORY", "HEALTH", "crane"):
+        require(counts.get(f"{PREFIX}_{name}", 0) > 0, f"no event on {PREFIX}_{name}: {counts}")
+    return counts
+
+
+def column(slewring, recording, variable):
+    rows = list(csv.reader(run(slewring, "export", recording, "--csv", variable).splitlines()))
+    return [row for row in rows[1:] if len(row) == 2]
+
+
+def export_and_drive(slewring, scene, recording, folder):
+    """The recording as a log; a run with the log as its input has the same inputs and the same motion, to the bit."""
+    log = f"{folder}/exported.lcm"
+    run(slewring, "export", recording, "--lcm", log, "--channel", PREFIX, "--signals", SIGNALS)
+    counts = check_log(log)
+    stamps = [stamp for _, stamp, _ in events(log)]
+    require(stamps == sorted(stamps) and stamps[0] == 0, "the times of the log are not in order")
+    print(f"export --lcm: {counts}")
+    raw = column(slewring, recording, "Input_Lift.raw")
+    end = int(float(raw[-1][0]) * 1000) / 1000
+    run(slewring, "run", scene, "--input", log, "--in-process", "--pace", "free", "--duration", f"{end} s", "--set",
+        "recording.every=1", "--session", "again", "--out", f"{folder}/again", "--quiet", cwd=folder)
+    second = f"{folder}/again/" + os.listdir(f"{folder}/again")[0]
+    moved = 0
+    for variable in ("Input_Lift.raw", "Cyl_Lift.stroke", "Cyl_Lift.force"):
+        first, again = column(slewring, recording, variable), column(slewring, second, variable)
+        size = min(len(first), len(again))
+        require(size > 1000, f"only {size} rows of {variable}")
+        differs = [i for i in range(size) if first[i] != again[i]]
+        require(not differs, f"{variable} differs: {first[differs[0]] if differs else ''} {again[differs[0]] if differs else ''}")
+        moved = max(moved, len({row[1] for row in first[:size]}))
+    require(moved > 100, "nothing moved")
+    print(f"run --input: {size} steps, equal bit for bit")
+
+
+def inside(source, build, slewring):
+    run("ip", "link", "set", "lo", "up", "multicast", "on")
+    scene = f"{source}/scenes/truck_crane.yaml"
+    with tempfile.TemporaryDirectory(prefix="slewring_lcm_") as folder:
+        processes = Processes(folder)
+        try:
+            session = processes.start("session", slewring, "run", scene, "--input", "none", "--duration", "0", "--set",
+                                      "recording.every=1", "--session", SESSION, "--out", f"{folder}/runs", "--quiet")
+            sessions = lambda: SESSION in subprocess.run([slewring, "sessions", "--json"], capture_output=True,
+                                                         text=True).stdout
+            wait_for("the session", sessions)
+            # without a route to the loopback inputs are refused, since other hosts could send them
+            refusal = run(slewring, "bridge", "lcm", "--session", SESSION, "--controller", "lift", code=7)
+            require("ip route add" in refusal, refusal)
+            run("ip", "route", "add", f"{GROUP}/32", "dev", "lo")
+            refusal = run(slewring, "bridge", "lcm", "--session", SESSION, "--url", f"udpm://{GROUP}:{PORT}?ttl=1", code=2)
+            require("--insecure-lan" in refusal, refusal)
+            refusal = run(slewring, "bridge", "lcm", "--session", SESSION, "--channel", "x" * 60, code=2)
+            require("at most 63 characters" in refusal, refusal)
+            refusal = run(slewring, "bridge", "lcm", "--session", SESSION, "--signals", "crane=Cyl_Lift.stroek", code=2)
+            require("did you mean 'Cyl_Lift.stroke'?" in refusal, refusal)
+
+            # the types, installed and written, and the handler that lcm-gen makes of them
+            run("cmake", "--install", build, "--component", "client", "--prefix", f"{folder}/installed")
+            run(slewring, "bridge", "lcm", "--session", SESSION, "--signals", SIGNALS, "--write-types", f"{folder}/crane.lcm")
+            require(text_of(f"{folder}/crane.lcm") == text_of(f"{source}/examples/lcm/crane.lcm"),
+                    "examples/lcm/crane.lcm is not what --write-types writes")
+            run("cmake", "-S", f"{source}/examples/lcm", "-B", f"{folder}/handler",
+                f"-DTYPES={folder}/installed/share/slewring/slewring.lcm")
+            run("cmake", "--build", f"{folder}/handler")
+
+            live = f"{folder}/live.lcm"
+            logger = processes.start("logger", "lcm-logger", live)
+            bridge = processes.start("bridge", slewring, "bridge", "lcm", "--session", SESSION, "--signals", SIGNALS,
+                                     "--every", "10", "--controller", "lift", "--controller", "other", "--json")
+            wait_for("the first messages in the log", lambda: os.path.exists(live) and os.path.getsize(live) > 100_000)
+            close_the_loop(processes, f"{folder}/handler/lift_controller", folder, slewring)
+
+            inputs = [data for channel, _, data in events_so_far(live) if channel == f"{PREFIX}_INPUT"]
+            wrong = send_wrong_inputs(inputs[0][:8])
+            causes = ["damaged", "not finite", "old sequence"]
+            wait_for("the reports of wrong inputs",
+                     lambda: all(f"'{cause}'" in text_of(f"{folder}/bridge.err") for cause in causes))
+            run(slewring, "control", "stop", "--session", SESSION)
+            wait_for("the end of the bridge", lambda: bridge.poll() is not None)
+            wait_for("the end of the session", lambda: session.poll() is not None)
+            logger.send_signal(signal.SIGINT)
+            wait_for("the end of lcm-logger", lambda: logger.poll() is not None)
+            summary = json.loads(text_of(f"{folder}/bridge.out"))
+            print(json.dumps(summary))
+            require(bridge.returncode == 0, text_of(f"{folder}/bridge.err"))
+            counted = summary["inputs"]
+            for cause, number in wrong.items():
+                require(counted["refused"][cause] == number, f"{cause}: {counted['refused'][cause]} and not {number}")
+            require(counted["applied"] > 100 and counted["lost"] > 0 and counted["gaps"] > 0, "1 % loss left no gap")
+
+            print(f"lcm-logger: {check_log(live)}")
+            play_back(processes, folder, live)
+            recording = f"{folder}/runs/" + os.listdir(f"{folder}/runs")[0]
+            export_and_drive(slewring, scene, recording, folder)
+            # what lcm-logger recorded drives a run as well
+            run(slewring, "run", scene, "--input", live, "--in-process", "--pace", "free", "--duration", "2 s", "--no-record",
+                "--quiet", cwd=folder)
+        finally:
+            processes.end()
+            for name in ("bridge.err", "session.err", "session.out"):
+                if os.path.exists(f"{folder}/{name}"):
+                    sys.stderr.write(f"---- {name}\n{text_of(f'{folder}/{name}')}")
+
+
+def events_so_far(path):
+    """The whole events of a log that is still written."""
+    with open(path, "rb") as file:
+        content = file.read()
+    found, at = [], 0
+    while at + 28 <= len(content):
+        _, _, stamp, channel, data = struct.unpack(">IqqII", content[at:at + 28])
+        end = at + 28 + channel + data
+        if end > len(content):
+            break
+        found.append((content[at + 28:at + 28 + channel].decode(), stamp, content[at + 28 + channel:end]))
+        at = end
+    return found
+
+
+def main():
+    source, build, slewring, has_lcm = sys.argv[1:5]
+    if has_lcm != "1":
+        skip("built without LCM; install liblcm-dev and liblcm-bin, and build again")
+    for program in ("lcm-gen", "lcm-logger", "lcm-logplayer", "ip", "nft", "unshare", "cmake", "cc"):
+        if shutil.which(program) is None:
+            skip(f"the program {program} is not installed")
+    if len(sys.argv) > 5:
+        return inside(source, build, slewring)
+    if subprocess.run(["unshare", "-rn", "nft", "list", "tables"], capture_output=True).returncode != 0:
+        skip("no network namespace with nft can be made here")
+    sys.exit(subprocess.run(["unshare", "-rn", sys.executable, *sys.argv, "inside"]).returncode)
+
+
+if __name__ == "__main__":
+    main()
