@@ -79,7 +79,7 @@ TEST(BridgeParameters, ARepeatedRequestIsDoneOnceAndAnsweredAgain) {
 TEST(BridgeParameters, ARequestIsRepeatedWithItsNumberAndGivenUp) {
   Door door;
   door.give(5, false, 0, -1, 0);
-  for (std::int64_t ms = 0; ms <= 3200; ms += 10) door.door.poll(ms * kMs);
+  for (std::int64_t ms = 0; ms <= 3300; ms += 10) door.door.poll(ms * kMs);
   EXPECT_EQ(door.sent.size(), 13u);  // at 0, 250, .. 3000 ms
   for (const wire::ControlRequest& request : door.sent) {
     EXPECT_EQ(request.request, door.sent[0].request);
