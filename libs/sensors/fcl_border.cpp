@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
@@ -295,14 +296,22 @@ void search_pair(Search& search, const Member& first, const Member& second) {
   if (search.only_overlap && radii == 0) return search_contact(search, x, y);
   fcl::DistanceRequestd request(true);
   request.distance_tolerance = kTolerance;
+  // FCL's search with libccd ends at once where two corners are equally far, as of shapes along the axes: up to the
+  // farther corner instead of the face between them
+  request.gjk_solver_type = fcl::GJKSolverType::GST_INDEP;
   fcl::DistanceResultd result;
   const double core_distance = fcl::distance(x.object.get(), y.object.get(), request, result);
+  // places that are not finite, or too large: FCL has found nothing, and its points hold whatever was in memory
+  if (!(core_distance < std::numeric_limits<double>::max())) throw std::range_error("no distance");
   const Vector3d c_x = result.nearest_points[0], c_y = result.nearest_points[1];
   if (!(core_distance > 0)) {
     search_contact(search, x, y);
-    // touching to rounding: FCL finds no contact
-    if (!search.is_done()) take(search, x, y, 0, c_x, c_y, Vector3d::Zero());
-    return;
+    if (search.is_done()) return;
+    // touching to rounding: FCL finds no contact, and below 0 no points either
+    fcl::AABBd both;
+    x.object->getAABB().overlap(y.object->getAABB(), both);
+    const bool has_points = core_distance == 0;
+    return take(search, x, y, 0, has_points ? c_x : both.center(), has_points ? c_y : both.center(), Vector3d::Zero());
   }
   const Vector3d n = (c_x - c_y) / core_distance;
   const Vector3d p_x = c_x - x.radius * n, p_y = c_y + y.radius * n;

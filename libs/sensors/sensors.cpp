@@ -441,7 +441,8 @@ bool Sensors::search_motion(std::size_t index, std::span<const FrameMotion> fram
       add_hit(index, collisions_[sensor.first], nearest.closing_speed, 0.5 * (nearest.p_a_W + nearest.p_b_W));
       has_hit = true;
     }
-    tau += std::max(nearest.distance, kReached) / mu;
+    // not to the contact itself, where the shapes have no direction from one to the other
+    tau += (nearest.distance - 0.5 * kReached) / mu;
   }
   // the groups stand at the sample again, for the next query
   for (const std::size_t group : {a, b}) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "math/rotation.h"
@@ -146,6 +147,53 @@ TEST(Distance, OfBoxesIsThatOfTheirTriangles) {
     const double expected = surface_distance(triangles_of(box_mesh(1, 2, 0.5), a), triangles_of(box_mesh(2, 1, 1), b));
     EXPECT_NEAR(distance_of(pair(box(1, 2, 0.5), box(2, 1, 1), clearance()), a, b), expected, kSearch);
     EXPECT_NEAR(distance_of(pair(box_mesh(1, 2, 0.5), box(2, 1, 1), clearance()), a, b), expected, kSearch);
+  }
+}
+
+// Many corners are equally far in such places, where a search may end too early: turns by quarters, centres on a grid.
+TEST(Distance, OfShapesAlongTheAxesIsThatOfTheirFaces) {
+  Draw draw(11);
+  const auto edges_of = [](const Mat3& R, Vec3 size) {
+    Triple half{};
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) half[static_cast<std::size_t>(k)] += 0.5 * std::fabs(R(k, j)) * size[j];
+    }
+    return Vec3(half);
+  };
+  const auto quarters = [&] { return math::rotation_x(M_PI_2 * std::floor(draw.number(0, 4))); };
+  for (int i = 0; i < 200; ++i) {
+    SCOPED_TRACE(i);
+    const auto grid = [&] { return 0.5 * std::floor(draw.number(-6, 7)); };
+    const FrameMotion a{{}, quarters(), {}, {}}, b{{grid(), grid(), grid()}, quarters(), {}, {}};
+    const Vec3 half_a = edges_of(a.R_W, {0.2, 1, 1}), half_b = edges_of(b.R_W, {1, 2, 0.5});
+    Triple gaps{}, from_centres{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      gaps[k] = std::max(std::fabs(b.p_W[axis]) - half_a[axis] - half_b[axis], 0.0);
+      from_centres[k] = std::max(std::fabs(b.p_W[axis]) - half_a[axis], 0.0);
+    }
+    const Vec3 gap(gaps), from_centre(from_centres);
+    for (const ShapeDef& first : {box(0.2, 1, 1), box_mesh(0.2, 1, 1)}) {
+      EXPECT_NEAR(distance_of(pair(first, box(1, 2, 0.5), clearance()), a, b), norm(gap), kSearch);
+      EXPECT_NEAR(distance_of(pair(first, box_mesh(1, 2, 0.5), clearance()), a, b), norm(gap), kSearch);
+      ShapeDef surface = box_mesh(1, 2, 0.5);
+      surface.type = ShapeType::triangle_mesh;
+      if (norm(gap) > 0) {
+        EXPECT_NEAR(distance_of(pair(first, surface, clearance()), a, b), norm(gap), kSearch);
+      }
+      EXPECT_NEAR(distance_of(pair(first, sphere(0.1), clearance()), a, b), std::max(norm(from_centre) - 0.1, 0.0),
+                  kSearch);
+    }
+  }
+}
+
+TEST(Distance, IsNotFoundBetweenPlacesThatAreNotFinite) {
+  for (const double x : {std::numeric_limits<double>::quiet_NaN(), 1e200}) {
+    for (const ShapeDef& second : {box(1, 1, 1), sphere(1)}) {
+      Sensors sensors(pair(box(1, 2, 1), second, clearance()));
+      EXPECT_FALSE(sensors.observe(at({}, {{x, 0, 0}, Mat3::identity(), {}, {}})));
+      EXPECT_EQ(sensors.failed(), 0U);
+    }
   }
 }
 

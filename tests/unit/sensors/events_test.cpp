@@ -124,6 +124,19 @@ TEST(ContinuousCollision, FindsABallThatPassesAPlateBetweenTwoSamples) {
   EXPECT_EQ(words(blind), "");
 }
 
+// a face that meets a face in parallel, where the last stride could end in the contact
+TEST(ContinuousCollision, HasTheSpeedOfFacesThatMeetFlat) {
+  for (const double start : {-1.6, -1.9, -2.13}) {
+    Sensors sensors(pair(box(1, 1, 1), box(1, 2, 2), continuous()));
+    ASSERT_TRUE(sensors.observe(at(at_x(start, 60))));
+    ASSERT_TRUE(sensors.observe(at(at_x(start + 0.6, 60))));
+    ASSERT_TRUE(sensors.observe(at(at_x(start + 1.2, 60))));
+    EXPECT_EQ(value(sensors, "S.hits"), 1) << start;
+    EXPECT_NEAR(value(sensors, "S.speed"), 60, 1e-9) << start;
+    EXPECT_NEAR(value(sensors, "S.place.x"), -0.5, 1e-4) << start;
+  }
+}
+
 // a bar of 2 m turns by 1.2 rad about the origin of its frame, past a thin post
 TEST(ContinuousCollision, FindsABarThatTurnsPastAPost) {
   Sensors sensors(pair(box(2, 0.01, 0.01), box(0.001, 0.001, 1), continuous()));
