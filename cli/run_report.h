@@ -46,6 +46,7 @@ struct RunReport {
   std::vector<PortReport> ports;
   double omega_H = 0;  // largest
   std::vector<VariableReport> variables;
+  std::vector<session::DeviceOutcome> devices;
   std::vector<std::string> notes;     // remarkable: a load that could not be lifted, and why
   std::vector<std::string> messages;  // why it did not end well
   std::string plots;                  // path of the picture

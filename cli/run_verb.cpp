@@ -115,6 +115,11 @@ ExitCode run_session(session::RunOptions options, const io_node::SessionScene& s
                   "--join-timeout waits for other processes, and --in-process has none; nothing was "
                   "started; leave one out");
   }
+  if (options.is_in_process && !options.is_without_devices && !scene.devices.names().empty()) {
+    std::fprintf(stderr,
+                 "warning: the devices of the scene are not started: a run in one process has no place for a "
+                 "controller; run it as processes\n");
+  }
   options.kept = report_variables(scene);
   TerminalWatcher watcher(options, scene);
   const session::RunOutcome outcome = options.is_in_process ? session::run_in_process(options, session, watcher)
@@ -152,6 +157,11 @@ void add_running_options(options::Command& verb, session::RunOptions& options) {
   verb.option("--cpu", options.cpus,
               "processor of each node, such as mechanics=1,hydraulics=0; without it session.cpus, else any")
       .value_name("ROLE=N");
+  verb.flag("--without-devices", options.is_without_devices, "do not start the devices of the scene");
+  verb.flag("--insecure-devices", options.are_devices_insecure,
+            "let devices receive and send UDP beyond this machine: any program there can read the values and move the "
+            "machine")
+      .group("Network");
   verb.flag("--quiet", options.is_quiet, "no status line");
 }
 

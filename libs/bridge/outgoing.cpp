@@ -1,6 +1,7 @@
 #include "bridge/outgoing.h"
 
 #include <algorithm>
+#include <numeric>
 #include <slewring/bridge_t.hpp>
 #include <slewring/directory_t.hpp>
 #include <slewring/health_t.hpp>
@@ -14,24 +15,22 @@ namespace {
 
 // below the size at which LCM splits a message: a lost fragment is a lost message
 constexpr std::size_t kNamesPerMessage = 256;
-constexpr std::size_t kWaitingSteps = 64;
 
 }  // namespace
 
 Outgoing::Outgoing(std::string prefix, std::vector<lcm_log::SignalList> lists, StepIndex every, Sink sink)
     : prefix_(std::move(prefix)),
       lists_(std::move(lists)),
-      states_(lists_.size()),
       every_(std::max<StepIndex>(1, every)),
       sink_(std::move(sink)) {
-  begin_session();
+  for (const lcm_log::SignalList& list : lists_) values_.emplace_back(list.variables.size());
 }
 
 void Outgoing::begin_session() {
   names_.clear();
-  for (std::size_t i = 0; i < lists_.size(); ++i) {
-    states_[i].places.assign(lists_[i].variables.size(), std::nullopt);
-    states_[i].steps.clear();
+  for (observer::StepValues& list : values_) {
+    list.forget_places();
+    list.forget_steps();
   }
 }
 
@@ -59,7 +58,7 @@ void Outgoing::take(const wire::VariableDirectory& directory) {
     for (std::size_t list = 0; list < lists_.size(); ++list) {
       const std::vector<std::string>& wanted = lists_[list].variables;
       for (std::size_t k = 0; k < wanted.size(); ++k) {
-        if (wanted[k] == directory.entries[i].name) states_[list].places[k] = place;
+        if (wanted[k] == directory.entries[i].name) values_[list].set_place(k, place);
       }
     }
   }
@@ -68,7 +67,7 @@ void Outgoing::take(const wire::VariableDirectory& directory) {
 void Outgoing::take(const wire::VariableBlock& block, double time) {
   if (block.header.epoch != epoch_) {
     epoch_ = block.header.epoch;
-    for (ListState& state : states_) state.steps.clear();
+    for (observer::StepValues& list : values_) list.forget_steps();
   }
   // an empty one: the node leaves its values out under load
   if (block.header.step % every_ != 0 || block.values.empty()) return;
@@ -81,38 +80,17 @@ void Outgoing::take(const wire::VariableBlock& block, double time) {
   message.count = static_cast<std::int32_t>(block.values.size());
   message.value.assign(block.values.begin(), block.values.end());
   emit("_VARIABLES", message, block.header.step);
-  for (std::size_t list = 0; list < lists_.size(); ++list) take_for_list(list, block, time);
+  for (std::size_t list = 0; list < lists_.size(); ++list) {
+    const std::vector<double>* const values = values_[list].take(block);
+    if (values == nullptr) continue;
+    encode(lists_[list], block.header.step, time, *values, bytes_);
+    send("_" + lists_[list].name, bytes_, block.header.step);
+  }
 }
 
-void Outgoing::take_for_list(std::size_t list, const wire::VariableBlock& block, double time) {
-  ListState& state = states_[list];
-  Values* values = nullptr;
-  for (std::size_t i = 0; i < state.places.size(); ++i) {
-    const std::optional<observer::VariablePlace>& place = state.places[i];
-    if (!place || place->role != block.header.role || place->index < block.first) continue;
-    const std::size_t at = place->index - block.first;
-    if (at >= block.values.size()) continue;
-    if (values == nullptr) {
-      values = &state.steps[block.header.step];
-      values->values.resize(state.places.size());
-      values->has.resize(state.places.size());
-    }
-    values->values[i] = block.values[at];
-    values->count += values->has[i] ? 0 : 1;
-    values->has[i] = true;
-  }
-  if (values == nullptr) return;
-  if (values->count == state.places.size()) {
-    encode(lists_[list], block.header.step, time, values->values, bytes_);
-    send("_" + lists_[list].name, bytes_, block.header.step);
-    // blocks of a node arrive in order: older steps stay incomplete
-    const auto behind = state.steps.upper_bound(block.header.step);
-    incomplete_ += static_cast<std::uint64_t>(std::distance(state.steps.begin(), behind)) - 1;
-    state.steps.erase(state.steps.begin(), behind);
-  } else if (state.steps.size() > kWaitingSteps) {
-    state.steps.erase(state.steps.begin());
-    ++incomplete_;
-  }
+std::uint64_t Outgoing::incomplete() const noexcept {
+  return std::accumulate(values_.begin(), values_.end(), std::uint64_t{0},
+                         [](std::uint64_t sum, const observer::StepValues& list) { return sum + list.incomplete(); });
 }
 
 void Outgoing::publish_directory(StepIndex step) {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "lcm_log/input_filter.h"
 #include "lcm_log/signal_list.h"
 #include "observer/session_view.h"
+#include "observer/step_values.h"
 #include "transport/wire.h"
 
 namespace slew::bridge {
@@ -34,34 +34,22 @@ class Outgoing {
   void publish(const lcm_log::InputCounts& counts, std::uint64_t parameter_refusals, StepIndex step);
 
   // Steps of a list that never became whole: a block was lost, or left out under load.
-  [[nodiscard]] std::uint64_t incomplete() const noexcept { return incomplete_; }
+  [[nodiscard]] std::uint64_t incomplete() const noexcept;
   [[nodiscard]] std::uint64_t published() const noexcept { return published_; }
   [[nodiscard]] const std::vector<lcm_log::SignalList>& lists() const noexcept { return lists_; }
 
  private:
-  struct Values {
-    std::vector<double> values;
-    std::vector<bool> has;
-    std::size_t count = 0;
-  };
-  struct ListState {
-    std::vector<std::optional<observer::VariablePlace>> places;  // by variable of the list
-    std::map<StepIndex, Values> steps;                           // not whole yet
-  };
-
   template <typename Message>
   void emit(std::string_view suffix, const Message& message, StepIndex step);
   void send(std::string_view suffix, std::string_view bytes, StepIndex step);
-  void take_for_list(std::size_t list, const wire::VariableBlock& block, double time);
 
   std::string prefix_;
   std::vector<lcm_log::SignalList> lists_;
-  std::vector<ListState> states_;  // by list
+  std::vector<observer::StepValues> values_;  // by list
   StepIndex every_;
   Sink sink_;
   std::map<wire::Role, std::vector<wire::VariableEntry>> names_;
   std::uint32_t epoch_ = 0;
-  std::uint64_t incomplete_ = 0;
   std::uint64_t published_ = 0;
   std::string bytes_, channel_;
 };

@@ -29,6 +29,8 @@ constexpr Field kLayoutFields[] = {
 };
 
 constexpr Field kLayoutFieldFields[] = {
+    field<&LayoutFieldDef::name>("name", {.presence = Presence::required,
+                                          .doc = "letters, digits and _; the field's name in the generated C header"}),
     field<&LayoutFieldDef::type>("as", {.choices = kByteTypeNames, .doc = "type of the field's bytes"}),
     field<&LayoutFieldDef::role>(
         "is", {.choices = kFieldRoleNames,
@@ -44,6 +46,11 @@ constexpr Field kLayoutFieldFields[] = {
     field<&LayoutFieldDef::unit>("unit", {.doc = "unit of the value, for the header and the note"}),
     field<&LayoutFieldDef::lowest>("lowest", {.range = {.min_is_open = false}, .doc = "lowest value that is sent"}),
     field<&LayoutFieldDef::highest>("highest", {.range = {.max_is_open = false}, .doc = "highest value that is sent"}),
+    field<&LayoutFieldDef::input>(
+        "input", {.reference = "input", .doc = "received: input that the value moves, -1 to 1, digital 0 or 1"}),
+    field<&LayoutFieldDef::variable>("variable", {.doc = "sent: variable of the session, as Cyl_Lift.force, in SI"}),
+    field<&LayoutFieldDef::output>(
+        "output", {.reference = "output", .doc = "sent: output of the scene; without variable and output 0 is sent"}),
 };
 
 // words of C and C++ that a struct in the generated header cannot have

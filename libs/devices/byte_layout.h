@@ -60,6 +60,9 @@ struct LayoutFieldDef {
   std::string unit{};     // for people: header and note
   double lowest = -std::numeric_limits<double>::infinity();  // sent values are held at these bounds
   double highest = std::numeric_limits<double>::infinity();
+  std::string input{};     // of a session, which a received value moves
+  std::string variable{};  // of a session, whose value is sent
+  std::string output{};    // of a scene, whose state is sent
 };
 
 struct LayoutDef {

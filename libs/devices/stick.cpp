@@ -74,7 +74,8 @@ void validate(const StickDef& def, Problems& problems) {
                                   [&](const AxisDef& axis) { return axis.channel == button.channel; }));
   }
   if (def.axes.empty() && def.buttons.empty()) {
-    problems.push_back({def.name, "the device has neither axes nor buttons", "axes, buttons or both", ""});
+    problems.push_back({def.name, "the device has neither axes nor buttons",
+                        "axes or buttons; 'slewring device calibrate' writes them", ""});
   }
 }
 

@@ -73,6 +73,21 @@ void write_fields(std::string& text, const Scene& scene, const ElementRef& eleme
   }
 }
 
+void write_lists(std::string& text, const ElementRef& element) {
+  for (const ListTable& list : element.lists) {
+    const std::vector<void*> rows = list.rows(element.def);
+    if (!rows.empty()) text += fmt::format("    {}:\n", list.key);
+    for (void* const row : rows) {
+      std::string line;
+      for (const Field& field : list.fields) {
+        const std::string value = value_text(field, row);
+        if (!value.empty()) line += fmt::format("{}{}: {}", line.empty() ? "" : ", ", field.key, value);
+      }
+      text += fmt::format("      - {{{}}}\n", line);
+    }
+  }
+}
+
 void write_elements(std::string& text, const Scene& scene, const std::vector<ElementRef>& all,
                     std::string_view section) {
   bool is_first = true;
@@ -83,6 +98,7 @@ void write_elements(std::string& text, const Scene& scene, const std::vector<Ele
     std::string fields;
     if (!element.type.empty()) fields += fmt::format("    type: {}\n", element.type);
     write_fields(fields, scene, element, "    ");
+    write_lists(fields, element);
     text += fmt::format("  {}:{}{}", element.name, fields.empty() ? " {}\n" : "\n", fields);
   }
 }

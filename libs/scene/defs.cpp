@@ -180,7 +180,7 @@ constexpr Field kInputFields[] = {
     field<&InputDef::sub>("sub", {.choices = kSubs, .doc = "signal of the component"}),
     field<&InputDef::block>(
         "block", {.range = kBlockRange,
-                  .doc = "I/O block: number of the joystick; an address for I/O boards, no source uses it yet"}),
+                  .doc = "I/O block: that of the joystick among the devices whose axes and buttons move it"}),
     field<&InputDef::channel>(
         "channel",
         {.range = kChannelRange, .doc = "I/O channel: axis or button of the block; two inputs must not share one"}),

@@ -97,6 +97,10 @@ std::string field_reference() {
                                                      : fmt::format("`type: {}`{}: {}", table.type,
                                                                    table.is_default ? " (or no type)" : "", table.doc);
       text += fmt::format("\n{}.\n\n{}", heading, table_of(table.fields, def));
+      for (const ListTable& list : table.lists) {
+        text += fmt::format("\n`{}`: a list of maps. {}.\n\n{}", list.key, list.doc,
+                            table_of(list.fields, list.append(def)));
+      }
       if (section != "bodies" || !table.is_default) continue;
       MeshInertiaDef from_mesh;
       text += fmt::format("\n`inertia: {}`: mass, centre of mass and inertia of the solid in a closed mesh.\n\n{}",

@@ -143,8 +143,11 @@ Json elements_of(std::string_view section) {
   for (const ElementTable& table : element_tables()) {
     if (table.section != section) continue;
     const bool is_flexible = section == "bodies" && !table.is_default;
-    types.push_back(is_flexible ? flexible_body(table)
-                                : object_of(table.fields, table.doc, table.type, table.is_default));
+    Json type = is_flexible ? flexible_body(table) : object_of(table.fields, table.doc, table.type, table.is_default);
+    for (const ListTable& list : table.lists) {
+      type["properties"][std::string(list.key)] = list_of(object_of(list.fields, list.doc, ""), 0);
+    }
+    types.push_back(std::move(type));
     if (section == "bodies" && table.is_default) types.push_back(mesh_body(table));
   }
   Json element = types.items().size() == 1 ? types.items().front() : Json{{"oneOf", types}};

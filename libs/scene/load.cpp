@@ -37,6 +37,7 @@ constexpr std::string_view kMechanicsSections[] = {"mechanics", "bodies",   "joi
                                                    "shapes",    "contacts", "frictions", "motions", "gears"};
 constexpr std::string_view kHydraulicsSections[] = {"hydraulics", "volumes", "components", "curves"};
 constexpr std::string_view kTypeKey[] = {"type"};
+constexpr std::size_t kMaxListRows = 1024;
 
 // Reads the expanded tree into a Scene: elements by their tables, then the rules between them, domain by domain. The
 // physics libraries check a domain only if all its values were read, so that there are no follow-up errors.
@@ -65,7 +66,8 @@ class SceneReader {
     }
     read_sensors(mechanics_is_sound);
     read_inputs();
-    read_outputs();
+    read_recorded();
+    read_devices_and_outputs();
     if (const Node::Entry* script = root_.find("script")) {
       read_script(script->value, script->mark, load_context_, names_, scene_, context_);
     }
@@ -179,9 +181,44 @@ class SceneReader {
       return;
     }
     if (section == "bodies" && !table->is_default) return read_flexible_body(element, *table, def);
-    const bool has_type = !table->type.empty();
-    read_fields(element.value, table->fields, def, element.key, element.mark,
-                has_type ? std::span<const std::string_view>(kTypeKey) : std::span<const std::string_view>(), context_);
+    std::vector<std::string_view> other_keys;
+    if (!table->type.empty()) other_keys.push_back(kTypeKey[0]);
+    for (const ListTable& list : table->lists) other_keys.push_back(list.key);
+    read_fields(element.value, table->fields, def, element.key, element.mark, other_keys, context_);
+    for (const ListTable& list : table->lists) read_list(element, list, def);
+  }
+
+  void read_list(const Node::Entry& element, const ListTable& list, void* def) {
+    const Node::Entry* entry = element.value.find(list.key);
+    if (entry == nullptr) return;
+    const std::string path = fmt::format("{}.{}", element.key, list.key);
+    places_.add(path, entry->value.mark);
+    if (entry->value.kind != Node::Kind::sequence) {
+      report_.add(entry->value.mark, path, {"is " + describe(entry->value), "a list of maps", ""});
+      return;
+    }
+    if (entry->value.items.size() > kMaxListRows) {
+      report_.add(
+          entry->value.mark, path,
+          {fmt::format("has {} entries", entry->value.items.size()), fmt::format("at most {}", kMaxListRows), ""});
+      return;
+    }
+    for (std::size_t i = 0; i < entry->value.items.size(); ++i) {
+      const Node& item = entry->value.items[i];
+      const std::string row_path = fmt::format("{}[{}]", path, i);
+      if (item.kind != Node::Kind::map) {
+        report_.add(item.mark, row_path, {"is " + describe(item), "a map", ""});
+        continue;
+      }
+      // problems that are found later name a row by its first field
+      const Node::Entry* name = item.find(list.fields.front().key);
+      const bool is_named = name != nullptr && name->value.kind == Node::Kind::scalar;
+      if (is_named) {
+        places_.add(fmt::format("{}.{}", path, name->value.text), item.mark);
+        places_.add(fmt::format("{}.{}", element.key, name->value.text), item.mark);
+      }
+      read_fields(item, list.fields, list.append(def), row_path, item.mark, {}, context_);
+    }
   }
 
   // The keys of a rigid body may stay, so that one line makes it flexible and back. They are read, and differences from
@@ -360,21 +397,35 @@ class SceneReader {
                       closest(input.primitive, controlled)});
   }
 
-  void read_outputs() {
+  void read_recorded() {
     read_section("recording");
     read_section("plots");
-    check_variables("recording", scene_.recording.variables);
-    for (const PlotDef& plot : scene_.plots) check_variables(plot.name, plot.variables);
+    check_variables("recording.variables", scene_.recording.variables);
+    for (const PlotDef& plot : scene_.plots) check_variables(plot.name + ".variables", plot.variables);
+  }
+
+  void read_devices_and_outputs() {
+    const std::size_t problems = report_.size();
+    read_section("outputs");
+    read_section("devices");
+    resolve_references();
+    if (report_.size() > problems) return;
+    check_problems([&](Problems& errors, Problems&) {
+      read_outputs(scene_.outputs, errors);
+      read_devices(scene_.devices, scene_.inputs, errors);
+    });
+    if (report_.size() > problems) return;
+    for (const NamedVariable& named : variables_of(scene_.devices, scene_.outputs))
+      check_variables(named.path, {named.variable});
   }
 
   // The part before the first dot names an element or a section; only its node has the element's quantities.
-  void check_variables(const std::string& owner, const std::vector<std::string>& variables) {
+  void check_variables(const std::string& path, const std::vector<std::string>& variables) {
     std::vector<std::string_view> owners = names_.names_of("");
     for (const SingleTable& table : single_tables()) owners.push_back(table.section);
     for (const std::string& variable : variables) {
       const std::size_t dot = variable.find('.');
       const std::string_view element = std::string_view(variable).substr(0, dot);
-      const std::string path = owner + ".variables";
       if (dot == std::string::npos && element.find('*') == std::string_view::npos) {
         add_problem({path, "'" + variable + "' is not the name of a variable",
                      "Element.quantity or a pattern such as 'Cyl_*.force'", ""});
@@ -478,6 +529,32 @@ Scene load_text(std::string text, const std::string& name, const Overrides& over
     load_context.asset_folder = files.value_or("");
     load_context.reads_script = script == ScriptFile::read;
     return read_tree(std::move(*root), std::move(load_context), name, overrides, report);
+  });
+}
+
+Scene with_devices(const Scene& scene, const std::string& file) {
+  return guarded(file, [&] {
+    Report report;
+    const std::optional<SourceText> source = check_source(scene.expanded_text, report.add_source(scene.name), report);
+    std::optional<Node> root = source ? parse_yaml(*source, report) : std::nullopt;
+    const std::optional<Node> added = read_with_includes(file, report);
+    if (!root || !added) report.fail(kMaxReportedProblems);
+    constexpr std::string_view kSections[] = {"devices", "outputs"};
+    for (const std::string_view section : kSections) {
+      std::erase_if(root->entries, [&](const Node::Entry& entry) { return entry.key == section; });
+    }
+    report_duplicates(*added, "", report);
+    for (const Node::Entry& entry : added->entries) {
+      if (std::find(std::begin(kSections), std::end(kSections), entry.key) == std::end(kSections)) {
+        report.add(entry.mark, entry.key, {"is no section of a file of devices", "devices or outputs", ""});
+      } else {
+        root->entries.push_back(entry);
+      }
+    }
+    if (!report.is_clean()) report.fail(kMaxReportedProblems);
+    LoadContext load_context;
+    load_context.reads_script = false;
+    return read_tree(std::move(*root), std::move(load_context), scene.name, {}, report);
   });
 }
 

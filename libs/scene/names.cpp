@@ -49,7 +49,7 @@ bool is_flexible(const Node& body) {
 constexpr std::string_view kNode = ".Node";
 
 std::string with_article(std::string_view kind) {
-  return (kind == "input" ? "an " : "a ") + std::string(kind);
+  return (kind == "input" || kind == "output" ? "an " : "a ") + std::string(kind);
 }
 
 }  // namespace

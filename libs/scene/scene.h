@@ -19,6 +19,7 @@
 #include "hydraulics/hydraulics_def.h"
 #include "multibody/model/defs.h"
 #include "scene/defs.h"
+#include "scene/devices.h"
 #include "scene/diagnostic.h"
 #include "sensors/sensors.h"
 
@@ -70,6 +71,8 @@ struct Scene {
   hydraulics::HydraulicsDef hydraulics;
   std::vector<sensors::SensorDef> sensors;
   std::vector<InputDef> inputs;  // the position is the channel's index
+  OutputsDef outputs;
+  DevicesDef devices;
   ScriptDef script;
   RecordingDef recording;
   std::vector<PlotDef> plots;
@@ -119,6 +122,10 @@ enum class ScriptFile : std::uint8_t { left_out, read };
 [[nodiscard]] Scene load_text(std::string text, const std::string& name, const Overrides& overrides = {},
                               const std::optional<std::string>& files = std::nullopt,
                               ScriptFile script = ScriptFile::left_out);
+
+// The scene with the devices and outputs of a file in the place of its own. The file has these two sections alone.
+// Throws LoadError, nothing else.
+[[nodiscard]] Scene with_devices(const Scene& scene, const std::string& file);
 
 // Error (bad_input) for a scene whose physics is solved as one system: no node can solve a part of it.
 [[nodiscard]] Status check_is_split(const Scene& scene);

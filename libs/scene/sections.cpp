@@ -92,6 +92,78 @@ void add_sensors(std::vector<ElementTable>& tables) {
   }
 }
 
+// ---- devices --------------------------------------------------------------------------------------------------
+
+template <auto First, auto... Rest>
+constexpr ListTable list(std::string_view key, std::string_view doc, std::span<const Field> fields) {
+  using Class = typename detail::MemberOf<decltype(First)>::class_type;
+  ListTable table{.key = key, .doc = doc, .fields = fields};
+  table.append = [](void* def) -> void* {
+    return &detail::member_at<First, Rest...>(*static_cast<Class*>(def)).emplace_back();
+  };
+  table.rows = [](void* def) {
+    std::vector<void*> rows;
+    for (auto& row : detail::member_at<First, Rest...>(*static_cast<Class*>(def))) rows.push_back(&row);
+    return rows;
+  };
+  return table;
+}
+
+std::span<const ListTable> joystick_lists() {
+  static const ListTable lists[] = {
+      list<&JoystickDef::stick, &devices::StickDef::axes>("axes", "axis", devices::axis_fields()),
+      list<&JoystickDef::stick, &devices::StickDef::buttons>("buttons", "button", devices::button_fields())};
+  return lists;
+}
+
+template <typename Def>
+std::span<const ListTable> layout_lists() {
+  static const ListTable lists[] = {list<&Def::layout, &devices::LayoutDef::fields>(
+      "fields", "field of the packet, in its order", devices::layout_field_fields())};
+  return lists;
+}
+
+void add_devices(std::vector<ElementTable>& tables) {
+  tables.push_back(
+      {.section = "devices",
+       .type = "joystick",
+       .kind = "device",
+       .doc = "joystick, gamepad or pedals, of which axes and buttons move the inputs of a block",
+       .fields = joystick_fields(),
+       .append = [](Scene& scene, const std::string& name) { return append_named(scene.devices.joysticks, name); },
+       .lists = joystick_lists()});
+  tables.push_back(
+      {.section = "devices",
+       .type = "udp_in",
+       .kind = "device",
+       .doc = "packets of one layout that are received and move inputs",
+       .fields = udp_in_fields(),
+       .append = [](Scene& scene, const std::string& name) { return append_named(scene.devices.udp_ins, name); },
+       .lists = layout_lists<UdpInDef>()});
+  tables.push_back(
+      {.section = "devices",
+       .type = "udp_out",
+       .kind = "device",
+       .doc = "packets of one layout that are sent, with variables and outputs",
+       .fields = udp_out_fields(),
+       .append = [](Scene& scene, const std::string& name) { return append_named(scene.devices.udp_outs, name); },
+       .lists = layout_lists<UdpOutDef>()});
+  tables.push_back(
+      {.section = "outputs",
+       .type = "switched",
+       .kind = "output",
+       .doc = "lamp, buzzer or contact: 1 while a condition holds, else 0",
+       .fields = switched_fields(),
+       .append = [](Scene& scene, const std::string& name) { return append_named(scene.outputs.switched, name); }});
+  tables.push_back(
+      {.section = "outputs",
+       .type = "analog",
+       .kind = "output",
+       .doc = "gauge, current or voltage: a variable's range as one of the output",
+       .fields = analog_fields(),
+       .append = [](Scene& scene, const std::string& name) { return append_named(scene.outputs.analog, name); }});
+}
+
 void add_own(std::vector<ElementTable>& tables) {
   tables.push_back(
       {.section = "inputs",
@@ -121,6 +193,7 @@ std::vector<ElementTable> make_element_tables() {
   add_hydraulics(tables);
   add_sensors(tables);
   add_own(tables);
+  add_devices(tables);
   return tables;
 }
 
@@ -143,7 +216,8 @@ const ElementTable& table_of(std::string_view section, std::string_view type) {
 }
 
 ElementRef ref(const ElementTable& table, std::string_view name, void* def) {
-  return {name, table.section, table.is_default ? std::string_view() : table.type, table.kind, table.fields, def};
+  return {name, table.section, table.is_default ? std::string_view() : table.type, table.kind, table.fields,
+          def,  table.lists};
 }
 
 template <typename Defs>
@@ -208,17 +282,17 @@ const std::vector<SingleTable>& single_tables() {
 }
 
 const std::vector<std::string_view>& element_sections() {
-  static const std::vector<std::string_view> names = {"bodies",     "joints",    "forces",  "dummies", "shapes",
-                                                      "contacts",   "frictions", "motions", "gears",   "volumes",
-                                                      "components", "curves",    "sensors", "inputs",  "plots"};
+  static const std::vector<std::string_view> names = {
+      "bodies",  "joints",     "forces", "dummies", "shapes", "contacts", "frictions", "motions", "gears",
+      "volumes", "components", "curves", "sensors", "inputs", "outputs",  "devices",   "plots"};
   return names;
 }
 
 const std::vector<std::string_view>& top_level_keys() {
   static const std::vector<std::string_view> keys = {
-      "scene",   "description", "include", "assets",   "session",   "mechanics", "bodies",    "joints",
-      "forces",  "dummies",     "shapes",  "contacts", "frictions", "motions",   "gears",     "hydraulics",
-      "volumes", "components",  "curves",  "sensors",  "inputs",    "script",    "recording", "plots"};
+      "scene",   "description", "include",  "assets",    "session", "mechanics", "bodies",     "joints",  "forces",
+      "dummies", "shapes",      "contacts", "frictions", "motions", "gears",     "hydraulics", "volumes", "components",
+      "curves",  "sensors",     "inputs",   "outputs",   "devices", "script",    "recording",  "plots"};
   return keys;
 }
 
@@ -237,6 +311,11 @@ std::vector<ElementRef> elements(Scene& scene) {
   for (InputDef& input : scene.inputs) {
     refs.push_back(ref(table_of("inputs", kInputTypeChoices[static_cast<int>(input.type)]), input.name, &input));
   }
+  collect(refs, table_of("outputs", "switched"), scene.outputs.switched);
+  collect(refs, table_of("outputs", "analog"), scene.outputs.analog);
+  collect(refs, table_of("devices", "joystick"), scene.devices.joysticks);
+  collect(refs, table_of("devices", "udp_in"), scene.devices.udp_ins);
+  collect(refs, table_of("devices", "udp_out"), scene.devices.udp_outs);
   collect(refs, table_of("plots", ""), scene.plots);
   return refs;
 }

@@ -15,6 +15,15 @@
 
 namespace slew::scene {
 
+// A key of an element whose value is a list of maps, all with the same fields, the first of which names the row.
+struct ListTable {
+  std::string_view key;  // "axes"
+  std::string_view doc;
+  std::span<const Field> fields;
+  void* (*append)(void* def) = nullptr;             // appends a row with its defaults to the element's list
+  std::vector<void*> (*rows)(void* def) = nullptr;  // the element's rows
+};
+
 // One type of element in a section of named elements.
 struct ElementTable {
   std::string_view section;  // "joints"
@@ -25,6 +34,7 @@ struct ElementTable {
   std::function<void*(Scene&, const std::string&)> append;  // appends a Def with its defaults; the address is for
                                                             // Field::member
   bool is_default = false;                                  // type of an element without `type:`
+  std::span<const ListTable> lists = {};
 };
 
 // A section that is one map of fields.
@@ -43,6 +53,7 @@ struct ElementRef {
   std::string_view kind;
   std::span<const Field> fields;
   void* def = nullptr;
+  std::span<const ListTable> lists = {};
 };
 
 [[nodiscard]] const std::vector<ElementTable>& element_tables();

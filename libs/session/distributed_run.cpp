@@ -57,7 +57,9 @@ class Supervisor {
         name_(scene.name),
         give_up_after_(duration_of_seconds(scene.session.give_up_after)),
         rejoin_(duration_of_seconds(scene.session.rejoin)),
-        is_refusal_reported_(options.is_refusal_reported) {
+        is_refusal_reported_(options.is_refusal_reported),
+        devices_([this](const std::string& line) { watcher_.report(line); }) {
+    if (!options.is_without_devices) device_names_ = scene.devices.names();
     const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
     require(scene::parse_cpu_places(places, cpus_));
     for (const scene::CpuPlace& place : cpus_) {
@@ -78,6 +80,7 @@ class Supervisor {
       wait_for_output();
       observer_->drain();
       look_after_children();
+      devices_.look_after(monotonic_ns());
       start_again();
       start_others_when_io_is_there();
       apply_interrupts();
@@ -86,6 +89,7 @@ class Supervisor {
     }
     look_after_children();  // last output of the node that ended last
     observer_->drain();
+    devices_.finish();
     watcher_.end();
     return outcome();
   }
@@ -189,11 +193,20 @@ class Supervisor {
     return std::make_unique<ChildProcess>(name, sibling_program(name + "_node"), arguments);
   }
 
+  void start_device(const std::string& name) {
+    std::vector<std::string> arguments = {"--device", name, "--session", options_.session.session, "--supervised"};
+    const std::vector<std::string> network = node::network_arguments(options_.session);
+    arguments.insert(arguments.end(), network.begin(), network.end());
+    if (options_.are_devices_insecure) arguments.emplace_back("--insecure-devices");
+    devices_.start(name, arguments);
+  }
+
   void start_others() {
     are_others_started_ = true;
     for (const Role role : wire::kNodeRoles) {
       if (role != Role::io && is_ours(role)) start(role);
     }
+    for (const std::string& name : device_names_) start_device(name);
     watcher_.begin();
   }
 
@@ -316,6 +329,9 @@ class Supervisor {
     for (const Node& node : nodes_) {
       if (!node.process->poll_end()) requests.push_back({node.process->output_fd(), POLLIN, 0});
     }
+    std::vector<int> outputs;
+    devices_.add_outputs(outputs);
+    for (const int fd : outputs) requests.push_back({fd, POLLIN, 0});
     ::poll(requests.data(), requests.size(), kRoundMs);
   }
 
@@ -528,6 +544,10 @@ class Supervisor {
     // the message "io ended it" is left out when io has reported a cause
     outcome.messages = causes_.empty() && !is_node_killed_ ? consequences_ : causes_;
     outcome.recording = recording_;
+    outcome.devices = devices_.outcomes();
+    for (const DeviceOutcome& device : outcome.devices) {
+      if (!device.fault.empty() && outcome.code == ExitCode::ok) outcome.code = ExitCode::losses;
+    }
     if (recording_.empty() && is_ours(Role::recorder) && are_others_started_) outcome.recording = find_recording();
     outcome.view = observer_->view();
     outcome.tally = std::move(tally_);
@@ -555,6 +575,8 @@ class Supervisor {
   bool is_recorder_awaited_ = false;  // the recorder still writes after all others have ended
   bool is_ending_ = false;
   bool is_refusal_reported_;
+  DeviceProcesses devices_;
+  std::vector<std::string> device_names_;
   int applied_ = 0;  // number of applied signals, and of applied Ctrl-Cs
   int applied_ctrl_cs_ = 0;
   std::int64_t deadline_ns_ = 0;

@@ -11,6 +11,7 @@
 #include "node/session_options.h"
 #include "observer/observer.h"
 #include "scene/scene_options.h"
+#include "session/device_processes.h"
 #include "session/tally.h"
 
 namespace slew::session {
@@ -46,10 +47,12 @@ struct RunOptions {
   bool is_monolithic = false;
   std::string rtol;  // relative tolerance of a monolithic run; empty: the scene's
   bool is_real_time = false;
-  bool is_refusal_reported = false;  // that it was refused: not once more
-  std::string cpus;                  // "mechanics=1, hydraulics=0"; empty: as in the scene
-  double added_work_us = 0;          // CPU time that every step of a physics node burns beside its own
-  std::vector<std::string> kept;     // patterns of variables whose curves the outcome's tally keeps
+  bool is_refusal_reported = false;   // that it was refused: not once more
+  std::string cpus;                   // "mechanics=1, hydraulics=0"; empty: as in the scene
+  double added_work_us = 0;           // CPU time that every step of a physics node burns beside its own
+  std::vector<std::string> kept;      // patterns of variables whose curves the outcome's tally keeps
+  bool is_without_devices = false;    // does not start the devices of the scene
+  bool are_devices_insecure = false;  // they may receive and send beyond this machine
   bool is_json = false;
   bool is_quiet = false;
 
@@ -76,11 +79,12 @@ struct RunOutcome {
   bool is_refusal_reported = false;   // a refusal of real-time scheduling or locked memory was reported
   std::vector<std::string> messages;  // causes of a failure, the first cause first
   std::string recording;              // path; empty: none
-  observer::SessionView view;         // as seen while it ran
-  Tally tally{{{}, {}}};              // of the same messages
-  double wall_time = 0;               // s, from the first tick to the last, without pauses
-  double paused_time = 0;             // s
-  StepIndex begin = 0;                // step that the session began with
+  std::vector<DeviceOutcome> devices;
+  observer::SessionView view;  // as seen while it ran
+  Tally tally{{{}, {}}};       // of the same messages
+  double wall_time = 0;        // s, from the first tick to the last, without pauses
+  double paused_time = 0;      // s
+  StepIndex begin = 0;         // step that the session began with
   StepIndex steps = 0;
 };
 

@@ -25,6 +25,7 @@ struct Case {
   std::string owner;  // what stands before the key in messages
   std::string before;
   std::span<const Field> fields;
+  std::string after{};  // behind the field, before the last brace
 };
 
 std::string in_list(const Field& field, const std::string& value) {
@@ -102,13 +103,17 @@ std::vector<Case> cases() {
     const std::string label =
         table.type.empty() ? std::string(table.section) : fmt::format("{}_{}", table.section, table.type);
     all.push_back({label, "Thing", fmt::format("{}:\n  Thing: {{{}", table.section, type), table.fields});
+    for (const ListTable& list : table.lists) {
+      all.push_back({fmt::format("{}_{}", label, list.key), fmt::format("Thing.{}[0]", list.key),
+                     fmt::format("{}:\n  Thing: {{{}{}: [{{", table.section, type, list.key), list.fields, "}]"});
+    }
   }
   all.push_back({"bodies_from_mesh", "Thing", "bodies:\n  Thing: {inertia: from_mesh, ", mesh_inertia_fields()});
   return all;
 }
 
 void expect_refusal(const Case& one, const Field& field, const BadValue& bad) {
-  const std::string text = fmt::format("{}{}: {}}}\n", one.before, field.key, bad.text);
+  const std::string text = fmt::format("{}{}: {}{}}}\n", one.before, field.key, bad.text, one.after);
   const std::string path = fmt::format("{}.{}", one.owner, field.key);
   try {
     (void)load_text(text, "test");

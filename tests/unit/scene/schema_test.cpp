@@ -36,6 +36,9 @@ TEST(Schema, HasEveryFieldOfEveryTable) {
       // the other form of a body: below
       if (alternative["properties"].contains("mesh_unit")) continue;
       is_found = true;
+      for (const ListTable& list : table.lists) {
+        EXPECT_EQ(alternative["properties"][std::string(list.key)]["type"], "array") << table.section << list.key;
+      }
       for (const Field& field : table.fields) {
         EXPECT_TRUE(alternative["properties"].contains(std::string(field.key))) << table.section << " " << field.key;
       }
@@ -67,6 +70,9 @@ TEST(Schema, HasTheFieldsOfABodyFromAMesh) {
 TEST(Schema, EveryFieldHasADocLine) {
   for (const ElementTable& table : element_tables()) {
     for (const Field& field : table.fields) EXPECT_FALSE(field.doc.empty()) << table.section << " " << field.key;
+    for (const ListTable& list : table.lists) {
+      for (const Field& field : list.fields) EXPECT_FALSE(field.doc.empty()) << list.key << " " << field.key;
+    }
   }
 }
 

@@ -1,0 +1,122 @@
+// Devices of a scene, which move its inputs and show its variables, and the outputs that they show: lamps and gauges.
+//
+// `slewring run` starts each device as a process (device_node); nothing of it takes part in a step.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/field.h"
+#include "core/problem.h"
+#include "devices/analog_output.h"
+#include "devices/byte_layout.h"
+#include "devices/enable_chain.h"
+#include "devices/output_condition.h"
+#include "devices/stick.h"
+
+namespace slew::scene {
+
+struct InputDef;
+
+// A joystick, gamepad or pedals: its axes and buttons move the inputs of its block by their channels.
+struct JoystickDef {
+  std::string name;
+  std::string path;        // "/dev/input/event5", or a file of recorded events
+  std::string match;       // pattern of the device's own name; empty: path alone
+  std::int64_t block = 0;  // of the inputs
+  devices::StickDef stick;
+  devices::EnableChainDef enable;  // without a dead-man button: none
+};
+
+// Packets of one layout that are received.
+struct UdpInDef {
+  std::string name;
+  std::string listen;                          // "127.0.0.1:5005"
+  std::vector<std::string> from{"127.0.0.1"};  // senders that are accepted
+  double timeout = 0.1;                        // s without a packet after which the inputs go to neutral
+  devices::LayoutDef layout;
+  devices::EnableChainDef enable;
+};
+
+// Packets of one layout that are sent.
+struct UdpOutDef {
+  std::string name;
+  std::string send;     // "127.0.0.1:5006"
+  double every = 0.01;  // s
+  devices::LayoutDef layout;
+};
+
+// A quantity of any dimension, such as "250 bar" for a variable of which only its node has the unit.
+struct AnyQuantity {
+  double value = 0;  // SI
+  std::string unit;  // as written; empty: a bare number in SI
+};
+
+// "Vol_MainPump.pressure > 250 bar".
+struct Condition {
+  std::string variable;
+  devices::Comparison comparison{};
+  AnyQuantity threshold;
+};
+
+// A lamp, buzzer or contact.
+struct SwitchedDef {
+  std::string name;
+  std::string condition;
+  std::string hysteresis;  // quantity; empty: 0
+  devices::SwitchedOutputDef output;
+};
+
+// A gauge, current or voltage.
+struct AnalogDef {
+  std::string name;
+  std::string low, high;  // quantities of the variable
+  devices::AnalogOutputDef output;
+};
+
+struct DevicesDef {
+  std::vector<JoystickDef> joysticks;
+  std::vector<UdpInDef> udp_ins;
+  std::vector<UdpOutDef> udp_outs;
+
+  // Names of all devices, in the order above.
+  [[nodiscard]] std::vector<std::string> names() const;
+};
+
+struct OutputsDef {
+  std::vector<SwitchedDef> switched;
+  std::vector<AnalogDef> analog;
+};
+
+inline constexpr std::size_t kMaxDevices = 16;  // each is a process
+
+[[nodiscard]] std::span<const Field> joystick_fields();  // without the lists
+[[nodiscard]] std::span<const Field> udp_in_fields();    // without the list
+[[nodiscard]] std::span<const Field> udp_out_fields();   // without the list
+[[nodiscard]] std::span<const Field> switched_fields();
+[[nodiscard]] std::span<const Field> analog_fields();
+
+// Value of a text such as "250 bar" or "0.5"; otherwise a problem with the path.
+[[nodiscard]] std::optional<AnyQuantity> read_any_quantity(std::string_view path, std::string_view text,
+                                                           Problems& problems);
+[[nodiscard]] std::optional<Condition> read_condition(std::string_view path, std::string_view text, Problems& problems);
+// True if a quantity in the first unit can be compared with a variable in the second. Empty: SI, fits all.
+[[nodiscard]] bool is_same_dimension(const std::string& a, const std::string& b);
+
+// Fills what follows from the texts of outputs, and checks the rules between the fields.
+void read_outputs(OutputsDef& outputs, Problems& problems);
+// The same for devices, and their use of inputs.
+void read_devices(DevicesDef& devices, std::span<const InputDef> inputs, Problems& problems);
+
+// Variables that outputs, conditions and fields name, with the path of each text, and the unit of the quantity that
+// they are compared with; empty: none.
+struct NamedVariable {
+  std::string path, variable, unit{};
+};
+[[nodiscard]] std::vector<NamedVariable> variables_of(const DevicesDef& devices, const OutputsDef& outputs);
+
+}  // namespace slew::scene

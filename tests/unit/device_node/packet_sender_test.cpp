@@ -1,0 +1,129 @@
+// Packets with variables of a session and outputs of its scene.
+#include "device_node/packet_sender.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+namespace slew::device_node {
+namespace packet_sender_test {
+
+// 1 ms steps: mechanics has the height, hydraulics the pressure
+struct Dash {
+  Dash() {
+    scene::OutputsDef outputs;
+    scene::SwitchedDef& lamp = outputs.switched.emplace_back();
+    lamp.name = lamp.output.name = "Lamp";
+    lamp.condition = "Vol.pressure > 2 bar";
+    lamp.output.variable = "Vol.pressure";
+    lamp.output.threshold = 2e5;
+    lamp.output.hysteresis = 0.5e5;
+    scene::AnalogDef& gauge = outputs.analog.emplace_back();
+    gauge.name = gauge.output.name = "Gauge";
+    gauge.output.variable = "Vol.pressure";
+    gauge.output.high = 4e5;
+    gauge.output.low_output = 4;
+    gauge.output.high_output = 20;
+    scene::UdpOutDef def;
+    def.name = "Dash";
+    def.every = 0.002;
+    def.layout.name = "Dash";
+    def.layout.fields = {{.name = "height", .type = devices::ByteType::float64, .variable = "Ball.y"},
+                         {.name = "lamp", .type = devices::ByteType::uint8, .output = "Lamp"},
+                         {.name = "gauge", .type = devices::ByteType::float32, .output = "Gauge"},
+                         {.name = "spare", .type = devices::ByteType::uint8}};
+    sender.emplace(def, outputs, [this](std::span<const std::byte> bytes) {
+      packets.emplace_back(bytes.begin(), bytes.end());
+      return true;
+    });
+    wire::VariableDirectory directory;
+    directory.header.role = wire::Role::mechanics;
+    directory.entries = {{"Ball.x", "m"}, {"Ball.y", "m"}};
+    sender->take(directory);
+    directory.header.role = wire::Role::hydraulics;
+    directory.entries = {{"Vol.pressure", "Pa"}};
+    sender->take(directory);
+  }
+
+  void publish(wire::Role role, StepIndex step, const std::vector<double>& values, std::uint32_t epoch = 0) {
+    wire::VariableBlock block;
+    block.header.role = role;
+    block.header.step = step;
+    block.header.epoch = epoch;
+    for (const double value : values) block.values.push_back(value);
+    sender->take(block, static_cast<double>(step) * 1e-3);
+  }
+  void publish_step(StepIndex step, double height, double pressure, std::uint32_t epoch = 0) {
+    publish(wire::Role::mechanics, step, {-1, height}, epoch);
+    publish(wire::Role::hydraulics, step, {pressure}, epoch);
+  }
+  double height(std::size_t i) const {
+    double value = 0;
+    std::memcpy(&value, packets[i].data(), sizeof value);
+    return value;
+  }
+  int lamp(std::size_t i) const { return std::to_integer<int>(packets[i][8]); }
+  float gauge(std::size_t i) const {
+    float value = 0;
+    std::memcpy(&value, &packets[i][9], sizeof value);
+    return value;
+  }
+
+  std::vector<std::vector<std::byte>> packets;
+  std::optional<PacketSender> sender;
+};
+
+TEST(PacketSender, APacketHasTheValuesOfOneStep) {
+  Dash dash;
+  EXPECT_EQ(dash.sender->variables(), (std::vector<std::string>{"Ball.y", "Vol.pressure"}));
+  dash.publish(wire::Role::mechanics, 0, {-1, 5});
+  dash.publish(wire::Role::mechanics, 1, {-1, 6});
+  EXPECT_TRUE(dash.packets.empty());
+  dash.publish(wire::Role::hydraulics, 0, {1e5});
+  ASSERT_EQ(dash.packets.size(), 1u);
+  EXPECT_EQ(dash.packets[0].size(), 14u);
+  EXPECT_EQ(dash.height(0), 5);
+}
+
+TEST(PacketSender, PacketsKeepTheirDistance) {
+  Dash dash;
+  for (StepIndex step = 0; step < 10; ++step) dash.publish_step(step, static_cast<double>(step), 1e5);
+  ASSERT_EQ(dash.packets.size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(dash.height(i), 2.0 * static_cast<double>(i));
+}
+
+TEST(PacketSender, OutputsFollowEveryStepBetweenTwoPackets) {
+  Dash dash;
+  const double pressures[] = {1e5, 3e5, 1.6e5, 1.6e5, 1.4e5, 1.4e5, 1.4e5};
+  for (StepIndex step = 0; step < 7; ++step) dash.publish_step(step, 0, pressures[step]);
+  ASSERT_EQ(dash.packets.size(), 4u);
+  EXPECT_EQ(dash.lamp(0), 0);
+  EXPECT_EQ(dash.lamp(1), 1);  // went on in step 1, held by its hysteresis in step 2
+  EXPECT_EQ(dash.lamp(2), 0);
+  EXPECT_FLOAT_EQ(dash.gauge(1), 4 + 16 * 0.4f);
+  EXPECT_EQ(dash.sender->counts().at("output_changes").at("Lamp").integer(), 2);
+}
+
+TEST(PacketSender, AValueThatIsNotFiniteIsNotSent) {
+  Dash dash;
+  dash.publish_step(0, std::nan(""), 1e5);
+  dash.publish_step(2, 7, 1e5);
+  ASSERT_EQ(dash.packets.size(), 1u);
+  EXPECT_EQ(dash.height(0), 7);
+  EXPECT_EQ(dash.sender->counts().at("not_finite").integer(), 1);
+}
+
+TEST(PacketSender, AResetBeginsAgain) {
+  Dash dash;
+  dash.publish_step(100, 1, 3e5);
+  dash.publish_step(101, 1, 3e5);
+  dash.publish_step(0, 2, 1e5, 1);
+  dash.publish_step(102, 3, 1e5, 0);
+  ASSERT_EQ(dash.packets.size(), 2u);
+  EXPECT_EQ(dash.height(1), 2);
+  EXPECT_EQ(dash.lamp(1), 0);
+}
+
+}  // namespace packet_sender_test
+}  // namespace slew::device_node
