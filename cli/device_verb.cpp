@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"
@@ -64,6 +65,10 @@ std::vector<Row> devices_of(const scene::Scene& scene) {
     rows.push_back({device.name, "udp_in", "listens on " + device.listen});
   for (const scene::UdpOutDef& device : scene.devices.udp_outs)
     rows.push_back({device.name, "udp_out", "sends to " + device.send});
+  for (const scene::CanInDef& device : scene.devices.can_ins)
+    rows.push_back({device.name, "can_in", device.bus.interface.empty() ? device.path : device.bus.interface});
+  for (const scene::CanOutDef& device : scene.devices.can_outs)
+    rows.push_back({device.name, "can_out", device.bus.interface});
   return rows;
 }
 
@@ -132,7 +137,9 @@ devices::StickDef whole_stick(const EventSource& source) {
 // A scene that has the device's inputs, for a device without one.
 std::unique_ptr<InputDevice> open_path(const std::string& path) {
   const auto source = open_now(path);
-  scene::JoystickDef def{.name = "Device", .path = path};
+  scene::JoystickDef def;
+  def.name = "Device";
+  def.path = path;
   def.stick = whole_stick(*source);
   std::vector<scene::InputDef> inputs;
   const auto add = [&](scene::InputType type, std::int64_t channel) {
@@ -167,7 +174,8 @@ std::unique_ptr<InputDevice> open_of_scene(const Options& options) {
   const auto reach = options.is_insecure ? device_node::Reach::network : device_node::Reach::this_machine;
   if (const auto* rig = find_device(scene.devices.udp_ins, options.device))
     return device_node::open_udp_in(*rig, reach);
-  refuse_device(scene, options.device, "joystick or udp_in");
+  if (const auto* panel = find_device(scene.devices.can_ins, options.device)) return device_node::open_can_in(*panel);
+  refuse_device(scene, options.device, "joystick, udp_in or can_in");
 }
 
 ExitCode monitor(const Options& options) {

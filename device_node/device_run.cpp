@@ -12,8 +12,7 @@
 #include "core/printable.h"
 #include "core/suggestion.h"
 #include "device_node/input_driver.h"
-#include "device_node/packet_sender.h"
-#include "device_node/udp_socket.h"
+#include "device_node/shown_device.h"
 #include "node/driver.h"
 #include "node/open_transport.h"
 #include "observer/observer.h"
@@ -55,11 +54,11 @@ class DeviceRun final : public observer::Receiver {
   void take_directory(const wire::VariableDirectory& directory) override {
     directories_.push_back(directory);
     if (driver_) driver_->take(directory);
-    if (sender_) sender_->take(directory);
+    if (shown_) shown_->feed().take(directory);
   }
   void take_block(const wire::VariableBlock& block, std::span<const std::byte>, double time) override {
     if (driver_) driver_->take(block, monotonic_ns());
-    if (sender_) sender_->take(block, time);
+    if (shown_) shown_->feed().take(block, time);
   }
   void take_lease(const wire::ControllerLease& lease) override {
     if (driver_) driver_->take(lease);
@@ -127,19 +126,20 @@ class DeviceRun final : public observer::Receiver {
       drive(scene, open_udp_in(*rig, reach), rig->enable);
       type_ = "udp_in";
     } else if (const auto* dash = find_named(scene.devices.udp_outs, name)) {
-      check_reach(name + ".send", dash->send, reach);
-      socket_ = std::make_unique<UdpSocket>();
-      const devices::UdpAddress to = *devices::parse_udp_address(dash->send);
-      sender_.emplace(*dash, scene.outputs,
-                      [this, to](std::span<const std::byte> bytes) { return socket_->send(to, bytes); });
-      report_("sends to " + dash->send);
+      shown_ = open_udp_out(*dash, scene.outputs, reach);
       type_ = "udp_out";
+    } else if (const auto* panel = find_named(scene.devices.can_ins, name)) {
+      drive(scene, open_can_in(*panel), panel->enable);
+      type_ = "can_in";
+    } else if (const auto* cluster = find_named(scene.devices.can_outs, name)) {
+      shown_ = open_can_out(*cluster, scene.outputs);
+      type_ = "can_out";
     } else {
       refuse_name(scene);
     }
     for (const wire::VariableDirectory& directory : directories_) {
       if (driver_) driver_->take(directory);
-      if (sender_) sender_->take(directory);
+      if (shown_) shown_->feed().take(directory);
     }
   }
 
@@ -173,12 +173,18 @@ class DeviceRun final : public observer::Receiver {
     scene::OutputsDef outputs;
     if (const auto* stick = find_named(scene.devices.joysticks, options_.device)) own.joysticks = {*stick};
     if (const auto* rig = find_named(scene.devices.udp_ins, options_.device)) own.udp_ins = {*rig};
+    if (const auto* panel = find_named(scene.devices.can_ins, options_.device)) own.can_ins = {*panel};
+    const auto add_output = [&](const std::string& name) {
+      if (const auto* lamp = find_named(scene.outputs.switched, name)) outputs.switched.push_back(*lamp);
+      if (const auto* gauge = find_named(scene.outputs.analog, name)) outputs.analog.push_back(*gauge);
+    };
     if (const auto* dash = find_named(scene.devices.udp_outs, options_.device)) {
       own.udp_outs = {*dash};
-      for (const devices::LayoutFieldDef& f : dash->layout.fields) {
-        if (const auto* lamp = find_named(scene.outputs.switched, f.output)) outputs.switched.push_back(*lamp);
-        if (const auto* gauge = find_named(scene.outputs.analog, f.output)) outputs.analog.push_back(*gauge);
-      }
+      for (const devices::LayoutFieldDef& f : dash->layout.fields) add_output(f.output);
+    }
+    if (const auto* cluster = find_named(scene.devices.can_outs, options_.device)) {
+      own.can_outs = {*cluster};
+      for (const scene::CanSignalDef& signal : cluster->bus.signals) add_output(signal.output);
     }
     const std::vector<scene::NamedVariable> needed = variables_of(own, outputs);
     if (needed.empty()) return;
@@ -214,8 +220,9 @@ class DeviceRun final : public observer::Receiver {
   }
 
   void do_round() {
-    if (!device_) {
+    if (shown_) {
       observer_->wait_for([&] { return is_over(); }, kLongestRound);
+      shown_->look_after(monotonic_ns());
     } else {
       pollfd request{device_->descriptor(), POLLIN, 0};
       ::poll(&request, request.fd >= 0 ? 1 : 0, kInputRoundMs);
@@ -230,16 +237,19 @@ class DeviceRun final : public observer::Receiver {
   }
 
   void report_notices() {
-    if (!device_) return;
+    if (shown_) {
+      for (const std::string& notice : shown_->take_notices()) report_(notice);
+      return;
+    }
     for (const std::string& notice : device_->take_notices()) report_(notice);
     for (const std::string& notice : driver_->take_notices()) report_(notice);
   }
 
   [[nodiscard]] Json summary() const {
     Json json = {{"device", options_.device}, {"type", type_}};
-    if (sender_) json["packets"] = sender_->counts();
+    if (shown_) json["packets"] = shown_->counts();
     if (device_) {
-      json[type_ == "joystick" ? "events" : "packets"] = device_->counts();
+      json[type_ == "joystick" ? "events" : type_ == "can_in" ? "frames" : "packets"] = device_->counts();
       json["inputs"] = driver_->counts();
       json["inputs"]["unsent"] = unsent_inputs_;
     }
@@ -252,8 +262,7 @@ class DeviceRun final : public observer::Receiver {
   std::string type_;
   std::unique_ptr<InputDevice> device_;
   std::optional<InputDriver> driver_;
-  std::unique_ptr<UdpSocket> socket_;
-  std::optional<PacketSender> sender_;
+  std::unique_ptr<ShownDevice> shown_;
   std::vector<wire::VariableDirectory> directories_;  // of the session, so far
   std::uint64_t unsent_inputs_ = 0;
   std::int64_t next_alive_ns_ = 0;
@@ -291,6 +300,12 @@ std::string summary_text(const Json& summary) {
          {"sender not in from", "too short", "too long", "bad checksum", "repeated", "out of sequence", "not finite"}) {
       text += counted_text(refused, cause, std::string("refused: ") + cause);
     }
+  } else if (const Json* const frames = summary.find("frames")) {
+    text = fmt::format("{} frames used", frames->at("used").integer());
+    text += counted_text(*frames, "too_short", "too short");
+    text += counted_text(*frames, "other_identifiers", "of other identifiers");
+    for (const char* state : {"not available", "error", "out of range", "not finite"})
+      text += counted_text(frames->at("without_value"), state, std::string("values ") + state);
   } else {
     text = fmt::format("{} reports", summary.at("events").at("reports").integer());
     text += counted_text(summary.at("events"), "dropped", "times events dropped by the kernel");

@@ -61,5 +61,6 @@ void check_reach(const std::string& key, const std::string& address, Reach reach
 [[nodiscard]] std::unique_ptr<InputDevice> open_joystick(const scene::JoystickDef& def,
                                                          std::span<const scene::InputDef> inputs);
 [[nodiscard]] std::unique_ptr<InputDevice> open_udp_in(const scene::UdpInDef& def, Reach reach);
+[[nodiscard]] std::unique_ptr<InputDevice> open_can_in(const scene::CanInDef& def);
 
 }  // namespace slew::device_node

@@ -27,6 +27,7 @@ enum class CanNumber : std::uint8_t { integer, float32, float64 };
 // Numbers of a selector, both included.
 struct SelectorRange {
   std::uint64_t first = 0, last = 0;
+  bool operator==(const SelectorRange&) const = default;
 };
 
 struct CanSignal {
@@ -45,6 +46,7 @@ struct CanSignal {
   std::vector<SelectorRange> selected_by{};  // empty: always in the message
 
   [[nodiscard]] bool has_range() const noexcept { return lowest < highest; }
+  bool operator==(const CanSignal&) const = default;
 };
 
 struct CanMessage {
@@ -53,6 +55,7 @@ struct CanMessage {
   bool is_extended = false;
   std::size_t bytes = 8;
   std::vector<CanSignal> signals{};
+  bool operator==(const CanMessage&) const = default;
 };
 
 // Appends every broken rule: bits within the message, sizes of floats, scale, at most one selector, and one where

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,9 @@ struct CanDatabase {
 
 // The same for a file. A file that cannot be read is a problem.
 [[nodiscard]] CanDatabase load_dbc(const std::filesystem::path& path, Problems& problems);
+
+// The messages as a DBC text, which reads back to the same.
+[[nodiscard]] std::string write_dbc(std::span<const CanMessage> messages);
 
 [[nodiscard]] const CanMessage* find_message(const CanDatabase& database, std::string_view name) noexcept;
 [[nodiscard]] const CanMessage* find_message(const CanDatabase& database, std::uint32_t id, bool is_extended) noexcept;

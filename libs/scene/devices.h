@@ -50,6 +50,39 @@ struct UdpOutDef {
   devices::LayoutDef layout;
 };
 
+enum class CanProtocol : int { plain, j1939 };
+
+// A signal of a message on CAN.
+struct CanSignalDef {
+  std::string signal;      // "Message.Signal" of the database
+  std::string input{};     // of the session, which a received value moves
+  std::string variable{};  // of the session, whose value is sent
+  std::string output{};    // of the scene, whose state is sent
+  double gain = 1;         // received: input = gain * value; sent: value = gain * variable
+};
+
+struct CanBusDef {
+  std::string interface;   // "can0"
+  std::string database;    // DBC file in the scene's folder
+  std::string definition;  // the messages that the signals are of, as a DBC text: from `database` where that is read
+  CanProtocol protocol = CanProtocol::plain;
+  std::vector<CanSignalDef> signals;
+};
+
+struct CanInDef {
+  std::string name;
+  std::string path;      // file of recorded frames, in place of an interface
+  double timeout = 0.2;  // s without a value of a signal after which the inputs go to neutral
+  CanBusDef bus;
+  devices::EnableChainDef enable;
+};
+
+struct CanOutDef {
+  std::string name;
+  double every = 0.02;  // s
+  CanBusDef bus;
+};
+
 // A quantity of any dimension, such as "250 bar" for a variable of which only its node has the unit.
 struct AnyQuantity {
   double value = 0;  // SI
@@ -82,6 +115,8 @@ struct DevicesDef {
   std::vector<JoystickDef> joysticks;
   std::vector<UdpInDef> udp_ins;
   std::vector<UdpOutDef> udp_outs;
+  std::vector<CanInDef> can_ins;
+  std::vector<CanOutDef> can_outs;
 
   // Names of all devices, in the order above.
   [[nodiscard]] std::vector<std::string> names() const;
@@ -97,6 +132,9 @@ inline constexpr std::size_t kMaxDevices = 16;  // each is a process
 [[nodiscard]] std::span<const Field> joystick_fields();  // without the lists
 [[nodiscard]] std::span<const Field> udp_in_fields();    // without the list
 [[nodiscard]] std::span<const Field> udp_out_fields();   // without the list
+[[nodiscard]] std::span<const Field> can_in_fields();    // without the list
+[[nodiscard]] std::span<const Field> can_out_fields();   // without the list
+[[nodiscard]] std::span<const Field> can_signal_fields() noexcept;
 [[nodiscard]] std::span<const Field> switched_fields();
 [[nodiscard]] std::span<const Field> analog_fields();
 
@@ -106,6 +144,9 @@ inline constexpr std::size_t kMaxDevices = 16;  // each is a process
 [[nodiscard]] std::optional<Condition> read_condition(std::string_view path, std::string_view text, Problems& problems);
 // True if a quantity in the first unit can be compared with a variable in the second. Empty: SI, fits all.
 [[nodiscard]] bool is_same_dimension(const std::string& a, const std::string& b);
+
+// Fills the definition from the database in the folder: the messages that the signals name.
+void read_database(const std::string& device, CanBusDef& bus, const std::string& path, Problems& problems);
 
 // Fills what follows from the texts of outputs, and checks the rules between the fields.
 void read_outputs(OutputsDef& outputs, Problems& problems);

@@ -16,8 +16,9 @@ struct LoadContext {
   // The same for the files that nodes read too: those of flexible bodies and of long tables.
   bool has_assets = has_folder;
   std::string asset_folder = folder;
-  bool is_confined = true;   // files must lie in the folder, except those named on a command line
-  bool reads_script = true;  // only io needs the long tracks of a script
+  std::optional<std::string> device_folder{};  // of databases of devices; none: the text has what they define
+  bool is_confined = true;                     // files must lie in the folder, except those named on a command line
+  bool reads_script = true;                    // only io needs the long tracks of a script
 
   [[nodiscard]] std::string path_of(const std::string& file) const;
   [[nodiscard]] std::string asset_path_of(const std::string& file) const;

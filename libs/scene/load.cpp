@@ -411,12 +411,27 @@ class SceneReader {
     resolve_references();
     if (report_.size() > problems) return;
     check_problems([&](Problems& errors, Problems&) {
+      for (CanInDef& device : scene_.devices.can_ins) read_database_of(device, errors);
+      for (CanOutDef& device : scene_.devices.can_outs) read_database_of(device, errors);
+      if (!errors.empty()) return;
       read_outputs(scene_.outputs, errors);
       read_devices(scene_.devices, scene_.inputs, errors);
     });
     if (report_.size() > problems) return;
     for (const NamedVariable& named : variables_of(scene_.devices, scene_.outputs))
       check_variables(named.path, {named.variable});
+  }
+
+  template <typename Device>
+  void read_database_of(Device& device, Problems& errors) const {
+    const std::string& file = device.bus.database;
+    if (!load_context_.device_folder || file.empty()) return;
+    const LoadContext folder{true, *load_context_.device_folder};
+    if (const auto refusal = folder.refusal_of(file)) {
+      errors.push_back({device.name + ".database", refusal->what, refusal->expected, refusal->suggestion});
+      return;
+    }
+    read_database(device.name, device.bus, folder.path_of(file), errors);
   }
 
   // The part before the first dot names an element or a section; only its node has the element's quantities.
@@ -511,6 +526,7 @@ Scene load_file(const std::string& path, const Overrides& overrides) {
     if (!root) report.fail(kMaxReportedProblems);
     const std::filesystem::path file(path);
     LoadContext load_context{true, file.parent_path().string()};
+    load_context.device_folder = load_context.folder;
     Scene scene = read_tree(std::move(*root), std::move(load_context), file.stem().string(), overrides, report);
     read_back(scene);
     return scene;
@@ -554,6 +570,7 @@ Scene with_devices(const Scene& scene, const std::string& file) {
     if (!report.is_clean()) report.fail(kMaxReportedProblems);
     LoadContext load_context;
     load_context.reads_script = false;
+    load_context.device_folder = std::filesystem::path(file).parent_path().string();
     return read_tree(std::move(*root), std::move(load_context), scene.name, {}, report);
   });
 }

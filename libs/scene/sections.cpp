@@ -123,6 +123,13 @@ std::span<const ListTable> layout_lists() {
   return lists;
 }
 
+template <typename Def>
+std::span<const ListTable> signal_lists() {
+  static const ListTable lists[] = {
+      list<&Def::bus, &CanBusDef::signals>("signals", "signal of a message", can_signal_fields())};
+  return lists;
+}
+
 void add_devices(std::vector<ElementTable>& tables) {
   tables.push_back(
       {.section = "devices",
@@ -148,6 +155,22 @@ void add_devices(std::vector<ElementTable>& tables) {
        .fields = udp_out_fields(),
        .append = [](Scene& scene, const std::string& name) { return append_named(scene.devices.udp_outs, name); },
        .lists = layout_lists<UdpOutDef>()});
+  tables.push_back(
+      {.section = "devices",
+       .type = "can_in",
+       .kind = "device",
+       .doc = "signals of messages on CAN that are received and move inputs",
+       .fields = can_in_fields(),
+       .append = [](Scene& scene, const std::string& name) { return append_named(scene.devices.can_ins, name); },
+       .lists = signal_lists<CanInDef>()});
+  tables.push_back(
+      {.section = "devices",
+       .type = "can_out",
+       .kind = "device",
+       .doc = "messages on CAN that are sent, with variables and outputs",
+       .fields = can_out_fields(),
+       .append = [](Scene& scene, const std::string& name) { return append_named(scene.devices.can_outs, name); },
+       .lists = signal_lists<CanOutDef>()});
   tables.push_back(
       {.section = "outputs",
        .type = "switched",
@@ -316,6 +339,8 @@ std::vector<ElementRef> elements(Scene& scene) {
   collect(refs, table_of("devices", "joystick"), scene.devices.joysticks);
   collect(refs, table_of("devices", "udp_in"), scene.devices.udp_ins);
   collect(refs, table_of("devices", "udp_out"), scene.devices.udp_outs);
+  collect(refs, table_of("devices", "can_in"), scene.devices.can_ins);
+  collect(refs, table_of("devices", "can_out"), scene.devices.can_outs);
   collect(refs, table_of("plots", ""), scene.plots);
   return refs;
 }

@@ -1,4 +1,5 @@
-// Bytes from devices: packets of a layout, DBC files and frames of their messages, events of input devices, conditions.
+// Bytes from devices: packets of a layout, DBC files and frames of their messages, events of input devices, conditions,
+// recorded frames, addresses.
 // Any bytes are refused with a reason or give finite values; what is sent is read as valid; J1939's reserved codes are
 // never sent for a value.
 #include <array>
@@ -9,11 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "devices/can_frame.h"
 #include "devices/can_message.h"
 #include "devices/dbc.h"
 #include "devices/output_condition.h"
 #include "devices/packet.h"
 #include "devices/stick.h"
+#include "devices/udp_address.h"
 #include "tests/fuzz/bytes.h"
 
 namespace {
@@ -100,6 +103,9 @@ void try_database(const std::uint8_t* data, std::size_t size) {
   Problems problems;
   const CanDatabase database = read_dbc(std::string_view(reinterpret_cast<const char*>(data), size), "fuzz", problems);
   fuzz::require(problems.size() <= 20);
+  // what a scene keeps of a database reads back to the same
+  Problems again;
+  fuzz::require(read_dbc(write_dbc(database.messages), "again", again).messages == database.messages && again.empty());
   for (std::size_t i = 0; i < database.messages.size() && i < kMostFrames; ++i) {
     try_message(database.messages[i], bytes_of(data, size));
   }
@@ -129,6 +135,18 @@ void try_condition(const std::uint8_t* data, std::size_t size) {
   fuzz::require(!condition || (!condition->variable.empty() && !condition->quantity.empty()));
 }
 
+// Lines of candump and addresses.
+void try_line(const std::uint8_t* data, std::size_t size) {
+  const std::string_view line(reinterpret_cast<const char*>(data), size);
+  if (const auto logged = parse_candump(line)) {
+    fuzz::require(logged->time_us >= 0 && logged->frame.size <= 64);
+    fuzz::require(logged->frame.id <= (logged->frame.is_extended ? 0x1FFFFFFFu : 0x7FFu));
+  }
+  if (const auto address = parse_udp_address(line)) {
+    fuzz::require(host_text(address->host) + ":" + std::to_string(address->port) == line);
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -146,6 +164,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       break;
     default:
       try_condition(data + 1, size - 1);
+      try_line(data + 1, size - 1);
       break;
   }
   return 0;

@@ -28,6 +28,11 @@ def require(condition, text):
         sys.exit(f"FAILED: {text}")
 
 
+def skip(reason):
+    print(f"SKIPPED: {reason}")
+    sys.exit(0)
+
+
 def wait_for(what, condition):
     end = time.monotonic() + DEADLINE
     while time.monotonic() < end:
@@ -329,11 +334,102 @@ def case_verbs(folder, domain):
     require("the scene has no udp_in or udp_out 'Stick'; nothing was done" in out, out)
 
 
+MACHINE = """BO_ 256 Panel: 4 X
+ SG_ Lift : 0|16@1- (0.5,0) [-100|100] "%" X
+ SG_ Enable : 16|1@1+ (1,0) [0|0] "" X
+BO_ 257 Load: 8 X
+ SG_ Force : 7|32@0- (1,0) [0|0] "N" X
+"""
+
+
+def write_panel(folder, bus):
+    with open(f"{folder}/machine.dbc", "w") as file:
+        file.write(MACHINE)
+    with open(f"{folder}/panel.yaml", "w") as file:
+        file.write("devices:\n  Panel:\n    type: can_in\n    " + bus + "\n    database: machine.dbc\n    dead_man: Panel.Enable\n"
+                   "    signals: [{signal: Panel.Lift, input: Input_Lift, gain: 0.01}, {signal: Panel.Enable}]\n"
+                   "  Load:\n    type: can_out\n    interface: slewvcan\n    database: machine.dbc\n"
+                   "    signals: [{signal: Load.Force, variable: Cyl_Lift.force}]\n")
+
+
+def panel_frame(lift_percent, enable):
+    return struct.pack("<hBB", round(lift_percent / 0.5), enable, 0).hex().upper()
+
+
+def case_recorded_can(folder, domain):
+    write_panel(folder, f"path: {folder}/panel.log")
+    with open(f"{folder}/panel.log", "w") as file:
+        for i in range(200):
+            lift = 0 if i < 50 else min(50, i - 50)
+            file.write(f"({1700000000 + i // 50}.{20000 * (i % 50):06d}) can0 100#{panel_frame(lift, i >= 25)}\n")
+    crane = Crane(folder, domain, "--without-devices")
+    try:
+        crane.start()
+        device = subprocess.Popen([SLEWRING, "device", "run", "Panel", "--devices", "panel.yaml", "--session",
+                                   "truck_crane_devices", "--domain", str(domain), "--session-timeout", str(DEADLINE),
+                                   "--json"], stdout=open(f"{folder}/panel.out", "w"), stderr=subprocess.STDOUT, cwd=folder)
+        wait_for("the end of the frames", lambda: "the recorded frames are over" in text_of(f"{folder}/panel.out"))
+        wait_for("neutral", lambda: "no values: its inputs go to neutral" in text_of(f"{folder}/panel.out"))
+        time.sleep(0.5)  # for the recording to have it
+        result = crane.stop(0)
+        device.wait(DEADLINE)
+    finally:
+        crane.kill()
+    out = text_of(f"{folder}/panel.out")
+    require(device.returncode == 0, out)
+    summary = json.loads(out[out.index("\n{") + 1:])
+    require(summary["frames"]["used"] == 200 and summary["inputs"]["latency"]["count"] > 0, f"{summary}")
+    raw = value_at_end(result, "Input_Lift.raw")
+    require(max(raw) == 0.5 and raw[-1] == 0, f"{max(raw)} {raw[-1]}")
+
+
+def case_can_utils(folder, domain):
+    for program in ("cansend", "candump", "ip"):
+        if subprocess.run(["which", program], capture_output=True).returncode != 0:
+            skip(f"{program} is not there (can-utils, iproute2)")
+    done = subprocess.run(["ip", "link", "add", "slewvcan", "type", "vcan"], capture_output=True, text=True)
+    if done.returncode != 0 and "exists" not in done.stderr:
+        skip(f"no vcan: {done.stderr.strip()}")
+    crane = Crane(folder, domain, "--without-devices")
+    others = []
+    try:
+        subprocess.run(["ip", "link", "set", "slewvcan", "up"], check=True, timeout=DEADLINE)
+        write_panel(folder, "interface: slewvcan")
+        crane.start()
+        for name in ("Panel", "Load"):
+            others.append(subprocess.Popen([SLEWRING, "device", "run", name, "--devices", "panel.yaml", "--session",
+                                            "truck_crane_devices", "--domain", str(domain), "--session-timeout",
+                                            str(DEADLINE)], stdout=open(f"{folder}/{name}.out", "w"),
+                                           stderr=subprocess.STDOUT, cwd=folder))
+        dump = subprocess.run(["candump", "-n", "20", "slewvcan,101:7FF"], capture_output=True, text=True, timeout=DEADLINE)
+        require(len(re.findall(r" 101 +\[8\] ", dump.stdout)) == 20, dump.stdout)
+
+        def push():
+            for lift, enable in ((0, 0), (0, 1), (50, 1)):
+                for _ in range(10):
+                    subprocess.run(["cansend", "slewvcan", f"100#{panel_frame(lift, enable)}"], check=True)
+            return "enabled" in text_of(f"{folder}/Panel.out")
+
+        wait_for("the panel's dead-man signal", push)
+        push()
+        time.sleep(1)
+        result = crane.stop(0)
+    finally:
+        crane.kill()
+        for other in others:
+            if other.poll() is None:
+                other.kill()
+        subprocess.run(["ip", "link", "del", "slewvcan"], capture_output=True)
+    require(max(value_at_end(result, "Input_Lift.raw")) == 0.5, "the input was not moved")
+
+
 CASES = {
     "APeerOnUdpClosesThePositionLoopAndAJoystickSlews": case_closed_loop,
     "ADeadOrHangingDeviceIsNeutralAndStopsNoTick": case_dead_or_hanging,
     "ADeviceRunsWithoutAScene": case_without_a_scene,
     "VerbsWorkWithoutASession": case_verbs,
+    "RecordedCanFramesMoveAnInput": case_recorded_can,
+    "CanUtilsAreTheOtherSide": case_can_utils,
 }
 
 with tempfile.TemporaryDirectory(prefix="slewring_devices_") as scratch:

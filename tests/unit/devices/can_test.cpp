@@ -9,6 +9,7 @@
 
 #include "build_paths.h"
 #include "core/allocation_guard.h"
+#include "devices/can_frame.h"
 #include "devices/dbc.h"
 #include "outside_program.h"
 #include "support/temporary_folder.h"
@@ -358,6 +359,33 @@ TEST(CanMessage, ShortFramesAreRefusedLongerOnesAreRead) {
   std::vector<SignalValue> values(plain.signals.size());
   EXPECT_FALSE(decode(plain, std::vector<std::byte>(7), ReservedCodes::none, values));
   EXPECT_TRUE(decode(plain, std::vector<std::byte>(12), ReservedCodes::none, values));
+}
+
+TEST(CanLog, LinesOfCandumpAreRead) {
+  const auto logged = parse_candump("(1700000000.250000) can0 18F00400#0102FF");
+  ASSERT_TRUE(logged);
+  EXPECT_EQ(logged->time_us, 1'700'000'000'250'000);
+  EXPECT_TRUE(logged->frame.is_extended);
+  EXPECT_EQ(logged->frame.id, 0x18F00400u);
+  ASSERT_EQ(logged->frame.size, 3u);
+  EXPECT_EQ(logged->frame.bytes[2], std::byte{0xFF});
+  EXPECT_EQ(parse_candump("(1.000000) vcan0 123##10102")->frame.size, 2u);
+  EXPECT_EQ(parse_candump("(1.000000) vcan0 123#\r\n")->frame.size, 0u);
+  for (const char* line :
+       {"", "(1.000000) can0 123#R", "(1.000000) can0 123#0", "(1.000000) can0 1234#00", "(1.000000) can0 800#00",
+        "(1.0) can0 123#00", "(1.000000) can0", "1.000000 can0 123#00", "(1.000000) can0 123#001122334455667788",
+        "(1.000000) can0 123#0g", "(99999999999999.000000) can0 123#00", "(-1.000000) can0 123#00"})
+    EXPECT_FALSE(parse_candump(line)) << line;
+}
+
+TEST(Dbc, WhatIsWrittenReadsBackToTheSame) {
+  Problems problems;
+  const CanDatabase machine = load_dbc(kMachine, problems);
+  ASSERT_TRUE(problems.empty()) << problems[0].what;
+  ASSERT_GE(machine.messages.size(), 5u);
+  const CanDatabase again = read_dbc(write_dbc(machine.messages), "again", problems);
+  EXPECT_TRUE(problems.empty()) << problems[0].path << ": " << problems[0].what;
+  EXPECT_EQ(again.messages, machine.messages);
 }
 
 }  // namespace can_test

@@ -166,6 +166,51 @@ TEST(DeviceSection, WhatAPacketNamesMustExist) {
                  "test:12:71: Dash.fields[0].output: no output 'Lamp'");
 }
 
+TEST(DeviceSection, CanSignalsComeFromTheDatabaseAndStayInTheText) {
+  const testing::TemporaryFolder folder("can_section");
+  folder.write("machine.dbc",
+               "BO_ 256 Panel: 8 X\n SG_ Lift : 0|16@1- (0.5,0) [-100|100] \"%\" X\n SG_ Enable : 16|1@1+ (1,0) [0|0] "
+               "\"\" X\nBO_ 257 Other: 8 X\n SG_ More : 0|8@1+ (1,0) [0|0] \"\" X\n");
+  const std::string panel =
+      "devices:\n  Panel:\n    type: can_in\n    interface: can0\n    database: machine.dbc\n    protocol: j1939\n    "
+      "signals:\n";
+  const std::string path = folder
+                               .write("scene.yaml", kPushed + panel +
+                                                        "    - {signal: Panel.Lift, input: Input_Push, gain: 0.01}\n"
+                                                        "    - {signal: Panel.Enable}\n    dead_man: Panel.Enable\n")
+                               .string();
+  const Scene scene = load_file(path);
+  const Scene again = load_text(scene.expanded_text, "again");
+  for (const Scene* one : {&scene, &again}) {
+    ASSERT_EQ(one->devices.can_ins.size(), 1u);
+    const CanInDef& device = one->devices.can_ins[0];
+    EXPECT_EQ(device.bus.protocol, CanProtocol::j1939);
+    EXPECT_EQ(device.bus.signals[0].gain, 0.01);
+    EXPECT_NE(device.bus.definition.find("BO_ 256 Panel"), std::string::npos);
+    EXPECT_EQ(device.bus.definition.find("Other"), std::string::npos);
+  }
+  const auto problem_of = [&](const std::string& rows) {
+    folder.write("scene.yaml", kPushed + panel + rows);
+    try {
+      static_cast<void>(load_file(path));
+    } catch (const LoadError& error) {
+      return std::string(error.what()).substr(path.size());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(problem_of("    - {signal: Panel.Lifd, input: Input_Push}\n"),
+            ":19:7: Panel.signals.Panel.Lifd: the database has no signal 'Panel.Lifd'; expected message and signal, as "
+            "Panel.Lift; did you mean 'Panel.Lift'?");
+  EXPECT_EQ(problem_of("    - {signal: Panel.Enable}\n"),
+            ":12:3: Panel: the device moves nothing; expected a signal with an input");
+  EXPECT_EQ(problem_of("    - {signal: Panel.Lift, input: Input_Push, variable: Ball.x}\n"),
+            ":19:7: Panel.signals.Panel.Lift: a received signal takes nothing from the session; expected input");
+  folder.write("machine.dbc", "BO_ 256 Panel: 8 X\n SG_ Lift : 0|16@1- (0.5,0\n");
+  EXPECT_EQ(
+      problem_of("    - {signal: Panel.Lift, input: Input_Push}\n").find(":16:15: Panel.database: machine.dbc:2: "), 0u)
+      << problem_of("    - {signal: Panel.Lift, input: Input_Push}\n");
+}
+
 TEST(OutputSection, QuantitiesMustFitEachOther) {
   expect_problem("outputs:\n  Lamp: {type: switched, condition: \"Ball.y > 250 mbat\"}\n",
                  "test:12:37: Lamp.condition: there is no unit 'mbat'; expected a quantity with its unit such as '250 "

@@ -1,28 +1,33 @@
-// Sends packets of one layout with variables of a session and outputs of its scene.
+// Values of a session for a device that shows them: variables, and outputs of the scene.
 //
-// A packet holds the values of one step: it is made when all its variables of that step have arrived, at the earliest
-// `every` of the session's time after the one before. A session that stands still sends nothing.
+// The values are those of one step: they are made when all variables of that step have arrived, at the earliest `every`
+// of the session's time after the ones before. A session that stands still makes none. Outputs follow every published
+// step, also between.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/json.h"
-#include "devices/packet.h"
 #include "observer/session_view.h"
 #include "observer/step_values.h"
 #include "scene/devices.h"
 
 namespace slew::device_node {
 
-class PacketSender {
- public:
-  // False: the system did not take it.
-  using Send = std::function<bool(std::span<const std::byte>)>;
+// One value: a variable or an output; neither: 0.
+struct FedSignal {
+  std::string variable, output;
+};
 
-  PacketSender(const scene::UdpOutDef& def, const scene::OutputsDef& outputs, Send send);
+class SignalFeed {
+ public:
+  using Show = std::function<void(std::span<const double>)>;  // one for each signal
+
+  SignalFeed(const std::vector<FedSignal>& signals, const scene::OutputsDef& outputs, double every, Show show);
 
   // Names of the variables that it needs.
   [[nodiscard]] const std::vector<std::string>& variables() const noexcept { return variables_; }
@@ -34,7 +39,6 @@ class PacketSender {
   [[nodiscard]] Json counts() const;
 
  private:
-  // Source of one value of the layout.
   struct Source {
     enum class Kind : std::uint8_t { none, variable, switched, analog } kind = Kind::none;
     std::size_t index = 0;  // among variables_, switched_ or analog_
@@ -51,27 +55,23 @@ class PacketSender {
   };
 
   [[nodiscard]] std::size_t need(const std::string& variable);
-  [[nodiscard]] Source source_of(const devices::LayoutFieldDef& f, const scene::OutputsDef& outputs);
+  [[nodiscard]] Source source_of(const FedSignal& signal, const scene::OutputsDef& outputs);
   void begin_epoch(std::uint32_t epoch);
   void step_outputs(const std::vector<double>& values, double dt);
-  void send_packet(const std::vector<double>& values);
+  [[nodiscard]] double value_of(const Source& source, const std::vector<double>& values) const;
 
-  devices::ByteLayout layout_;
   double every_;
-  Send send_;
+  Show show_;
   std::vector<std::string> variables_;
-  std::vector<Source> sources_;  // by value of the layout
+  std::vector<Source> sources_;  // by signal
   std::vector<Switched> switched_;
   std::vector<Analog> analog_;
   observer::StepValues values_{0};
-  devices::PacketState state_;
-  std::vector<double> packet_values_;
-  std::vector<std::byte> packet_;
+  std::vector<double> shown_;
   std::uint32_t epoch_ = 0;
   double last_time_ = 0;  // of the last whole step [s]
-  double next_time_ = 0;  // earliest of the next packet [s]
+  double next_time_ = 0;  // earliest of the next values [s]
   bool has_time_ = false;
-  std::uint64_t sent_ = 0, unsent_ = 0;
 };
 
 }  // namespace slew::device_node
