@@ -52,7 +52,9 @@ class CanIn final : public InputDevice {
     if (bus_ == nullptr && !has_ended_ && now_ns >= next_look_ns_) look(now_ns);
     bool is_new = false;
     CanFrame frame;
-    for (int i = 0; bus_ != nullptr && i < kMostFramesAtOnce; ++i) {
+    // frame by frame of a recording: none is passed over where this process was late
+    const int most = descriptor() < 0 ? 1 : kMostFramesAtOnce;
+    for (int i = 0; bus_ != nullptr && i < most; ++i) {
       const CanBus::Taken taken = bus_->take(now_ns, frame);
       if (taken == CanBus::Taken::nothing) break;
       if (taken == CanBus::Taken::gone) {

@@ -22,9 +22,7 @@ class CanOut final : public ShownDevice {
     for (const scene::CanSignalDef& signal : def.bus.signals) places_.push_back(place_of(messages_, signal.signal));
     for (const devices::CanMessage& message : messages_) {
       std::vector<double>& values = values_.emplace_back();
-      // not available with J1939, else a raw 0
-      for (const devices::CanSignal& signal : message.signals)
-        values.push_back(def.bus.protocol == scene::CanProtocol::j1939 ? std::nan("") : signal.offset);
+      for (const devices::CanSignal& signal : message.signals) values.push_back(value_without_source(signal));
     }
     if (send_) return;
     look_after(monotonic_ns());
@@ -63,6 +61,13 @@ class CanOut final : public ShownDevice {
     std::vector<FedSignal> signals;
     for (const scene::CanSignalDef& signal : bus.signals) signals.push_back({signal.variable, signal.output});
     return signals;
+  }
+
+  // Not available with J1939 where the signal has a code for it, else a raw 0.
+  [[nodiscard]] double value_without_source(const devices::CanSignal& signal) const {
+    const bool has_code = signal.number == devices::CanNumber::integer && !signal.is_signed && signal.bits >= 2;
+    const bool is_j1939 = def_.bus.protocol == scene::CanProtocol::j1939;
+    return is_j1939 && has_code && !signal.is_selector ? std::nan("") : signal.offset;
   }
 
   void show(std::span<const double> values) {

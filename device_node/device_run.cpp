@@ -227,9 +227,10 @@ class DeviceRun final : public observer::Receiver {
       pollfd request{device_->descriptor(), POLLIN, 0};
       ::poll(&request, request.fd >= 0 ? 1 : 0, kInputRoundMs);
       const std::int64_t now_ns = monotonic_ns();
-      const bool is_new = device_->take(now_ns);
-      if (observer_->view().session().header.phase == wire::Phase::running)
-        driver_->drive(*device_, is_new, observer_->view().step(), now_ns);
+      const bool is_running = observer_->view().session().header.phase == wire::Phase::running;
+      // a recording begins with the session
+      const bool is_new = (is_running || request.fd >= 0) && device_->take(now_ns);
+      if (is_running) driver_->drive(*device_, is_new, observer_->view().step(), now_ns);
       observer_->drain();
     }
     show_alive();

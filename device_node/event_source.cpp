@@ -123,6 +123,7 @@ class RecordedEvents final : public EventSource {
 
   [[nodiscard]] bool take(std::int64_t now_ns, std::vector<InputEvent>& events) override {
     if (begin_ns_ == 0) begin_ns_ = now_ns;
+    if (next_ == events_.size()) return false;
     const std::int64_t first_us = events_.front().time_us;
     for (; next_ < events_.size(); ++next_) {
       InputEvent event = events_[next_];
@@ -130,8 +131,12 @@ class RecordedEvents final : public EventSource {
       if (due_ns > now_ns) return true;
       event.time_us = due_ns / 1000;
       events.push_back(event);
+      // report by report: none is passed over where this process was late
+      if (event.type != EV_SYN || event.code != SYN_REPORT) continue;
+      ++next_;
+      return true;
     }
-    return !std::exchange(has_ended_, true);
+    return true;
   }
 
   // a recording has changes alone: the device was at rest before them
@@ -172,7 +177,6 @@ class RecordedEvents final : public EventSource {
   std::vector<InputEvent> events_;
   std::size_t next_ = 0;
   std::int64_t begin_ns_ = 0;  // 0: not begun
-  bool has_ended_ = false;
 };
 
 std::unique_ptr<EventSource> open_recording(const std::string& path) {

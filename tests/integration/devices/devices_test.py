@@ -83,7 +83,8 @@ class Crane:
         self.folder, self.domain = folder, domain
         self.rig, self.dash = free_port(), free_port()
         self.process = None
-        self.arguments = [SLEWRING, "run", SCENE, "--domain", str(domain), "--out", f"{folder}/runs", "--quiet", "--json",
+        # a machine under load may stop a process for longer than the scene allows
+        self.arguments = [SLEWRING, "run", SCENE, "--set", "session.give_up_after=60", "--domain", str(domain), "--out", f"{folder}/runs", "--quiet", "--json",
                           "--set", f"Rig.listen=127.0.0.1:{self.rig}", "--set", f"Dash.send=127.0.0.1:{self.dash}", *more]
 
     def start(self):

@@ -132,7 +132,8 @@ TEST(UdpOut, AResetBeginsAgain) {
 
 // messages of a panel and of an engine
 constexpr const char* kMessages =
-    "BO_ 256 Panel: 4 X\n SG_ Lift : 0|16@1- (0.5,0) [0|0] \"%\" X\n SG_ Enable : 16|1@1+ (1,0) [0|0] \"\" X\n"
+    "BO_ 256 Panel: 4 X\n SG_ Lift : 0|16@1- (0.5,0) [0|0] \"%\" X\n SG_ Enable : 16|1@1+ (1,0) [0|0] \"\" X\n SG_ "
+    "More : 24|8@1+ (1,0) [0|0] \"\" X\n"
     "BO_ 2364540158 EEC1: 8 X\n SG_ EngineSpeed : 24|16@1+ (0.125,0) [0|8031.875] \"rpm\" X\n";
 
 scene::CanBusDef bus_of(scene::CanProtocol protocol, std::vector<scene::CanSignalDef> signals) {
@@ -168,8 +169,9 @@ TEST(CanOut, AFrameForEachMessageHasTheValuesOfOneStep) {
   EXPECT_FALSE(frames[0].is_extended);
   ASSERT_EQ(frames[0].size, 4u);
   EXPECT_EQ(frames[0].bytes[0], std::byte{200});
-  // a signal without a source is not available, and bits of no signal are 1
-  EXPECT_EQ(frames[0].bytes[2], std::byte{0xFF});
+  // a signal without a source is not available where it has a code for that, else 0; bits of no signal are 1
+  EXPECT_EQ(frames[0].bytes[2], std::byte{0xFE});
+  EXPECT_EQ(frames[0].bytes[3], std::byte{0xFF});
   EXPECT_EQ(frames[1].id, 0x0CF004FEu);
   EXPECT_TRUE(frames[1].is_extended);
   // 950 rpm are 7600 counts
@@ -200,8 +202,10 @@ TEST(CanIn, RecordedFramesMoveInputsWhileAllSignalsAreThere) {
   EXPECT_TRUE(device->is_fresh());
   EXPECT_EQ(device->values()[0], 0.5);
   EXPECT_EQ(device->dead_man(), true);
-  EXPECT_TRUE(device->take(1021 * kMs));
+  EXPECT_FALSE(device->take(1011 * kMs));  // of another identifier
+  EXPECT_TRUE(device->take(1020 * kMs));
   EXPECT_EQ(device->values()[0], -0.5);
+  EXPECT_FALSE(device->take(1021 * kMs));  // too short
   EXPECT_FALSE(device->take(1150 * kMs));
   EXPECT_FALSE(device->is_fresh());  // silent
   EXPECT_EQ(device->dead_man(), std::nullopt);
