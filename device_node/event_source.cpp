@@ -122,7 +122,11 @@ class RecordedEvents final : public EventSource {
   [[nodiscard]] int descriptor() const noexcept override { return -1; }
 
   [[nodiscard]] bool take(std::int64_t now_ns, std::vector<InputEvent>& events) override {
-    if (begin_ns_ == 0) begin_ns_ = now_ns;
+    // at rest before the first event, for a round
+    if (begin_ns_ == 0) {
+      begin_ns_ = now_ns;
+      return true;
+    }
     if (next_ == events_.size()) return false;
     const std::int64_t first_us = events_.front().time_us;
     for (; next_ < events_.size(); ++next_) {

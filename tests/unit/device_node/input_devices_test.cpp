@@ -189,6 +189,7 @@ TEST(Joystick, RecordedEventsMoveTheInputsOfItsBlockInTheirOwnTime) {
   const auto device = open_joystick(stick(folder.write("stick.events", bytes).string()), inputs());
   EXPECT_EQ(device->inputs(), (std::vector<std::string>{"Input_Lift", "Input_Horn"}));
   EXPECT_TRUE(device->is_fresh());
+  EXPECT_FALSE(device->take(1000 * kMs));
   EXPECT_EQ(device->dead_man(), false);
   EXPECT_TRUE(device->take(1000 * kMs));
   EXPECT_EQ(device->dead_man(), true);
