@@ -258,6 +258,11 @@ ExitCode calibrate(const Options& options) {
     }
     take_events(stick, state, events);
     if (state.phase == devices::StickPhase::awaiting_state) static_cast<void>(source->read_state(stick, state));
+    // a recording has no counts before its first report
+    if (source->descriptor() < 0 && state.reports == 0) {
+      before_ns = now_ns;
+      continue;
+    }
     add_counts(calibration, state.axes, static_cast<double>(now_ns - before_ns) * 1e-9);
     before_ns = now_ns;
     if (calibration.phase != shown) {
@@ -303,8 +308,12 @@ ExitCode run_one(Options options) {
     options.run.session.session = session::find_session(options.run.session, session::Access::look)->session_name();
   }
   options.run.device = options.device;
-  const Json summary = device_node::run_device(options.run, print_line);
-  print_line(options.is_json ? summary.dump(2) : device_node::summary_text(summary));
+  const Json summary = device_node::run_device(options.run, [&](const std::string& line) {
+    std::FILE* const out = options.is_json ? stderr : stdout;
+    fmt::print(out, "{}\n", printable(line));
+    std::fflush(out);
+  });
+  fmt::print("{}\n", options.is_json ? summary.dump(2) : device_node::summary_text(summary));
   return stop_code();
 }
 
@@ -354,7 +363,7 @@ void add_device(options::Command& program) {
   running.option("device", options->device, "name of the device").value_name("DEVICE").required();
   device_node::add_device_options(running, options->run);
   running.find("--session").description("name of the session; without it the only one that runs");
-  running.flag("--json", options->is_json, "print the counts at the end as JSON");
+  running.flag("--json", options->is_json, "print the counts at the end as JSON and nothing else");
   running.action([options] { return run_one(*options); });
 
   verb.footer(

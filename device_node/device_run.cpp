@@ -13,6 +13,7 @@
 #include "core/suggestion.h"
 #include "device_node/input_driver.h"
 #include "device_node/shown_device.h"
+#include "devices/packet.h"
 #include "node/driver.h"
 #include "node/open_transport.h"
 #include "observer/observer.h"
@@ -41,8 +42,8 @@ class DeviceRun final : public observer::Receiver {
   Json run() {
     join();
     const scene::Scene scene = read_scene();
-    open(scene);
     check_variables(scene);
+    open(scene);
     while (!is_over() && !observer_->is_stopped()) do_round();
     const bool has_session = !is_over();
     if (driver_ && has_session) driver_->release(observer_->view().step(), monotonic_ns());
@@ -297,9 +298,10 @@ std::string summary_text(const Json& summary) {
     text = fmt::format("{} packets used", packets->at("used").integer());
     text += counted_text(*packets, "lost", "lost");
     const Json& refused = packets->at("refused");
-    for (const char* cause :
-         {"sender not in from", "too short", "too long", "bad checksum", "repeated", "out of sequence", "not finite"}) {
-      text += counted_text(refused, cause, std::string("refused: ") + cause);
+    text += counted_text(refused, kStrangerCause, "of senders that are not in from");
+    for (std::size_t i = 1; i < static_cast<std::size_t>(devices::PacketFault::number_of_faults); ++i) {
+      const std::string_view cause = text_of(static_cast<devices::PacketFault>(i));
+      text += counted_text(refused, cause, fmt::format("refused: {}", cause));
     }
   } else if (const Json* const frames = summary.find("frames")) {
     text = fmt::format("{} frames used", frames->at("used").integer());

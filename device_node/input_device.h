@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -51,6 +52,9 @@ class InputDevice {
  private:
   std::vector<std::string> notices_;
 };
+
+// Key of packets of other senders among the causes of refused ones.
+inline constexpr std::string_view kStrangerCause = "sender not in from";
 
 // Reach of sockets: the network needs --insecure-devices.
 enum class Reach : std::uint8_t { this_machine, network };

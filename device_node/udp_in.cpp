@@ -61,7 +61,7 @@ class UdpIn final : public InputDevice {
   }
 
   [[nodiscard]] Json counts() const override {
-    Json refused = {{"sender not in from", strangers_}};
+    Json refused = {{kStrangerCause, strangers_}};
     for (std::size_t i = 1; i < state_.counts.refused.size(); ++i) {
       const auto fault = static_cast<devices::PacketFault>(i);
       refused[std::string(text_of(fault))] = state_.counts.of(fault);
@@ -97,8 +97,8 @@ class UdpIn final : public InputDevice {
     const auto i = static_cast<std::size_t>(fault);
     // the first of its kind, with its remedy in the counts
     if (state_.counts.refused[i] == 1) {
-      add_notice(fmt::format("a packet of {} bytes was refused: {}; the layout has {} bytes; further ones are counted",
-                             size, text_of(fault), layout_.size));
+      add_notice(fmt::format("a packet was refused: {}; it has {} bytes, the layout {}; further ones are counted",
+                             text_of(fault), size, layout_.size));
     }
     return false;
   }

@@ -177,14 +177,14 @@ def case_closed_loop(folder, domain):
         stranger.bind(("127.0.0.2", 0))
         stranger.sendto(struct.pack("<HBfH", 7, 1, 1.0, 1), ("127.0.0.1", crane.rig))
         crane.wait_for_line("packets from 127.0.0.2 are refused; to accept them, add it to Rig.from")
-        crane.wait_for_line("bad checksum")
+        crane.wait_for_line("wrong checksum")
         result = crane.stop(0)
     finally:
         crane.kill()
     rig, stick, dash = (result["devices"][name]["summary"] for name in ("Rig", "Stick", "Dash"))
     print("latency Rig", rig["inputs"]["latency"], "Stick", stick["inputs"]["latency"])
     refused = rig["packets"]["refused"]
-    for cause in ("too short", "too long", "bad checksum", "sender not in from"):
+    for cause in ("too short", "too long", "wrong checksum", "sender not in from"):
         require(refused[cause] == 1, f"{cause}: {refused}")
     require(refused["not finite"] == 0, f"{refused}")
     require(rig["packets"]["used"] > 200, f"{rig}")

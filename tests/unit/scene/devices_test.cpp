@@ -199,15 +199,15 @@ TEST(DeviceSection, CanSignalsComeFromTheDatabaseAndStayInTheText) {
     return std::string("accepted");
   };
   EXPECT_EQ(problem_of("    - {signal: Panel.Lifd, input: Input_Push}\n"),
-            ":19:7: Panel.signals.Panel.Lifd: the database has no signal 'Panel.Lifd'; expected message and signal, as "
+            ":18:7: Panel.signals.Panel.Lifd: the database has no signal 'Panel.Lifd'; expected message and signal, as "
             "Panel.Lift; did you mean 'Panel.Lift'?");
   EXPECT_EQ(problem_of("    - {signal: Panel.Enable}\n"),
             ":12:3: Panel: the device moves nothing; expected a signal with an input");
   EXPECT_EQ(problem_of("    - {signal: Panel.Lift, input: Input_Push, variable: Ball.x}\n"),
-            ":19:7: Panel.signals.Panel.Lift: a received signal takes nothing from the session; expected input");
+            ":18:7: Panel.signals.Panel.Lift: a received signal takes nothing from the session; expected input");
   folder.write("machine.dbc", "BO_ 256 Panel: 8 X\n SG_ Lift : 0|16@1- (0.5,0\n");
   EXPECT_EQ(
-      problem_of("    - {signal: Panel.Lift, input: Input_Push}\n").find(":16:15: Panel.database: machine.dbc:2: "), 0u)
+      problem_of("    - {signal: Panel.Lift, input: Input_Push}\n").find(":15:15: Panel.database: machine.dbc:3: "), 0u)
       << problem_of("    - {signal: Panel.Lift, input: Input_Push}\n");
 }
 
