@@ -109,7 +109,7 @@ void InputDriver::take(const wire::VariableBlock& block, std::int64_t now_ns) {
   }
 }
 
-bool InputDriver::is_enabled(const InputDevice& device, std::int64_t) {
+bool InputDriver::is_enabled(const InputDevice& device, std::int64_t now_ns) {
   if (enable_.dead_man.empty()) return device.is_fresh();
   const std::array<double, 1> age = {device.is_fresh() ? 0.0 : std::nan("")};
   std::vector<std::optional<bool>> met;
@@ -117,13 +117,18 @@ bool InputDriver::is_enabled(const InputDevice& device, std::int64_t) {
   double farthest = 0;
   for (const double value : device.values()) farthest = std::max(farthest, std::abs(value));
   const devices::EnableInputs inputs{device.dead_man(), age, met, farthest};
-  const devices::EnableHindrance before = chain_.hindrance;
-  const std::size_t index = chain_.index;
-  const bool has_changed = step(enable_, inputs, chain_);
-  if (has_changed || chain_.hindrance != before || chain_.index != index) {
-    notices_.push_back(chain_.is_enabled() ? "enabled" : "at neutral: " + text_of(enable_, chain_));
-  }
+  static_cast<void>(step(enable_, inputs, chain_));
+  note_chain(now_ns);
   return chain_.is_enabled();
+}
+
+// The newest state of the chain, at most once a second: a device that comes and goes must not fill the terminal.
+void InputDriver::note_chain(std::int64_t now_ns) {
+  const ChainState state{chain_.phase, chain_.hindrance, chain_.index};
+  if (state == reported_ || now_ns < next_chain_notice_ns_) return;
+  reported_ = state;
+  next_chain_notice_ns_ = now_ns + kNoticeIntervalNs;
+  notices_.push_back(chain_.is_enabled() ? "enabled" : "at neutral: " + text_of(enable_, chain_));
 }
 
 void InputDriver::write_all(std::span<const double> values, std::int64_t event_ns, StepIndex newest_step,

@@ -74,6 +74,7 @@ class InputDriver {
   [[nodiscard]] bool is_enabled(const InputDevice& device, std::int64_t now_ns);
   void write_all(std::span<const double> values, std::int64_t event_ns, StepIndex newest_step, std::int64_t now_ns);
   void note_silence(std::int64_t now_ns);
+  void note_chain(std::int64_t now_ns);
 
   std::string controller_;
   std::vector<std::string> inputs_;
@@ -82,6 +83,14 @@ class InputDriver {
   observer::InputLeases leases_;
   InputLatency latency_;
   devices::EnableState chain_;
+  struct ChainState {
+    devices::EnablePhase phase{};
+    devices::EnableHindrance hindrance{};
+    std::size_t index = 0;
+    bool operator==(const ChainState&) const = default;
+  };
+  ChainState reported_;
+  std::int64_t next_chain_notice_ns_ = 0;
   std::vector<Watched> conditions_;
   // of io's directory, or of the conditions' nodes: the index, and the place among inputs_ or conditions_
   struct Place {

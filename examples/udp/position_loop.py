@@ -38,7 +38,7 @@ def main():
     link.bind(("127.0.0.1", o.listen))
     link.settimeout(0.5)
     end = time.monotonic() + o.seconds
-    sent = received = steady = 0
+    sent = received = steady = armed = still = 0
     stroke, lamps = math.nan, 0
     while steady < 100 and time.monotonic() < end:
         try:
@@ -47,11 +47,16 @@ def main():
             continue  # no session, or a pause
         if len(packet) != DASH.size:
             sys.exit(f"a packet of Dash has {DASH.size} bytes, this one {len(packet)}")
+        before = stroke
         _, stroke, _, lamps, _ = DASH.unpack(packet)
         received += 1
-        # the dead-man input is pressed after a while at neutral: pressed from the start it would not count
-        is_enabled = received > 20
-        body = RIG.pack(sent & 0xFFFF, is_enabled, stick(stroke) if received > 40 else 0.0)
+        armed += 1
+        # the dead-man input is pressed after a while at neutral: pressed from the start it would not count. A machine
+        # that does not follow was put to neutral, after a silence for instance: release it and press it again
+        still = still + 1 if armed > 40 and stick(stroke) != 0 and abs(stroke - before) < 1e-7 else 0
+        if still > 50:
+            armed = still = 0
+        body = RIG.pack(sent & 0xFFFF, armed > 20, stick(stroke) if armed > 40 else 0.0)
         link.sendto(body + struct.pack("<H", binascii.crc_hqx(body, 0xFFFF)), ("127.0.0.1", o.send))
         sent += 1
         steady = steady + 1 if abs(o.target - stroke) < o.tolerance else 0
