@@ -85,7 +85,7 @@ class Crane:
         self.process = None
         # a machine under load may stop a process for longer than the scene allows
         self.arguments = [SLEWRING, "run", SCENE, "--set", "session.give_up_after=60", "--domain", str(domain), "--out", f"{folder}/runs", "--quiet", "--json",
-                          "--set", f"Rig.listen=127.0.0.1:{self.rig}", "--set", f"Dash.send=127.0.0.1:{self.dash}", *more]
+                          "--set", "Rig.timeout=5s", "--set", f"Rig.listen=127.0.0.1:{self.rig}", "--set", f"Dash.send=127.0.0.1:{self.dash}", *more]
 
     def start(self):
         with open(f"{self.folder}/run.out", "w") as out, open(f"{self.folder}/run.err", "w") as err:
@@ -188,7 +188,7 @@ def case_closed_loop(folder, domain):
         require(refused[cause] == 1, f"{cause}: {refused}")
     require(refused["not finite"] == 0, f"{refused}")
     require(rig["packets"]["used"] > 200, f"{rig}")
-    require(rig["inputs"]["silences"] >= 2, f"{rig}")
+    require(rig["inputs"]["silences"] >= 1 and rig["inputs"]["enable_losses"] >= 1, f"{rig}")
     for one in (rig, stick):
         require(one["inputs"]["latency"]["count"] > 0, f"{one}")
         require(0 < one["inputs"]["latency"]["p50"] <= one["inputs"]["latency"]["p99"], f"{one}")
