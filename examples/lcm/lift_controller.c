@@ -69,8 +69,8 @@ int main(int argc, char** argv) {
   c.input.sender = (int64_t)time(NULL) * 65536 + getpid() % 65536; /* another process has another number */
   slewring_crane_t_subscribe(lcm, crane_channel, take_crane, &c);
   while (c.result < 0) {
-    if (lcm_handle_timeout(lcm, 10000) <= 0) {
-      fprintf(stderr, "lift_controller: no message on %s for 10 s\n", crane_channel);
+    if (lcm_handle_timeout(lcm, 60000) <= 0) {
+      fprintf(stderr, "lift_controller: no message on %s for 60 s\n", crane_channel);
       c.result = 1;
     }
   }

@@ -110,6 +110,9 @@ struct Bridge::State final : observer::Receiver {
   }
   void take_block(const wire::VariableBlock& block, std::span<const std::byte>, double time) override {
     if (incoming) incoming->take_epoch(block.header.epoch);
+    if (block.header.epoch != epoch) newest_step = kJoinStep;
+    epoch = block.header.epoch;
+    newest_step = std::max(newest_step, block.header.step);
     if (outgoing) outgoing->take(block, time);
   }
   void take_lease(const wire::ControllerLease& lease) override {
@@ -133,6 +136,8 @@ struct Bridge::State final : observer::Receiver {
   std::optional<ParameterDoor> door;
   std::vector<wire::VariableDirectory> early;  // received before the channels had their names
   bool has_new_session = false;
+  std::uint32_t epoch = 0;
+  StepIndex newest_step = kJoinStep;  // of the blocks of this epoch
   std::uint64_t unsent_inputs = 0;
 };
 
@@ -178,6 +183,7 @@ std::string Bridge::types(observer::Observer& observer) {
 void Bridge::State::open(observer::Observer& observer, const SceneView& scene) {
   const std::string prefix = prefix_of(settings, observer.session_name(), lists);
   check_every(settings, scene);
+  if (receives() && !settings.is_insecure_lan) require_loopback(url);
   link.emplace(url, settings.is_insecure_lan ? Reach::network : Reach::this_machine);
   if (receives()) open_door(observer, scene, prefix);
   outgoing.emplace(
@@ -201,8 +207,8 @@ void Bridge::State::open_door(observer::Observer& observer, const SceneView& sce
                        message.session = observer.session_name();
                        if (!observer.send(message).is_ok()) ++unsent_inputs;
                      });
-    link->subscribe(prefix + "_INPUT", [this, &observer](std::span<const std::byte> bytes) {
-      incoming->take(bytes, monotonic_ns(), observer.view().step());
+    link->subscribe(prefix + "_INPUT", [this](std::span<const std::byte> bytes) {
+      incoming->take(bytes, monotonic_ns(), newest_step);
     });
   }
   if (settings.takes_parameters) {
