@@ -207,9 +207,8 @@ void Bridge::State::open_door(observer::Observer& observer, const SceneView& sce
                        message.session = observer.session_name();
                        if (!observer.send(message).is_ok()) ++unsent_inputs;
                      });
-    link->subscribe(prefix + "_INPUT", [this](std::span<const std::byte> bytes) {
-      incoming->take(bytes, monotonic_ns(), newest_step);
-    });
+    link->subscribe(prefix + "_INPUT",
+                    [this](std::span<const std::byte> bytes) { incoming->take(bytes, monotonic_ns(), newest_step); });
   }
   if (settings.takes_parameters) {
     door.emplace([&observer](wire::ControlRequest request) { return observer.send(std::move(request)); },

@@ -4,9 +4,9 @@
 lcm_test.py SOURCES BUILD SLEWRING 1|0
 
 lcm-gen generates a controller that closes the position loop through the bridge while 1 % of all LCM datagrams are dropped,
-lcm-logger records it, lcm-logplayer plays that back; damaged and false inputs are counted by cause; the session's recording
-is exported as a log, and a second run with the log as its input gives the same values. Everything is in a network
-namespace of its own.
+lcm-logger records it, lcm-logplayer plays that back; damaged and false inputs are counted by cause, a parameter is
+changed; the session's recording is exported as a log, and a second run with the log as its input gives the same values.
+Everything is in a network namespace of its own.
 """
 import csv
 import json
@@ -160,6 +160,36 @@ def send_wrong_inputs(fingerprint):
     return {cause: len(messages) for cause, messages in wrong.items()}
 
 
+def request_parameters(types, folder, live):
+    """Requests by the Python types of lcm-gen, which need no library of LCM: each is answered with its number."""
+    run("lcm-gen", "--python", "--ppath", folder, types)
+    sys.path.insert(0, folder)
+    import slewring as generated
+
+    sender = Sender(b"")
+
+    def reply_to(number, path, is_change, value):
+        request = generated.parameter_t()
+        request.request, request.path, request.is_change, request.value, request.over = number, path, is_change, value, 0.0
+        sender.send(request.encode(), f"{PREFIX}_PARAMETER")
+        found = [generated.reply_t.decode(data) for channel, _, data in events_so_far(live) if channel == f"{PREFIX}_REPLY"]
+        return next((reply for reply in found if reply.request == number), None)
+
+    def reply(*request):
+        return wait_for(f"the reply to {request}", lambda: reply_to(*request))
+
+    before = reply(11, "Bag.mass", False, 0.0)
+    require(before.is_accepted and before.value > 0, before.reason)
+    changed = reply(12, "Bag.mass", True, before.value + 10)
+    require(changed.is_accepted and changed.step > 0, changed.reason)
+    wait_for("the new value", lambda: reply(13, "Bag.mass", False, 0.0).value == before.value + 10)
+    wrong = reply(14, "Bag.mas", True, 1.0)
+    require(not wrong.is_accepted and "Bag.mass" in wrong.reason, wrong.reason)
+    require(not reply(15, "Bag.mass", True, float("nan")).is_accepted, "a mass that is not finite was accepted")
+    print(f"parameters: Bag.mass {before.value} -> {before.value + 10} kg from step {changed.step}; '{wrong.reason}'")
+    return changed.step
+
+
 def play_back(processes, folder, live):
     """lcm-logplayer's events, as a second lcm-logger records them, are those of the first."""
     again = f"{folder}/again.log"
@@ -207,8 +237,9 @@ def column(slewring, recording, variable):
     return [row for row in rows[1:] if len(row) == 2]
 
 
-def export_and_drive(slewring, scene, recording, folder):
-    """The recording as a log; a run with the log as its input has the same inputs and the same motion, to the bit."""
+def export_and_drive(slewring, scene, recording, folder, steps):
+    """The recording as a log; a run with the log as its input has the same inputs and the same motion, to the bit, up to
+    the step in which a parameter was changed."""
     log = f"{folder}/exported.lcm"
     run(slewring, "export", recording, "--lcm", log, "--channel", PREFIX, "--signals", SIGNALS,
         "--every", str(EVERY))
@@ -225,7 +256,7 @@ def export_and_drive(slewring, scene, recording, folder):
     moved = 0
     for variable in ("Input_Lift.raw", "Cyl_Lift.stroke", "Cyl_Lift.force"):
         first, again = column(slewring, recording, variable), column(slewring, second, variable)
-        size = min(len(first), len(again))
+        size = min(len(first), len(again), steps)
         require(size > 500, f"only {size} rows of {variable}")
         differs = [i for i in range(size) if first[i] != again[i]]
         require(not differs, f"{variable} differs: {first[differs[0]] if differs else ''} {again[differs[0]] if differs else ''}")
@@ -269,12 +300,16 @@ def inside(source, build, slewring):
             live = f"{folder}/live.lcm"
             logger = processes.start("logger", "lcm-logger", live)
             bridge = processes.start("bridge", slewring, "bridge", "lcm", "--session", SESSION, "--signals", SIGNALS,
-                                     "--every", str(EVERY), "--controller", "lift", "--controller", "other", "--json")
+                                     "--every", str(EVERY), "--controller", "lift", "--controller", "other", "--parameters",
+                                     "--json")
             wait_for("the first messages in the log", lambda: bridge.poll() is not None or (
                 os.path.exists(live) and os.path.getsize(live) > 100_000))
             require(bridge.poll() is None, f"the bridge ended: {text_of(f'{folder}/bridge.err')}")
+            sockets = run("ss", "-Huan", f"sport = :{PORT}")
+            require(f"%lo:{PORT}" in sockets, f"the bridge's socket is open to the network:\n{sockets}")
             close_the_loop(processes, f"{folder}/handler/lift_controller", folder, slewring)
 
+            changed_at = request_parameters(f"{folder}/installed/share/slewring/slewring.lcm", folder, live)
             inputs = [data for channel, _, data in events_so_far(live) if channel == f"{PREFIX}_INPUT"]
             wrong = send_wrong_inputs(inputs[0][:8])
             causes = ["damaged", "not finite", "old sequence"]
@@ -296,7 +331,7 @@ def inside(source, build, slewring):
             print(f"lcm-logger: {check_log(live)}")
             play_back(processes, folder, live)
             recording = f"{folder}/runs/" + os.listdir(f"{folder}/runs")[0]
-            export_and_drive(slewring, scene, recording, folder)
+            export_and_drive(slewring, scene, recording, folder, changed_at)
             # what lcm-logger recorded drives a run as well
             run(slewring, "run", scene, "--input", live, "--in-process", "--pace", "free", "--duration", "2 s", "--no-record",
                 "--quiet", cwd=folder)
