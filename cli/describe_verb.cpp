@@ -159,10 +159,13 @@ void describe_nodes(const scene::Scene& scene, Description& d) {
                          ? "no flexible bodies with modes"
                          : counted(scene.flexible_bodies.size(), "body", "bodies") +
                                (is_stated_once ? ", elastic forces stated once" : ", elastic forces at every step")});
+  d.nodes.push_back({"sensor", scene.has_sensors(),
+                     scene.has_sensors() ? counted(scene.sensors.size(), "sensor", "sensors") : "no sensors"});
   d.nodes.push_back({"recorder", true, "unless --no-record is given"});
   if (!scene.has_mechanics()) d.left_out.emplace_back("mechanics: no bodies, no process, no states");
   if (!scene.has_hydraulics()) d.left_out.emplace_back("hydraulics: no volumes, no process, no states");
   if (!scene.has_modes()) d.left_out.emplace_back("flexible bodies: none with modes, no flex_node, no modal states");
+  if (!scene.has_sensors()) d.left_out.emplace_back("sensors: none, no sensor_node, no search for distances");
   if (d.contacts.empty()) d.left_out.emplace_back("contact: no collision pairs, no collision detection");
   if (scene.ports.empty()) d.left_out.emplace_back("coupling: no actuator drives a force, no ports");
 }

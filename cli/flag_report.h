@@ -8,7 +8,7 @@
 #include "node/flag_counter.h"
 #include "recording/reader.h"
 #include "scene/scene.h"
-#include "session/run_outcome.h"
+#include "session/run.h"
 
 namespace slew::cli {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "session/run_outcome.h"
+#include "session/run.h"
 
 namespace slew::cli {
 

@@ -4,7 +4,7 @@
 
 #include "io_node/session_scene.h"
 #include "options/options.h"
-#include "session/run_outcome.h"
+#include "session/run.h"
 
 namespace slew::cli {
 

@@ -11,10 +11,10 @@
 #include "cli/status_line.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/node_names.h"
 #include "core/printable.h"
 #include "observer/observer.h"
-#include "session/distributed_run.h"
-#include "session/in_process_run.h"
+#include "session/run.h"
 #include "session/unrecorded.h"
 
 namespace slew::cli {
@@ -164,7 +164,7 @@ void add_run(options::Command& program) {
   verb.option("--remote", options->remote, "roles that are started elsewhere, separated by commas")
       .comma_separated()
       .one_value_each()
-      .one_of({"io", "mechanics", "hydraulics", "flex", "recorder"})
+      .one_of({std::begin(kNodeNames), std::end(kNodeNames)})
       .value_name("ROLE")
       .group("Session");
   verb.flag("--in-process", options->is_in_process, "all nodes in this process, on one thread").group("Session");

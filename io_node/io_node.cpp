@@ -61,7 +61,7 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
               [&transport](std::uint64_t writer) { return transport.see_writer(Topic::controller_input, writer); }),
       requests_(config_, member_, inputs_),
       keeper_(config_, member_, inputs_),
-      samples_(config_.session, config_.flexible_every, config_.required_roles),
+      samples_(config_.session, config_.flexible_every, config_.variables_every, config_.required_roles),
       pause_(config_.starts_paused),
       clock_(config_.session, timing()),
       shedding_(config_.session.shed, (config_.required_roles & bit(Role::flex)) != 0 ? View::flex : View::none),
@@ -146,6 +146,7 @@ void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
     case Topic::mechanism:
     case Topic::actuators:
     case Topic::elastic:
+    case Topic::sensors:
       return receive_sample(message.bytes, message.topic, now_ns);
     case Topic::controller_input:
       return requests_.receive_controller(message, n_, now_ns, times_);

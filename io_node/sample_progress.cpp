@@ -9,11 +9,14 @@ namespace slew::io_node {
 
 using wire::Role;
 
-SampleProgress::SampleProgress(const scene::SessionDef& session, StepIndex flexible_every, std::uint32_t roles)
+SampleProgress::SampleProgress(const scene::SessionDef& session, StepIndex flexible_every, StepIndex sensor_every,
+                               std::uint32_t roles)
     : roles_(roles),
       window_(session.window_steps()),
       ahead_(session.mode == scene::ExchangeMode::free_running ? window_ : 0),
-      flexible_every_(flexible_every) {
+      flexible_every_(flexible_every),
+      sensor_every_(sensor_every),
+      is_paced_(session.pace == Pace::real) {
   newest_.fill(kJoinStep);
 }
 
@@ -28,8 +31,9 @@ SampleProgress::Receipt SampleProgress::receive(Role role, StepIndex step, StepI
 
 StepIndex SampleProgress::needed(Role role, StepIndex n) const noexcept {
   if (!transport::traits(role).is_follower) return n - window_ + 1;
+  if (role == Role::sensor && is_paced_) return kJoinStep;
   const StepIndex oldest = n - node::kFollowerWindow;
-  return oldest < 0 ? kJoinStep : oldest - oldest % flexible_every_;
+  return oldest < 0 ? kJoinStep : oldest - oldest % (role == Role::sensor ? sensor_every_ : flexible_every_);
 }
 
 std::optional<Role> SampleProgress::missing(StepIndex n) const noexcept {

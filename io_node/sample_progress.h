@@ -20,7 +20,8 @@ namespace slew::io_node {
 class SampleProgress {
  public:
   // roles: required roles, as bits.
-  SampleProgress(const scene::SessionDef& session, StepIndex flexible_every, std::uint32_t roles);
+  SampleProgress(const scene::SessionDef& session, StepIndex flexible_every, StepIndex sensor_every,
+                 std::uint32_t roles);
 
   // The epoch begins at step n: no node has published its sample of that step.
   void restart(StepIndex n) noexcept { newest_.fill(n - 1); }
@@ -51,6 +52,8 @@ class SampleProgress {
   StepIndex window_;
   StepIndex ahead_;  // steps by which a free-running node may be ahead of the ticks
   StepIndex flexible_every_;
+  StepIndex sensor_every_;                      // the same of sensors
+  bool is_paced_;                               // by the wall clock: sensors hold no tick
   std::array<StepIndex, wire::kRoles> newest_;  // highest sample received
   node::ResendClock resend_;
 };

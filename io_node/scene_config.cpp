@@ -21,6 +21,7 @@ std::uint32_t required_roles(const scene::Scene& scene, Recording recording) noe
     return needed == Needed::always || (needed == Needed::with_mechanics && scene.has_mechanics()) ||
            (needed == Needed::with_hydraulics && scene.has_hydraulics()) ||
            (needed == Needed::with_modes && scene.has_modes()) ||
+           (needed == Needed::with_sensors && scene.has_sensors()) ||
            (needed == Needed::to_record && recording == Recording::required);
   };
   std::uint32_t roles = 0;

@@ -272,10 +272,12 @@ bool StateKeeper::is_suitable(Role role, StepIndex step, StepIndex n, const Samp
       if (kept(other).find(step) == nullptr) return false;
       continue;
     }
-    // a flex node reads the samples of mechanics, also where no node waits for its own
-    const bool is_followed = config_.flexible_every > 1;
-    const bool reads_other = !(is_followed && other == Role::flex);
-    const bool is_read = !(is_followed && role == Role::flex) || has_no_process(Role::mechanics);
+    // a follower reads the samples of mechanics, also where no node waits for its own
+    const auto is_waited_for = [&](Role follower) {
+      return follower != Role::sensor && (follower != Role::flex || config_.flexible_every == 1);
+    };
+    const bool reads_other = is_waited_for(other);
+    const bool is_read = is_waited_for(role) || has_no_process(Role::mechanics);
     // a replacement that is ready has reached the step at which it began, whatever samples io has received since
     const Replaced& begun = replaced(other);
     const StepIndex reached = begun.until == kJoinStep ? std::max(samples.newest(other), begun.from) : begun.from;

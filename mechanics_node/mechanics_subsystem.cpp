@@ -5,9 +5,9 @@
 #include "core/failure.h"
 #include "coupling/saved_model.h"
 #include "multibody/joints/joint_law.h"
-#include "multibody/model/observe.h"
 #include "multibody/model/parameters.h"
 #include "scene/ports.h"
+#include "scene/sensors.h"
 
 namespace slew::mechanics_node {
 namespace {
@@ -34,6 +34,16 @@ std::int32_t first_not_finite(const multibody::State& state) noexcept {
   return -1;
 }
 
+// Bodies whose poses the sensors need, in the order of their frames.
+std::vector<int> sensed_bodies(const scene::Scene& scene, const multibody::Model& model) {
+  std::vector<int> bodies;
+  if (!scene.has_sensors()) return bodies;
+  for (const contact::FrameDef& frame : scene::sensors_of(scene).frames) {
+    if (!frame.is_static) bodies.push_back(multibody::find_body(model, frame.name));
+  }
+  return bodies;
+}
+
 }  // namespace
 
 MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
@@ -46,6 +56,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
       port_problem_(scene, mechanism_, partner_, row_mobility_),
       published_mobility_(mechanism_, row_mobility_, scene.ports.size(), exchange_interval()),
       modal_(scene, model()),
+      sensed_bodies_(sensed_bodies(scene, model())),
       ramps_(multibody::parameter_count(model())),
       divergence_(model()),
       payload_(model(), payload_of(mechanism_.def(), model()), ratios(port_problem_.ports())),
@@ -253,6 +264,8 @@ void MechanicsSubsystem::publish(coupling::OwnSample& sample) noexcept {
   published_mobility_.publish(port_problem_.ports(), sample.mechanism, row_force_);
   port_problem_.publish_line_forces(sample.mechanism, row_force_);
   modal_.read(model(), state(), mechanism_.workspace(), sample.flexible);
+  sample.poses.frame.clear();
+  for (const int body : sensed_bodies_) append_frame(model(), mechanism_.workspace(), body, sample.poses.frame);
   published_ = sample;
 }
 

@@ -100,6 +100,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   PortProblem port_problem_;
   PublishedMobility published_mobility_;
   ModalExchange modal_;
+  std::vector<int> sensed_bodies_;  // of the model, in the order of PoseSample
   coupling::ParameterRamps ramps_;
   DivergenceWatch divergence_;
   mutable PayloadSensitivity payload_;    // mutable: its payload's mass is scratch of read_variables()

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "multibody/model/observe.h"
-
 namespace slew::mechanics_node {
 
 using coupling::ElasticSample;
@@ -34,11 +32,7 @@ void ModalExchange::read(const Model& model, const multibody::State& state, cons
       sample.q.push_back(state.q[static_cast<std::size_t>(part.q) + k]);
       sample.u.push_back(state.u[static_cast<std::size_t>(part.u) + k]);
     }
-    const multibody::BodyPose pose = multibody::body_pose(model, ws, part.body);
-    for (const double x : pose.position) sample.frame.push_back(x);
-    for (const double e : pose.orientation) sample.frame.push_back(e);
-    for (const double v : pose.velocity) sample.frame.push_back(v);
-    for (const double w : pose.angular_velocity) sample.frame.push_back(w);
+    append_frame(model, ws, part.body, sample.frame);
   }
 }
 

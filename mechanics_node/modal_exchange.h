@@ -10,9 +10,20 @@
 #include "coupling/samples.h"
 #include "multibody/flexible/elastic_law.h"
 #include "multibody/formulations/dynamics.h"
+#include "multibody/model/observe.h"
 #include "scene/scene.h"
 
 namespace slew::mechanics_node {
+
+// Appends position, quaternion, velocity and angular velocity of a body, in Ground.
+template <typename Array>
+void append_frame(const multibody::Model& model, const multibody::Workspace& ws, int body, Array& frame) noexcept {
+  const multibody::BodyPose pose = multibody::body_pose(model, ws, body);
+  for (const double x : pose.position) frame.push_back(x);
+  for (const double e : pose.orientation) frame.push_back(e);
+  for (const double v : pose.velocity) frame.push_back(v);
+  for (const double w : pose.angular_velocity) frame.push_back(w);
+}
 
 class ModalExchange {
  public:

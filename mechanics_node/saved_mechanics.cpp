@@ -45,6 +45,9 @@ void MechanicsSubsystem::visit(Self& self, Bytes& bytes) {
   visit_sized(bytes, flexible.q, self.modal_.mode_count());
   visit_sized(bytes, flexible.u, self.modal_.mode_count());
   visit_sized(bytes, flexible.frame, kFrameNumbers * self.modal_.body_count());
+  // a scene without sensors has the states of versions before them
+  if (self.sensed_bodies_.empty()) return;
+  visit_sized(bytes, self.published_.poses.frame, coupling::kPoseNumbers * self.sensed_bodies_.size());
 }
 
 Status MechanicsSubsystem::can_save() const {
@@ -69,6 +72,7 @@ Status MechanicsSubsystem::load(std::span<const std::byte> state, coupling::OwnS
   sample = {};
   sample.mechanism = published_.mechanism;
   sample.flexible = published_.flexible;
+  sample.poses = published_.poses;
   return Status::ok();
 }
 

@@ -90,7 +90,7 @@ void RecorderNode::expect_states(StepIndex step) {
   wants_states_ = false;
   counts_[static_cast<std::size_t>(Topic::state)].lost += missing_states_.size();
   missing_states_.clear();
-  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::flex}) {
+  for (const Role role : wire::kStateRoles) {
     if (member_.requires_role(role)) missing_states_[role];
   }
 }

@@ -111,6 +111,8 @@ void RecorderNode::receive(const transport::Received& message, std::int64_t now_
     case Topic::actuators:
     case Topic::flexible:
     case Topic::elastic:
+    case Topic::poses:
+    case Topic::sensors:
     case Topic::variables:
       return receive_stepped(message, now_ns);
     case Topic::node_status: {
@@ -244,8 +246,9 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
                                std::int64_t now_ns) {
   if (writer_ == nullptr) return;
   if (message.topic == Topic::variables) return record_variables(message, header, streams);
-  const bool is_of_flexible_bodies = message.topic == Topic::flexible || message.topic == Topic::elastic;
-  if (is_of_flexible_bodies) return record_block(message, header, {message.topic, header.role, 0}, streams);
+  const bool is_every_kth = message.topic == Topic::flexible || message.topic == Topic::elastic ||
+                            message.topic == Topic::poses || message.topic == Topic::sensors;
+  if (is_every_kth) return record_block(message, header, {message.topic, header.role, 0}, streams);
   TopicCounts& counts = counts_[static_cast<std::size_t>(message.topic)];
   StepStream& stream =
       streams.steps.try_emplace({message.topic, header.role}, make_stream(streams.begin)).first->second;
@@ -282,8 +285,8 @@ void RecorderNode::begin_streams(StepIndex from) {
   }
 }
 
-// Blocks of variables and the samples from and to flexible bodies are published every k-th step from step 0 on. Missing
-// ones are counted, not requested.
+// Blocks of variables and the samples from and to flexible bodies and sensors are published every k-th step from step 0
+// on. Missing ones are counted, not requested.
 void RecorderNode::record_variables(const transport::Received& message, const wire::Header& header,
                                     EpochStreams& streams) {
   wire::VariableBlock block;

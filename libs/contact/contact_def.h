@@ -3,7 +3,7 @@
 // A frame is a body or Ground; this library uses its pose only. A shape has a pose in its frame. Its own axes: sphere
 // and box about the origin; cylinder and capsule about the origin along z; a plane is the half space z <= 0; a height
 // field spans x and y from the origin, heights along z, solid below; meshes by their vertices.
-// Planes, height fields and triangle meshes belong to frames that do not move.
+// Planes, height fields and triangle meshes in pairs belong to frames that do not move.
 #pragma once
 
 #include <array>

@@ -64,8 +64,8 @@ class Validator {
     const FrameDef* frame = find_named(def_.frames, shape.frame);
     if (frame == nullptr) {
       add(shape.name, "frame", fmt::format("there is no frame '{}'", shape.frame), "the name of a frame");
-    } else if (must_not_move(shape.type) && !frame->is_static) {
-      add(shape.name, "frame", fmt::format("a {} cannot move, and '{}' does", name_of(shape.type), frame->name),
+    } else if (shape.type == ShapeType::plane && !frame->is_static) {
+      add(shape.name, "frame", fmt::format("a plane cannot move, and '{}' does", frame->name),
           "a frame that does not move, or a convex shape");
     }
     if (!is_finite(shape.position)) add(shape.name, "position", "it is not finite", "three numbers in m");
@@ -108,6 +108,15 @@ class Validator {
     if (a == nullptr || b == nullptr) return;
     const FrameDef *frame_a = find_named(def_.frames, a->frame), *frame_b = find_named(def_.frames, b->frame);
     if (frame_a == nullptr || frame_b == nullptr) return;
+    for (const auto& [shape, frame] : {std::pair(a, frame_a), std::pair(b, frame_b)}) {
+      if (!must_not_move(shape->type) || frame->is_static) continue;
+      add(shape->name, "frame",
+          fmt::format("a {} in contact cannot move, and '{}' does", name_of(shape->type), frame->name),
+          "a frame that does not move, or convex shapes in its place: a mesh is not cut into convex parts; sensors "
+          "take "
+          "it as it is");
+      return;
+    }
     if (frame_a == frame_b) {
       add(pair.name, "shape_b", fmt::format("both shapes are fixed to '{}'", a->frame), "shapes of different frames");
     } else if (frame_a->is_static && frame_b->is_static) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/static_vector.h"
 
@@ -92,6 +93,33 @@ struct ElasticSample {
   BodyArray strain_energy;   // at the mechanics' coordinates [J]
   bool is_constant = false;  // K, D and the point hold for the whole session
   bool operator==(const ElasticSample&) const = default;
+};
+
+inline constexpr std::size_t kMaxSensedBodies = 256;  // limit of bodies with shapes that sensors look at
+inline constexpr std::size_t kPoseNumbers = 13;       // of a body
+inline constexpr std::size_t kMaxSensorEvents = 256;  // of one sample
+
+// Sample from mechanics to sensors.
+struct PoseSample {
+  // by body: position [m], quaternion (w, x, y, z), velocity [m/s], angular velocity [rad/s] in Ground
+  StaticVector<double, kMaxSensedBodies * kPoseNumbers> frame;
+  bool operator==(const PoseSample&) const = default;
+};
+
+// An event of a sensor, docs/models/sensors.md.
+struct SensorEvent {
+  std::uint16_t sensor = 0;       // in the scene's order
+  std::uint16_t watched = 0;      // zone: in the order of `watch`
+  std::uint8_t kind = 0;          // sensors::EventKind
+  double value = 0;               // m, s or m/s, by kind
+  std::array<double, 3> place{};  // m, of a hit
+  bool operator==(const SensorEvent&) const = default;
+};
+
+// Sample from sensors, for observers and the recording.
+struct SensorSample {
+  std::vector<SensorEvent> events;  // at most kMaxSensorEvents
+  bool operator==(const SensorSample&) const = default;
 };
 
 // Scheme of a session's flexible bodies.

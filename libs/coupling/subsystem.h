@@ -31,6 +31,7 @@ struct PartnerSamples {
   const ActuatorSample* actuators = nullptr;
   const FlexibleSample* flexible = nullptr;
   const ElasticSample* elastic = nullptr;
+  const PoseSample* poses = nullptr;
   StepIndex mechanism_age = 0;
   StepIndex actuators_age = 0;
 };
@@ -41,6 +42,8 @@ struct OwnSample {
   ActuatorSample actuators;
   FlexibleSample flexible;
   ElasticSample elastic;
+  PoseSample poses;
+  SensorSample sensors;
 };
 
 // A parameter change of a tick: the value is reached after `over`, linearly, beginning with this step.

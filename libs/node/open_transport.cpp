@@ -1,5 +1,7 @@
 #include "node/open_transport.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "core/failure.h"
@@ -17,6 +19,11 @@ using wire::Topic;
 
 namespace {
 
+transport::Middleware middleware_of(const std::string& name) {
+  const auto found = std::find(std::begin(transport::kMiddlewares), std::end(transport::kMiddlewares), name);
+  return static_cast<transport::Middleware>(found - std::begin(transport::kMiddlewares));
+}
+
 // The keys are those of the role unless the options name others. A process that only reads uses those of an observer.
 std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role role,
                                            const transport::Endpoint& endpoint) {
@@ -24,6 +31,7 @@ std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role r
   require(transport::protect(
       network, {options.keys, options.identity.empty() ? std::string(traits(role).name) : options.identity,
                 options.is_insecure_lan}));
+  network.middleware = middleware_of(options.middleware);
   std::unique_ptr<transport::Transport> opened;
   require(transport::open_transport(network, endpoint, opened));
   return opened;
@@ -34,7 +42,7 @@ std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role r
 std::unique_ptr<transport::Transport> open_transport(Role role, const SessionOptions& options) {
   auto transport =
       open(options, role, {options.session, std::string(traits(role).name), traits(role).writes, traits(role).reads});
-  if (static_cast<std::size_t>(role) >= wire::kRoles) return transport;
+  if (traits(role).needed == transport::Needed::never) return transport;
   return std::make_unique<MeteredTransport>(std::move(transport));
 }
 

@@ -27,6 +27,7 @@ void PhysicsNode::receive(const transport::Received& message, std::int64_t now_n
     case Topic::actuators:
     case Topic::flexible:
     case Topic::elastic:
+    case Topic::poses:
       return receive_sample(message, now_ns);
     case Topic::resend:
       return receive_resend(message.bytes);

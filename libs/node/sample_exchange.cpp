@@ -48,6 +48,7 @@ std::vector<Topic> SampleExchange::topics_written(Role role) {
 void SampleExchange::configure(const SessionMember& member, const ExchangeRules& rules, bool takes_late) {
   rules_ = rules;
   has_flexible_ = member.requires_role(Role::flex);
+  has_sensors_ = member.requires_role(Role::sensor);
   for_each_inbox([&](auto& inbox) {
     if (inbox.reading.reader == own_ && member.requires_role(inbox.reading.writer)) inbox.need(rules);
   });
@@ -80,14 +81,16 @@ void SampleExchange::receive(std::span<const std::byte> bytes, const wire::Heade
 
 bool SampleExchange::find_start(coupling::PartnerSamples& partners) const noexcept {
   return take_start(actuators_, partners.actuators) && take_start(elastic_, partners.elastic) &&
-         take_start(mechanism_, partners.mechanism) && take_start(flexible_, partners.flexible);
+         take_start(mechanism_, partners.mechanism) && take_start(flexible_, partners.flexible) &&
+         take_start(poses_, partners.poses);
 }
 
 bool SampleExchange::find(StepIndex step, coupling::PartnerSamples& partners) const noexcept {
   partners.actuators_age = rules_.age(Topic::actuators, step);
   partners.mechanism_age = rules_.age(Topic::mechanism, step);
   return take_step(actuators_, step, partners.actuators) && take_step(elastic_, step, partners.elastic) &&
-         take_step(mechanism_, step, partners.mechanism) && take_step(flexible_, step, partners.flexible);
+         take_step(mechanism_, step, partners.mechanism) && take_step(flexible_, step, partners.flexible) &&
+         take_step(poses_, step, partners.poses);
 }
 
 void SampleExchange::find_newest(StepIndex step, coupling::PartnerSamples& partners) const noexcept {
@@ -106,17 +109,21 @@ void SampleExchange::find_newest(StepIndex step, coupling::PartnerSamples& partn
 void SampleExchange::probe(SessionMember& member) {
   const wire::Header header = member.header(Phase::join, kJoinStep);
   mechanism_out_.header = actuators_out_.header = flexible_out_.header = elastic_out_.header = header;
+  poses_out_.header = sensors_out_.header = header;
   for (const Outbox& outbox : outboxes_) {
     if (member.is_acknowledged_on(outbox.topic)) continue;
     if (outbox.topic == Topic::mechanism) member.publish(outbox.topic, mechanism_out_);
     if (outbox.topic == Topic::actuators) member.publish(outbox.topic, actuators_out_);
     if (outbox.topic == Topic::flexible) member.publish(outbox.topic, flexible_out_);
     if (outbox.topic == Topic::elastic) member.publish(outbox.topic, elastic_out_);
+    if (outbox.topic == Topic::poses) member.publish(outbox.topic, poses_out_);
+    if (outbox.topic == Topic::sensors) member.publish(outbox.topic, sensors_out_);
   }
 }
 
 template <typename Message>
-void SampleExchange::send(SessionMember& member, Outbox& outbox, StepIndex step, const Message& message) {
+void SampleExchange::send(SessionMember& member, Topic topic, StepIndex step, const Message& message) {
+  Outbox& outbox = *std::find_if(outboxes_.begin(), outboxes_.end(), [&](const Outbox& o) { return o.topic == topic; });
   const bool is_encoded = transport::encode(message, buffer_);
   SLEW_CHECK(is_encoded);
   outbox.sent.keep(step, buffer_);
@@ -130,17 +137,22 @@ void SampleExchange::publish(SessionMember& member, Phase phase, StepIndex step,
     message.sample = sample;
     return message;
   };
+  const auto is_due = [&](Topic topic) { return phase == Phase::running && rules_.age(topic, step) == 0; };
   if (own_ == Role::mechanics) {
     mechanism_out_.state = state;
-    send(member, outboxes_[0], step, fill(mechanism_out_, own.mechanism));
-    const bool is_due = has_flexible_ && phase == Phase::running && rules_.age(Topic::flexible, step) == 0;
-    if (is_due) send(member, outboxes_[1], step, fill(flexible_out_, own.flexible));
+    send(member, Topic::mechanism, step, fill(mechanism_out_, own.mechanism));
+    if (has_flexible_ && is_due(Topic::flexible))
+      send(member, Topic::flexible, step, fill(flexible_out_, own.flexible));
+    if (has_sensors_ && is_due(Topic::poses)) send(member, Topic::poses, step, fill(poses_out_, own.poses));
   } else if (own_ == Role::hydraulics) {
     actuators_out_.state = state;
-    send(member, outboxes_[0], step, fill(actuators_out_, own.actuators));
-  } else {
+    send(member, Topic::actuators, step, fill(actuators_out_, own.actuators));
+  } else if (own_ == Role::flex) {
     elastic_out_.state = state;
-    send(member, outboxes_[0], step, fill(elastic_out_, own.elastic));
+    send(member, Topic::elastic, step, fill(elastic_out_, own.elastic));
+  } else {
+    sensors_out_.state = state;
+    send(member, Topic::sensors, step, fill(sensors_out_, own.sensors));
   }
 }
 

@@ -144,13 +144,14 @@ class SampleExchange {
     SentCache sent;
   };
   template <typename Message>
-  void send(SessionMember& member, Outbox& outbox, StepIndex step, const Message& message);
+  void send(SessionMember& member, wire::Topic topic, StepIndex step, const Message& message);
   template <typename Visit>
   void for_each_inbox(Visit visit) {
     visit(actuators_);
     visit(elastic_);
     visit(mechanism_);
     visit(flexible_);
+    visit(poses_);
   }
   template <typename Visit>
   void for_each_needed(Visit visit) const {
@@ -158,19 +159,23 @@ class SampleExchange {
     if (elastic_.is_needed) visit(elastic_);
     if (mechanism_.is_needed) visit(mechanism_);
     if (flexible_.is_needed) visit(flexible_);
+    if (poses_.is_needed) visit(poses_);
   }
 
   wire::Role own_;
   ExchangeRules rules_;
-  bool has_flexible_ = false;
+  bool has_flexible_ = false, has_sensors_ = false;
   Inbox<wire::ActuatorMessage> actuators_{reading_of(wire::Topic::actuators)};
   Inbox<wire::ElasticMessage> elastic_{reading_of(wire::Topic::elastic)};
   Inbox<wire::MechanismMessage> mechanism_{reading_of(wire::Topic::mechanism)};
   Inbox<wire::FlexibleMessage> flexible_{reading_of(wire::Topic::flexible)};
+  Inbox<wire::PoseMessage> poses_{reading_of(wire::Topic::poses)};
   wire::MechanismMessage mechanism_out_;
   wire::ActuatorMessage actuators_out_;
   wire::FlexibleMessage flexible_out_;
   wire::ElasticMessage elastic_out_;
+  wire::PoseMessage poses_out_;
+  wire::SensorMessage sensors_out_;
   std::vector<Outbox> outboxes_;  // by topics_written()
   std::vector<std::byte> buffer_;
 };

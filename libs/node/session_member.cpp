@@ -512,6 +512,7 @@ void SessionMember::acknowledge(const wire::Header& from, Topic topic, std::int6
 bool SessionMember::must_read(Role reader, Topic topic) const noexcept {
   const bool is_of_flexible_bodies = topic == Topic::flexible || topic == Topic::elastic;
   if (is_of_flexible_bodies && !requires_role(Role::flex)) return false;
+  if (topic == Topic::poses && !requires_role(Role::sensor)) return false;
   return reader != role_ && requires_role(reader) && (transport::readers_of(topic) & bit(reader)) != 0;
 }
 

@@ -1,8 +1,8 @@
 #include "node/session_options.h"
 
 #include <algorithm>
+#include <iterator>
 
-#include "transport/network.h"
 #include "transport/wire.h"
 
 namespace slew::node {
@@ -60,6 +60,12 @@ void add_network_options(options::Command& app, SessionOptions& options) {
   app.flag("--insecure-lan", options.is_insecure_lan,
            "send beyond this machine without keys: any program on that network can read and steer the session")
       .excludes(keys)
+      .group("Network");
+  app.option("--middleware", options.middleware,
+             "DDS of this program and of those that it starts; nodes of different ones take part in one session")
+      .one_of({std::begin(transport::kMiddlewares), std::end(transport::kMiddlewares)})
+      .value_name("DDS")
+      .show_default()
       .group("Network");
 }
 
@@ -134,6 +140,9 @@ std::vector<std::string> network_arguments(const SessionOptions& options) {
   if (!options.keys.empty()) arguments.insert(arguments.end(), {"--keys", options.keys});
   if (!options.identity.empty()) arguments.insert(arguments.end(), {"--identity", options.identity});
   if (options.is_insecure_lan) arguments.emplace_back("--insecure-lan");
+  if (options.middleware != transport::kMiddlewares[0]) {
+    arguments.insert(arguments.end(), {"--middleware", options.middleware});
+  }
   return arguments;
 }
 

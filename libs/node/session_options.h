@@ -7,6 +7,7 @@
 
 #include "node/session_member.h"
 #include "options/options.h"
+#include "transport/network.h"
 #include "transport/roles.h"
 
 namespace slew::node {
@@ -19,6 +20,7 @@ struct SessionOptions {
   std::string keys;                // folder of a key store, see transport/protection.h; empty: none
   std::string identity;            // name of the keys in it; empty: those of the role
   bool is_insecure_lan = false;    // sends beyond this machine without keys
+  std::string middleware = transport::kMiddlewares[0];
 };
 
 struct NodeOptions {
@@ -36,7 +38,7 @@ struct NodeOptions {
   [[nodiscard]] node::JoinOptions join() const;
 };
 
-// --domain, --interface, --peer, --keys, --identity, --insecure-lan.
+// --domain, --interface, --peer, --keys, --identity, --insecure-lan, --middleware.
 void add_network_options(options::Command& app, SessionOptions& options);
 // --session and the network; without a name the verb takes its scene's.
 void add_session_options(options::Command& app, SessionOptions& options, bool is_required);

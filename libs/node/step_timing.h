@@ -53,8 +53,8 @@ class BooksCell {
 struct NodeTiming {
   HdrHistogram release_jitter, execution, cpu_time, wait, response;
   HdrHistogram input_latency;  // io: from a controller's value to the samples that first used it
-  std::array<std::atomic<std::int64_t>, 4> waited_ns{};  // for io (io: for controllers), mechanics, hydraulics, flex
-  std::atomic<std::int64_t> response_recent_ns{0};       // largest since it was last read
+  std::array<std::atomic<std::int64_t>, wire::kRoles> waited_ns{};  // by role; for io itself: for controllers
+  std::atomic<std::int64_t> response_recent_ns{0};                  // largest since it was last read
   std::atomic<std::uint64_t> overruns{0};
   std::atomic<std::uint64_t> longest_overrun{0};  // steps in a row
   std::atomic<std::uint64_t> overrun_run{0};      // steps in a row up to now

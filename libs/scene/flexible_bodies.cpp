@@ -292,7 +292,8 @@ std::uint32_t Scene::flexible_every() const noexcept {
 }
 
 StepIndex Scene::exchange_unit() const noexcept {
-  return std::lcm<StepIndex>(session.exchange_every, has_modes() ? flexible_every() : 1);
+  const StepIndex of_sensors = has_sensors() ? recording.every : 1;
+  return std::lcm(std::lcm<StepIndex>(session.exchange_every, has_modes() ? flexible_every() : 1), of_sensors);
 }
 
 }  // namespace slew::scene

@@ -23,6 +23,7 @@
 #include "scene/scene.h"
 #include "scene/script_reader.h"
 #include "scene/sections.h"
+#include "scene/sensors.h"
 #include "scene/source.h"
 #include "scene/table_file.h"
 #include "scene/units.h"
@@ -62,6 +63,7 @@ class SceneReader {
         if (errors.empty() && !scene_.ports.empty()) check_start(scene_, errors);
       });
     }
+    read_sensors(mechanics_is_sound);
     read_inputs();
     read_outputs();
     if (const Node::Entry* script = root_.find("script")) {
@@ -276,6 +278,14 @@ class SceneReader {
     });
     if (scene_.session.contact == ContactUse::off) scene_.mechanics.contacts.clear();
     return report_.size() == problems;
+  }
+
+  void read_sensors(bool mechanics_is_sound) {
+    const std::size_t problems = report_.size();
+    read_section("sensors");
+    resolve_references();
+    if (report_.size() > problems || !mechanics_is_sound) return;
+    check_problems([&](Problems& errors, Problems&) { check_sensors(scene_, errors); });
   }
 
   // some table or body is empty: rules between elements cannot be checked

@@ -20,6 +20,7 @@
 #include "multibody/model/defs.h"
 #include "scene/defs.h"
 #include "scene/diagnostic.h"
+#include "sensors/sensors.h"
 
 namespace slew::flex {
 struct Reduction;
@@ -67,6 +68,7 @@ struct Scene {
   SessionDef session;
   multibody::MechanicsDef mechanics;
   hydraulics::HydraulicsDef hydraulics;
+  std::vector<sensors::SensorDef> sensors;
   std::vector<InputDef> inputs;  // the position is the channel's index
   ScriptDef script;
   RecordingDef recording;
@@ -84,6 +86,8 @@ struct Scene {
   [[nodiscard]] bool has_mechanics() const noexcept { return !mechanics.bodies.empty(); }
   // True if some body keeps modes; a flex node then takes part.
   [[nodiscard]] bool has_modes() const noexcept;
+  // A sensor node then takes part.
+  [[nodiscard]] bool has_sensors() const noexcept { return !sensors.empty(); }
   // Steps between two samples for and from flexible bodies.
   [[nodiscard]] std::uint32_t flexible_every() const noexcept;
   // Steps after which all nodes have exchanged: the least common multiple of their exchange periods.

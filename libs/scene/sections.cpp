@@ -8,6 +8,7 @@
 #include "multibody/joints/joint_fields.h"
 #include "multibody/model/field_tables.h"
 #include "multibody/motions/motion_fields.h"
+#include "sensors/sensors.h"
 
 namespace slew::scene {
 namespace {
@@ -70,6 +71,27 @@ void* append_input(Scene& scene, const std::string& name, InputType type) {
   return &input;
 }
 
+void* append_sensor(Scene& scene, const std::string& name, sensors::SensorType type) {
+  sensors::SensorDef& sensor = scene.sensors.emplace_back();
+  sensor.name = name;
+  sensor.type = type;
+  return &sensor;
+}
+
+void add_sensors(std::vector<ElementTable>& tables) {
+  const std::span<const sensors::SensorTypeRow> types = sensors::sensor_types();
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    tables.push_back({.section = "sensors",
+                      .type = types[i].name,
+                      .kind = "sensor",
+                      .doc = types[i].doc,
+                      .fields = types[i].fields,
+                      .append = [type = static_cast<sensors::SensorType>(i)](Scene& scene, const std::string& name) {
+                        return append_sensor(scene, name, type);
+                      }});
+  }
+}
+
 void add_own(std::vector<ElementTable>& tables) {
   tables.push_back(
       {.section = "inputs",
@@ -97,6 +119,7 @@ std::vector<ElementTable> make_element_tables() {
   std::vector<ElementTable> tables;
   add_mechanics(tables);
   add_hydraulics(tables);
+  add_sensors(tables);
   add_own(tables);
   return tables;
 }
@@ -187,15 +210,15 @@ const std::vector<SingleTable>& single_tables() {
 const std::vector<std::string_view>& element_sections() {
   static const std::vector<std::string_view> names = {"bodies",     "joints",    "forces",  "dummies", "shapes",
                                                       "contacts",   "frictions", "motions", "gears",   "volumes",
-                                                      "components", "curves",    "inputs",  "plots"};
+                                                      "components", "curves",    "sensors", "inputs",  "plots"};
   return names;
 }
 
 const std::vector<std::string_view>& top_level_keys() {
   static const std::vector<std::string_view> keys = {
-      "scene",   "description", "include", "assets",   "session",   "mechanics", "bodies", "joints",
-      "forces",  "dummies",     "shapes",  "contacts", "frictions", "motions",   "gears",  "hydraulics",
-      "volumes", "components",  "curves",  "inputs",   "script",    "recording", "plots"};
+      "scene",   "description", "include", "assets",   "session",   "mechanics", "bodies",    "joints",
+      "forces",  "dummies",     "shapes",  "contacts", "frictions", "motions",   "gears",     "hydraulics",
+      "volumes", "components",  "curves",  "sensors",  "inputs",    "script",    "recording", "plots"};
   return keys;
 }
 
@@ -207,6 +230,10 @@ std::vector<ElementRef> elements(Scene& scene) {
     refs.push_back(ref(table_of("components", component->type_name()), component->name, component->address()));
   }
   collect(refs, table_of("curves", ""), scene.hydraulics.curves);
+  for (sensors::SensorDef& sensor : scene.sensors) {
+    refs.push_back(ref(table_of("sensors", sensors::sensor_types()[static_cast<std::size_t>(sensor.type)].name),
+                       sensor.name, &sensor));
+  }
   for (InputDef& input : scene.inputs) {
     refs.push_back(ref(table_of("inputs", kInputTypeChoices[static_cast<int>(input.type)]), input.name, &input));
   }

@@ -441,7 +441,8 @@ bool Sensors::search_motion(std::size_t index, std::span<const FrameMotion> fram
       add_hit(index, collisions_[sensor.first], nearest.closing_speed, 0.5 * (nearest.p_a_W + nearest.p_b_W));
       has_hit = true;
     }
-    tau += std::max(nearest.distance, kReached) / mu;
+    // not to the contact itself, where the shapes have no direction from one to the other
+    tau += (nearest.distance - 0.5 * kReached) / mu;
   }
   // the groups stand at the sample again, for the next query
   for (const std::size_t group : {a, b}) {
@@ -523,9 +524,8 @@ void Sensors::read_variables(std::span<double> values) const noexcept {
   }
 }
 
-std::string Sensors::text(const Event& event) const {
-  const SensorDef& def = sensors_[event.sensor].def;
-  const auto watched = [&] { return def.watch[event.watched]; };
+std::string event_text(const SensorDef& def, const Event& event) {
+  const auto watched = [&] { return event.watched < def.watch.size() ? def.watch[event.watched] : std::string("?"); };
   switch (event.kind) {
     case EventKind::close:
       return fmt::format("{}: {:.3g} m, below the limit of {:.3g} m", def.name, event.value, def.limit);

@@ -73,6 +73,9 @@ struct Event {
   math::Vec3 place_W;  // m, of a hit
 };
 
+// "Boom_Cab: 0.482 m, below the limit of 0.5 m"
+[[nodiscard]] std::string event_text(const SensorDef& def, const Event& event);
+
 class Sensors {
  public:
   // Pre-condition: validate() found nothing.
@@ -86,7 +89,6 @@ class Sensors {
   [[nodiscard]] std::size_t failed() const noexcept { return failed_; }
   // Events of the last sample, in the order of the sensors.
   [[nodiscard]] std::span<const Event> events() const noexcept { return events_; }
-  [[nodiscard]] std::string text(const Event& event) const;
 
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept { return variables_; }
   void read_variables(std::span<double> values) const noexcept;

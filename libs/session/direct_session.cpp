@@ -19,6 +19,7 @@ void hand_over(PartnerSamples& partners, Topic topic, const coupling::OwnSample&
   if (topic == Topic::actuators) partners.actuators = &sample.actuators;
   if (topic == Topic::flexible) partners.flexible = &sample.flexible;
   if (topic == Topic::elastic) partners.elastic = &sample.elastic;
+  if (topic == Topic::poses) partners.poses = &sample.poses;
 }
 
 }  // namespace

@@ -70,16 +70,13 @@ class DirectSession {
   [[nodiscard]] std::string failure() const;
 
  protected:  // the tests of saved states save and load between two exchanges
-  static constexpr std::size_t kParts = std::size(wire::kPhysicsRoles);
   // The two samples that mechanics and hydraulics exchange.
   struct Exchanged {
     coupling::MechanismSample mechanism;
     coupling::ActuatorSample actuators;
   };
 
-  static constexpr std::size_t index(wire::Role role) noexcept {
-    return static_cast<std::size_t>(role) - static_cast<std::size_t>(wire::kPhysicsRoles[0]);
-  }
+  static constexpr std::size_t index(wire::Role role) noexcept { return static_cast<std::size_t>(role); }
   [[nodiscard]] coupling::Subsystem* part(wire::Role role) const noexcept {
     return is_physics(role) ? parts_[index(role)].get() : nullptr;
   }
@@ -89,14 +86,14 @@ class DirectSession {
                std::span<const double> controls) noexcept;
 
   SubsystemFamily family_;
-  std::array<std::unique_ptr<coupling::Subsystem>, kParts> parts_;
+  std::array<std::unique_ptr<coupling::Subsystem>, wire::kRoles> parts_;
   node::ExchangeRules rules_;
   SampleAges ages_;  // empty: the ages of the scene's exchange
   // samples of the last steps, by step, where a step uses samples of other instants than its own
   std::vector<Exchanged> history_;
-  std::array<coupling::OwnSample, kParts> now_, next_;  // at t_n, t_{n+1}
-  std::array<StepReport, kParts> reports_{};            // reports of the last step
-  std::array<std::int64_t, kParts> step_ns_{};
+  std::array<coupling::OwnSample, wire::kRoles> now_, next_;  // at t_n, t_{n+1}
+  std::array<StepReport, wire::kRoles> reports_{};            // reports of the last step
+  std::array<std::int64_t, wire::kRoles> step_ns_{};
   std::uint64_t init_hash_ = 0;
 };
 

@@ -1,4 +1,4 @@
-#include "session/distributed_run.h"
+#include "session/run.h"
 
 #include <fmt/format.h>
 #include <poll.h>

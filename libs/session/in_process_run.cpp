@@ -1,4 +1,4 @@
-#include "session/in_process_run.h"
+#include "session/run.h"
 
 #include <algorithm>
 #include <memory>

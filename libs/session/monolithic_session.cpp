@@ -10,6 +10,7 @@
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "monolith/monolith.h"
+#include "sensor_node/sensor_subsystem.h"
 
 namespace slew::session {
 namespace {
@@ -201,6 +202,7 @@ class HydraulicsPart final : public Part<hydraulics_node::HydraulicsSubsystem> {
 
 std::unique_ptr<coupling::Subsystem> SubsystemFamily::make(Role role, const scene::Scene& scene) {
   if (role == Role::flex && scene.has_modes()) return flex_node::make_flex_subsystem(scene);
+  if (role == Role::sensor && scene.has_sensors()) return sensor_node::make_sensor_subsystem(scene);
   const bool is_mechanics = role == Role::mechanics && scene.has_mechanics();
   const bool is_hydraulics = role == Role::hydraulics && scene.has_hydraulics();
   if (!is_mechanics && !is_hydraulics) return nullptr;

@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <map>
 #include <set>
 
 #include "core/failure.h"
+#include "math/vector3.h"
 #include "node/identity.h"
+#include "scene/scene.h"
+#include "sensors/sensors.h"
+#include "session/recorded.h"
 #include "transport/cdr/codec.h"
 #include "transport/wire.h"
 
@@ -33,6 +38,30 @@ std::string lease_text(const wire::ControllerLease& lease) {
   return with_reason(fmt::format("controller {} {} channel {}", lease.controller, what, lease.channel), lease.reason);
 }
 
+// Events of sensors by the names in the recorded scene; none if the scene cannot be read.
+class SensorTexts {
+ public:
+  explicit SensorTexts(const recording::Reader& reader) {
+    try {
+      defs_ = scene::load_text(recorded_scene_text(reader), reader.identity().scene).sensors;
+    } catch (const std::exception&) {
+      // a recording without its description has no names
+    }
+  }
+
+  void add(const wire::SensorMessage& message, std::vector<RecordedEvent>& events) const {
+    for (const coupling::SensorEvent& event : message.sample.events) {
+      if (event.sensor >= defs_.size()) continue;
+      const sensors::Event named{event.sensor, event.watched, static_cast<sensors::EventKind>(event.kind), event.value,
+                                 math::Vec3(event.place)};
+      events.push_back({message.header.step, message.header.epoch, sensors::event_text(defs_[event.sensor], named)});
+    }
+  }
+
+ private:
+  std::vector<sensors::SensorDef> defs_;
+};
+
 }  // namespace
 
 std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
@@ -47,12 +76,16 @@ std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
     if (transport::decode(message.payload, request)) requests[request.request] = std::move(request);
     return Visit::go_on;
   }));
-  filter.topics = {topic(Topic::control_reply), topic(Topic::controller_lease)};
+  filter.topics = {topic(Topic::control_reply), topic(Topic::controller_lease), topic(Topic::sensors)};
+  const SensorTexts sensor_texts(reader);
   std::set<std::uint64_t> answered;  // a reply is resent to a requester that has not received it
   static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
     wire::ControlReply reply;
     wire::ControllerLease lease;
-    if (message.channel->topic == filter.topics[1]) {
+    wire::SensorMessage sensors;
+    if (message.channel->topic == filter.topics[2]) {
+      if (transport::decode(message.payload, sensors)) sensor_texts.add(sensors, events);
+    } else if (message.channel->topic == filter.topics[1]) {
       if (transport::decode(message.payload, lease)) {
         events.push_back({lease.header.step, lease.header.epoch, lease_text(lease)});
       }

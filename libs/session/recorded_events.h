@@ -1,5 +1,5 @@
 // Events of a recorded session besides its steps: requests and io's replies, io's own actions (overruns, load
-// shedding), and changes of the holder of a controller's channel.
+// shedding), changes of the holder of a controller's channel, and events of sensors.
 #pragma once
 
 #include <cstdint>

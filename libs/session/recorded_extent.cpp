@@ -59,46 +59,58 @@ class Runs {
 
 struct Epoch {
   std::optional<StepIndex> states_at, init_at;
-  std::map<std::string, Runs> streams;  // by topic; samples of flexible bodies by number and not by step
+  std::map<std::string, Runs> streams;  // by topic; samples of kEveryKth by number and not by step
 };
 
 bool is_of(const RecordedMessage& message, Topic topic) {
   return message.channel->topic == node::to_text(topic);
 }
 
-// Samples of and for flexible bodies come every k-th step from step 0 on.
-bool is_of_flexible_bodies(const std::string& topic) {
-  return topic == node::to_text(Topic::elastic) || topic == node::to_text(Topic::flexible);
-}
+// Samples of and for flexible bodies and sensors come every k-th step from step 0 on.
+constexpr Topic kEveryKth[] = {Topic::elastic, Topic::flexible, Topic::sensors, Topic::poses};
 
-// k; 1 when there are none but of step 0.
-StepIndex flexible_every(const recording::Reader& reader) {
-  StepIndex every = 0;
+// k by topic; topics that come at every step are not in it.
+using Strides = std::map<std::string, StepIndex>;
+
+Strides strides_of(const recording::Reader& reader) {
+  Strides strides;
+  recording::MessageFilter filter;
+  for (const Topic topic : kEveryKth) {
+    filter.topics.emplace_back(node::to_text(topic));
+    strides[filter.topics.back()] = 0;
+  }
   wire::Header header;
-  require(reader.for_each(only({Topic::elastic, Topic::flexible}), [&](const RecordedMessage& message) {
+  require(reader.for_each(filter, [&](const RecordedMessage& message) {
     if (transport::decode_header(message.payload, header) && header.phase == Phase::running) {
+      StepIndex& every = strides[message.channel->topic];
       every = std::gcd(every, header.step);
     }
     return Visit::go_on;
   }));
-  return std::max<StepIndex>(1, every);
+  // 1 when there are none but of step 0
+  for (auto& [topic, every] : strides) every = std::max<StepIndex>(1, every);
+  return strides;
 }
 
-void take(const RecordedMessage& message, StepIndex every, Epoch& epoch, const wire::Header& header) {
+StepIndex stride_of(const Strides& strides, const std::string& topic) {
+  const auto found = strides.find(topic);
+  return found == strides.end() ? 1 : found->second;
+}
+
+void take(const RecordedMessage& message, const Strides& strides, Epoch& epoch, const wire::Header& header) {
   if (is_of(message, Topic::state)) {
     epoch.states_at = std::min(epoch.states_at.value_or(header.step), header.step);
   } else if (header.phase == Phase::init) {
     epoch.init_at = std::max<StepIndex>(0, header.step);
   } else if (header.phase == Phase::running && header.step >= 0) {
-    const StepIndex unit = is_of_flexible_bodies(message.channel->topic) ? every : 1;
-    epoch.streams[message.channel->topic].add(header.step / unit);
+    epoch.streams[message.channel->topic].add(header.step / stride_of(strides, message.channel->topic));
   }
 }
 
-std::optional<StepIndex> first_step(const Epoch& epoch) {
+std::optional<StepIndex> first_step(const Epoch& epoch, const Strides& strides) {
   // states that follow a gap are no begin
-  const auto is_before_states = [&epoch](const auto& stream) {
-    return !is_of_flexible_bodies(stream.first) && stream.second.oldest() < *epoch.states_at;
+  const auto is_before_states = [&](const auto& stream) {
+    return !strides.contains(stream.first) && stream.second.oldest() < *epoch.states_at;
   };
   const bool has_begun_before =
       epoch.init_at || (epoch.states_at && std::any_of(epoch.streams.begin(), epoch.streams.end(), is_before_states));
@@ -113,25 +125,25 @@ std::optional<StepIndex> first_step(const Epoch& epoch) {
 }  // namespace
 
 RecordedExtent recorded_extent(const recording::Reader& reader) {
-  const StepIndex every = flexible_every(reader);
+  const Strides strides = strides_of(reader);
   std::map<std::uint32_t, Epoch> epochs;
-  const auto filter =
-      only({Topic::tick, Topic::mechanism, Topic::actuators, Topic::flexible, Topic::elastic, Topic::state});
+  const auto filter = only({Topic::tick, Topic::mechanism, Topic::actuators, Topic::flexible, Topic::elastic,
+                            Topic::state, Topic::poses, Topic::sensors});
   wire::Header header;
   require(reader.for_each(filter, [&](const RecordedMessage& message) {
-    if (transport::decode_header(message.payload, header)) take(message, every, epochs[header.epoch], header);
+    if (transport::decode_header(message.payload, header)) take(message, strides, epochs[header.epoch], header);
     return Visit::go_on;
   }));
   RecordedExtent extent;
   for (const auto& [number, epoch] : epochs) {
     if (epoch.streams.empty()) continue;
     extent.epoch = number;
-    extent.first_step = first_step(epoch);
+    extent.first_step = first_step(epoch, strides);
     extent.last_step = -1;
     const StepIndex first = extent.first_step.value_or(0);
     std::optional<StepIndex> complete_to;
     for (const auto& [topic, stream] : epoch.streams) {
-      const StepIndex unit = is_of_flexible_bodies(topic) ? every : 1;
+      const StepIndex unit = stride_of(strides, topic);
       const StepIndex from = (first + unit - 1) / unit;
       const StepIndex complete = (stream.complete_to(from) + 1) * unit - 1;
       complete_to = std::min(complete_to.value_or(complete), complete);

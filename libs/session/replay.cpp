@@ -60,7 +60,7 @@ class Replay {
     }
     start_epoch();
     recording::MessageFilter filter;
-    for (const Topic topic : {Topic::tick, Topic::mechanism, Topic::actuators, Topic::elastic}) {
+    for (const Topic topic : {Topic::tick, Topic::mechanism, Topic::actuators, Topic::elastic, Topic::sensors}) {
       filter.topics.emplace_back(node::to_text(topic));
     }
     const Status status = reader_.for_each(filter, [this](const recording::RecordedMessage& message) {
@@ -90,6 +90,8 @@ class Replay {
       if (transport::decode(message.payload, mechanism_)) take_sample(mechanism_.header, mechanism_.state.state_hash);
     } else if (message.channel->topic == node::to_text(Topic::elastic)) {
       if (transport::decode(message.payload, elastic_)) take_sample(elastic_.header, elastic_.state.state_hash);
+    } else if (message.channel->topic == node::to_text(Topic::sensors)) {
+      if (transport::decode(message.payload, sensors_)) take_sample(sensors_.header, sensors_.state.state_hash);
     } else if (transport::decode(message.payload, actuators_)) {
       take_sample(actuators_.header, actuators_.state.state_hash);
     }
@@ -430,9 +432,7 @@ class Replay {
     has_stopped_ = true;
   }
 
-  static std::size_t index(Role role) {
-    return static_cast<std::size_t>(role) - static_cast<std::size_t>(wire::kPhysicsRoles[0]);
-  }
+  static std::size_t index(Role role) { return static_cast<std::size_t>(role); }
 
   const recording::Reader& reader_;
   OnDifference on_difference_;
@@ -450,7 +450,7 @@ class Replay {
   StepIndex begin_ = 0;  // first step of the epoch
   StepIndex next_ = 0;   // step that the next tick starts
   std::uint64_t init_hash_ = 0;
-  std::array<Hashes, std::size(wire::kPhysicsRoles)> hashes_;
+  std::array<Hashes, wire::kRoles> hashes_;  // by role
   std::map<StepIndex, wire::Tick> waiting_ticks_;
   std::map<std::pair<StepIndex, Role>, std::uint64_t> waiting_samples_;
   bool has_ended_ = false;                                                  // the epoch's END was taken
@@ -461,6 +461,7 @@ class Replay {
   wire::MechanismMessage mechanism_;
   wire::ActuatorMessage actuators_;
   wire::ElasticMessage elastic_;
+  wire::SensorMessage sensors_;
 };
 
 }  // namespace

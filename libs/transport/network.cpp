@@ -1,10 +1,15 @@
 #include "transport/network.h"
 
+#include <dlfcn.h>
+#include <unistd.h>
+
 #include <map>
 #include <mutex>
 #include <utility>
 
+#include "core/child_process.h"
 #include "transport/cyclone/cyclone_transport.h"
+#include "transport/fastdds/open_fastdds.h"
 
 namespace slew::transport {
 namespace {
@@ -33,15 +38,47 @@ Status shared_domain(const Network& network, std::shared_ptr<CycloneDomain>& dom
                            "same network for both, or another domain");
 }
 
-}  // namespace
-
-Status open_transport(const Network& network, const Endpoint& endpoint, std::unique_ptr<Transport>& transport) {
+Status open_cyclone(const Network& network, const Endpoint& endpoint, std::unique_ptr<Transport>& transport) {
   std::shared_ptr<CycloneDomain> domain;
   if (Status status = shared_domain(network, domain); !status.is_ok()) return status;
   std::unique_ptr<CycloneTransport> opened;
   if (Status status = CycloneTransport::open(std::move(domain), endpoint, opened); !status.is_ok()) return status;
   transport = std::move(opened);
   return Status::ok();
+}
+
+std::string path_of_fastdds() {
+  return sibling_program(kFastDdsLibrary);
+}
+
+// The library stays loaded until the process ends.
+Status load_fastdds(OpenFastDds*& open) {
+  const std::string path = path_of_fastdds();
+  if (::access(path.c_str(), R_OK) != 0) {
+    return Status::error(ExitCode::resources,
+                         path +
+                             " is not there: this build has no Fast DDS; nothing was started; install libfastrtps-dev, "
+                             "configure and build again, or use --middleware cyclone");
+  }
+  void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  open = library == nullptr ? nullptr : reinterpret_cast<OpenFastDds*>(::dlsym(library, kOpenFastDds));
+  if (open != nullptr) return Status::ok();
+  return Status::error(ExitCode::resources, std::string("Fast DDS cannot be loaded: ") + ::dlerror() +
+                                                "; nothing was started; install libfastrtps2.9, or use --middleware "
+                                                "cyclone");
+}
+
+}  // namespace
+
+bool is_built(Middleware middleware) {
+  return middleware == Middleware::cyclone || ::access(path_of_fastdds().c_str(), R_OK) == 0;
+}
+
+Status open_transport(const Network& network, const Endpoint& endpoint, std::unique_ptr<Transport>& transport) {
+  if (network.middleware == Middleware::cyclone) return open_cyclone(network, endpoint, transport);
+  OpenFastDds* open = nullptr;
+  if (Status status = load_fastdds(open); !status.is_ok()) return status;
+  return open(network, endpoint, transport);
 }
 
 }  // namespace slew::transport

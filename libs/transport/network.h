@@ -30,11 +30,23 @@ struct SecurityFiles {
   bool operator==(const SecurityFiles&) const = default;
 };
 
+// The DDS of a process. All of them carry the same bytes, so the processes of one session may differ.
+enum class Middleware : std::uint8_t {
+  cyclone,
+  fastdds,         // in a library of its own, loaded at the first use; UDP alone
+  fastdds_shared,  // the same; shared memory to the other Fast DDS processes of this host
+};
+inline constexpr const char* kMiddlewares[] = {"cyclone", "fastdds", "fastdds-shm"};  // names, in that order
+
+// Whether the library of a middleware lies beside this program. It does where its packages were there at the build.
+[[nodiscard]] bool is_built(Middleware middleware);
+
 struct Network {
   std::uint32_t domain = 0;                 // 0 .. kMaxDomain
   std::string interface = "lo";             // name of the network interface, as in `ip link`
   std::vector<std::string> peers;           // addresses or names of the other hosts; this host is always among them
   std::optional<SecurityFiles> security{};  // none: every process that reaches the ports takes part
+  Middleware middleware = Middleware::cyclone;
   bool operator==(const Network&) const = default;
 };
 
@@ -51,8 +63,8 @@ struct Endpoint {
 // Messages sent on this interface go beyond this machine. False too when there is no such interface.
 [[nodiscard]] bool leaves_machine(const std::string& interface);
 
-// Fills `transport`, or reports which interface, peer or number is wrong and which ones exist. Endpoints of one process
-// in one domain share the network of the first. Thread-safe.
+// Fills `transport`, or reports which interface, peer or number is wrong and which ones exist, or which packages the
+// middleware lacks. Endpoints of one process over Cyclone in one domain share the network of the first. Thread-safe.
 [[nodiscard]] Status open_transport(const Network& network, const Endpoint& endpoint,
                                     std::unique_ptr<Transport>& transport);
 

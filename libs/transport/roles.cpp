@@ -28,7 +28,7 @@ constexpr std::array kRoles = {
                 Topic::controller_lease, Topic::control_reply, Topic::health, Topic::resend, Topic::state},
                {Topic::session, Topic::node_status, Topic::mechanism, Topic::actuators, Topic::elastic,
                 Topic::controller_input, Topic::control_request, Topic::health, Topic::resend, Topic::checkpoint,
-                Topic::state},
+                Topic::state, Topic::sensors},
                {}},
     RoleTraits{Role::mechanics,
                kNodeNames[1],
@@ -37,7 +37,7 @@ constexpr std::array kRoles = {
                kPhysicsPriority,
                Topic::mechanism,
                {Topic::node_status, Topic::mechanism, Topic::flexible, Topic::variable_directory, Topic::variables,
-                Topic::health, Topic::resend, Topic::checkpoint},
+                Topic::health, Topic::resend, Topic::checkpoint, Topic::poses},
                {Topic::session, Topic::node_status, Topic::tick, Topic::actuators, Topic::elastic, Topic::health,
                 Topic::resend, Topic::state},
                {}},
@@ -81,7 +81,7 @@ constexpr std::array kRoles = {
                {Topic::controller_input, Topic::control_request, Topic::state},
                {Topic::session, Topic::node_status, Topic::variable_directory, Topic::variables,
                 Topic::controller_lease, Topic::control_reply, Topic::health, Topic::state},
-               {Topic::mechanism, Topic::actuators}},
+               {Topic::mechanism, Topic::actuators, Topic::sensors}},
     RoleTraits{Role::controller,
                "controller",
                Needed::never,
@@ -92,6 +92,17 @@ constexpr std::array kRoles = {
                {Topic::session, Topic::node_status, Topic::variable_directory, Topic::variables,
                 Topic::controller_lease, Topic::control_reply, Topic::health},
                {}},
+    RoleTraits{
+        Role::sensor,
+        kNodeNames[5],
+        Needed::with_sensors,
+        true,
+        0,
+        Topic::sensors,
+        {Topic::node_status, Topic::sensors, Topic::variable_directory, Topic::variables, Topic::health, Topic::resend,
+         Topic::checkpoint},
+        {Topic::session, Topic::node_status, Topic::tick, Topic::poses, Topic::health, Topic::resend, Topic::state},
+        {}},
 };
 
 constexpr bool is_in_order() {
@@ -138,7 +149,8 @@ std::uint32_t readers_of(Topic topic) noexcept {
 }
 
 bool is_sample(Topic topic) noexcept {
-  return topic == Topic::mechanism || topic == Topic::actuators || topic == Topic::flexible || topic == Topic::elastic;
+  return topic == Topic::mechanism || topic == Topic::actuators || topic == Topic::flexible ||
+         topic == Topic::elastic || topic == Topic::poses || topic == Topic::sensors;
 }
 
 }  // namespace slew::transport

@@ -16,7 +16,15 @@ inline constexpr int kPhysicsPriority = 20;
 inline constexpr int kRecorderPriority = 10;  // in `real` pace no node waits for it: it compresses behind the physics
 
 // What a session must have so that a role is required.
-enum class Needed : std::uint8_t { always, with_mechanics, with_hydraulics, with_modes, to_record, never };
+enum class Needed : std::uint8_t {
+  always,
+  with_mechanics,
+  with_hydraulics,
+  with_modes,
+  with_sensors,
+  to_record,
+  never
+};
 
 struct RoleTraits {
   wire::Role role;

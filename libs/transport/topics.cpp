@@ -26,6 +26,8 @@ constexpr std::array<TopicTraits, wire::kTopics> kTraits = {{
     {wire::Topic::resend, "slewring/resend", "slewring::ResendRequest", kDialogueDepth, 0},
     {wire::Topic::checkpoint, "slewring/checkpoint", "slewring::StatePart", kStepDepth, 0},
     {wire::Topic::state, "slewring/state", "slewring::StatePart", kStepDepth, 0},
+    {wire::Topic::poses, "slewring/poses", "slewring::PoseMessage", kStepDepth, 0},
+    {wire::Topic::sensors, "slewring/sensors", "slewring::SensorMessage", kStepDepth, 0},
 }};
 
 constexpr bool topics_are_in_order() {

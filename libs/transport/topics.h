@@ -67,6 +67,10 @@ inline constexpr wire::Topic kTopicOf<wire::FlexibleMessage> = wire::Topic::flex
 template <>
 inline constexpr wire::Topic kTopicOf<wire::ElasticMessage> = wire::Topic::elastic;
 template <>
+inline constexpr wire::Topic kTopicOf<wire::PoseMessage> = wire::Topic::poses;
+template <>
+inline constexpr wire::Topic kTopicOf<wire::SensorMessage> = wire::Topic::sensors;
+template <>
 inline constexpr wire::Topic kTopicOf<wire::VariableDirectory> = wire::Topic::variable_directory;
 template <>
 inline constexpr wire::Topic kTopicOf<wire::VariableBlock> = wire::Topic::variables;

@@ -19,7 +19,7 @@
 
 namespace slew::wire {
 
-inline constexpr std::uint32_t kProtocolVersion = 5;
+inline constexpr std::uint32_t kProtocolVersion = 6;
 inline constexpr std::size_t kMaxChannels = 64;
 inline constexpr std::size_t kMaxCommandsPerTick = 16;
 inline constexpr std::size_t kMaxVariablesPerBlock = 1024;
@@ -40,15 +40,17 @@ inline constexpr std::size_t kMaxStateBytes = 64 * 1024 * 1024;  // per node
 
 using SessionId = std::array<std::uint8_t, 16>;
 
-enum class Role : std::uint8_t { io, mechanics, hydraulics, flex, recorder, observer, controller };
-inline constexpr std::size_t kRoles = 5;  // roles that can be required: io .. recorder
+enum class Role : std::uint8_t { io, mechanics, hydraulics, flex, recorder, observer, controller, sensor };
+inline constexpr std::size_t kRoles = 8;
 
-inline constexpr Role kNodeRoles[] = {Role::io, Role::mechanics, Role::hydraulics, Role::flex, Role::recorder};
-inline constexpr Role kStateRoles[] = {Role::io, Role::mechanics, Role::hydraulics, Role::flex};  // have a state
-inline constexpr Role kPhysicsRoles[] = {Role::mechanics, Role::hydraulics, Role::flex};
+inline constexpr Role kNodeRoles[] = {Role::io,   Role::mechanics, Role::hydraulics,
+                                      Role::flex, Role::sensor,    Role::recorder};
+inline constexpr Role kStateRoles[] = {Role::io, Role::mechanics, Role::hydraulics, Role::flex,
+                                       Role::sensor};                                                   // have a state
+inline constexpr Role kPhysicsRoles[] = {Role::mechanics, Role::hydraulics, Role::flex, Role::sensor};  // subsystems
 
 [[nodiscard]] constexpr bool is_physics(Role role) noexcept {
-  return role >= Role::mechanics && role <= Role::flex;
+  return (role >= Role::mechanics && role <= Role::flex) || role == Role::sensor;
 }
 
 [[nodiscard]] constexpr std::uint32_t bit(Role role) noexcept {
@@ -112,6 +114,19 @@ enum class TickFlag : std::uint32_t {
   fault = 1u << 1,
   shed_view = 1u << 2,      // flex publishes no values of its variables with this step
   shed_variables = 1u << 3  // nor do mechanics and hydraulics
+};
+
+struct PoseMessage {
+  Header header;
+  coupling::PoseSample sample;
+  bool operator==(const PoseMessage&) const = default;
+};
+
+struct SensorMessage {
+  Header header;
+  SampleState state;
+  coupling::SensorSample sample;
+  bool operator==(const SensorMessage&) const = default;
 };
 
 // A parameter change that every node applies at the start of this step.
@@ -357,6 +372,8 @@ enum class Topic : std::uint8_t {
   resend,
   checkpoint,
   state,
+  poses,
+  sensors,
   count
 };
 

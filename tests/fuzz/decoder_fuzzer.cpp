@@ -56,6 +56,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     case wire::Topic::elastic:
       try_as<wire::ElasticMessage>(bytes);
       break;
+    case wire::Topic::poses:
+      try_as<wire::PoseMessage>(bytes);
+      break;
+    case wire::Topic::sensors:
+      try_as<wire::SensorMessage>(bytes);
+      break;
     case wire::Topic::variable_directory:
       try_as<wire::VariableDirectory>(bytes);
       break;

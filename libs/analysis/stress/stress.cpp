@@ -19,8 +19,8 @@
 #include "node/identity.h"
 #include "observer/observer.h"
 #include "scene/cpu_places.h"
-#include "session/distributed_run.h"
 #include "session/interrupts.h"
+#include "session/run.h"
 #include "transport/roles.h"
 
 namespace slew::analysis {

@@ -16,7 +16,7 @@
 #include "analysis/stress/yardstick.h"
 #include "plotting/series.h"
 #include "scene/scene_options.h"
-#include "session/run_outcome.h"
+#include "session/run.h"
 
 namespace slew::analysis {
 

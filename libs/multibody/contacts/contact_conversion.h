@@ -1,4 +1,4 @@
-// From the scene's contact Defs to those of libs/contact. Internal to the library.
+// From the scene's contact Defs to those of libs/contact.
 #pragma once
 
 #include "multibody/model/defs.h"

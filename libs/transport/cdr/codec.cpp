@@ -247,8 +247,21 @@ class Decoder {
   bool is_good_ = true;
 };
 
-template <typename M>
-[[nodiscard]] bool encode_message(const M& message, ByteBuffer& buffer) {
+[[nodiscard]] bool is_little_endian_cdr(Bytes bytes) noexcept {
+  return bytes.size() >= kEncapsulation && bytes[0] == std::byte{0} && bytes[1] == std::byte{1};
+}
+
+}  // namespace
+
+bool decode_header(Bytes bytes, wire::Header& header) {
+  if (!is_little_endian_cdr(bytes)) return false;
+  Decoder decoder(bytes.subspan(kEncapsulation));
+  fields(decoder, header);
+  return decoder.is_good();
+}
+
+template <Message M>
+bool encode(const M& message, ByteBuffer& buffer) {
   Encoder<Count> count{Count{}};
   fields(count, message);
   if (!count.is_within_caps()) return false;
@@ -267,123 +280,50 @@ template <typename M>
   return true;
 }
 
-[[nodiscard]] bool is_little_endian_cdr(Bytes bytes) noexcept {
-  return bytes.size() >= kEncapsulation && bytes[0] == std::byte{0} && bytes[1] == std::byte{1};
-}
-
-template <typename M>
-[[nodiscard]] bool decode_message(Bytes bytes, M& message) {
+template <Message M>
+bool decode(Bytes bytes, M& message) {
   if (!is_little_endian_cdr(bytes)) return false;
   Decoder decoder(bytes.subspan(kEncapsulation));
   fields(decoder, message);
   return decoder.has_finished();
 }
 
-}  // namespace
+template bool encode(const wire::SessionDescription&, ByteBuffer&);
+template bool encode(const wire::NodeStatus&, ByteBuffer&);
+template bool encode(const wire::Tick&, ByteBuffer&);
+template bool encode(const wire::MechanismMessage&, ByteBuffer&);
+template bool encode(const wire::ActuatorMessage&, ByteBuffer&);
+template bool encode(const wire::FlexibleMessage&, ByteBuffer&);
+template bool encode(const wire::ElasticMessage&, ByteBuffer&);
+template bool encode(const wire::PoseMessage&, ByteBuffer&);
+template bool encode(const wire::SensorMessage&, ByteBuffer&);
+template bool encode(const wire::VariableDirectory&, ByteBuffer&);
+template bool encode(const wire::VariableBlock&, ByteBuffer&);
+template bool encode(const wire::ControllerInput&, ByteBuffer&);
+template bool encode(const wire::ControllerLease&, ByteBuffer&);
+template bool encode(const wire::ControlRequest&, ByteBuffer&);
+template bool encode(const wire::ControlReply&, ByteBuffer&);
+template bool encode(const wire::Health&, ByteBuffer&);
+template bool encode(const wire::ResendRequest&, ByteBuffer&);
+template bool encode(const wire::StatePart&, ByteBuffer&);
 
-bool decode_header(Bytes bytes, wire::Header& header) {
-  if (!is_little_endian_cdr(bytes)) return false;
-  Decoder decoder(bytes.subspan(kEncapsulation));
-  fields(decoder, header);
-  return decoder.is_good();
-}
-
-bool encode(const wire::SessionDescription& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::NodeStatus& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::Tick& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::MechanismMessage& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::ActuatorMessage& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::FlexibleMessage& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::ElasticMessage& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::VariableDirectory& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::VariableBlock& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::ControllerInput& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::ControllerLease& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::ControlRequest& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::ControlReply& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::Health& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::ResendRequest& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-bool encode(const wire::StatePart& message, ByteBuffer& buffer) {
-  return encode_message(message, buffer);
-}
-
-bool decode(Bytes bytes, wire::SessionDescription& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::NodeStatus& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::Tick& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::MechanismMessage& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::ActuatorMessage& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::FlexibleMessage& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::ElasticMessage& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::VariableDirectory& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::VariableBlock& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::ControllerInput& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::ControllerLease& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::ControlRequest& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::ControlReply& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::Health& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::ResendRequest& message) {
-  return decode_message(bytes, message);
-}
-bool decode(Bytes bytes, wire::StatePart& message) {
-  return decode_message(bytes, message);
-}
+template bool decode(Bytes, wire::SessionDescription&);
+template bool decode(Bytes, wire::NodeStatus&);
+template bool decode(Bytes, wire::Tick&);
+template bool decode(Bytes, wire::MechanismMessage&);
+template bool decode(Bytes, wire::ActuatorMessage&);
+template bool decode(Bytes, wire::FlexibleMessage&);
+template bool decode(Bytes, wire::ElasticMessage&);
+template bool decode(Bytes, wire::PoseMessage&);
+template bool decode(Bytes, wire::SensorMessage&);
+template bool decode(Bytes, wire::VariableDirectory&);
+template bool decode(Bytes, wire::VariableBlock&);
+template bool decode(Bytes, wire::ControllerInput&);
+template bool decode(Bytes, wire::ControllerLease&);
+template bool decode(Bytes, wire::ControlRequest&);
+template bool decode(Bytes, wire::ControlReply&);
+template bool decode(Bytes, wire::Health&);
+template bool decode(Bytes, wire::ResendRequest&);
+template bool decode(Bytes, wire::StatePart&);
 
 }  // namespace slew::transport

@@ -19,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "transport/topics.h"
 #include "transport/wire.h"
 
 namespace slew::transport {
@@ -26,39 +27,14 @@ namespace slew::transport {
 using Bytes = std::span<const std::byte>;
 using ByteBuffer = std::vector<std::byte>;
 
-[[nodiscard]] bool encode(const wire::SessionDescription& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::NodeStatus& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::Tick& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::MechanismMessage& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::ActuatorMessage& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::FlexibleMessage& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::ElasticMessage& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::VariableDirectory& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::VariableBlock& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::ControllerInput& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::ControllerLease& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::ControlRequest& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::ControlReply& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::Health& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::ResendRequest& message, ByteBuffer& buffer);
-[[nodiscard]] bool encode(const wire::StatePart& message, ByteBuffer& buffer);
+// A message that travels on a topic.
+template <typename M>
+concept Message = (kTopicOf<M> != wire::Topic::count);
 
-[[nodiscard]] bool decode(Bytes bytes, wire::SessionDescription& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::NodeStatus& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::Tick& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::MechanismMessage& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::ActuatorMessage& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::FlexibleMessage& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::ElasticMessage& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::VariableDirectory& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::VariableBlock& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::ControllerInput& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::ControllerLease& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::ControlRequest& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::ControlReply& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::Health& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::ResendRequest& message);
-[[nodiscard]] bool decode(Bytes bytes, wire::StatePart& message);
+template <Message M>
+[[nodiscard]] bool encode(const M& message, ByteBuffer& buffer);
+template <Message M>
+[[nodiscard]] bool decode(Bytes bytes, M& message);
 
 // Decodes the Header of a message that starts with one: the writer's role and the step. All messages but
 // ControllerInput and ControlRequest start with one.

@@ -91,7 +91,7 @@ template <typename S>
 template <typename E>
 inline constexpr std::uint32_t kEnumerators = 0;
 template <>
-inline constexpr std::uint32_t kEnumerators<wire::Role> = 7;
+inline constexpr std::uint32_t kEnumerators<wire::Role> = 8;
 template <>
 inline constexpr std::uint32_t kEnumerators<wire::Phase> = 4;
 template <>
@@ -157,6 +157,31 @@ void fields(A& a, typename A::template Of<coupling::ElasticSample>& m) {
 
 template <typename A>
 void fields(A& a, typename A::template Of<wire::ElasticMessage>& m) {
+  a(m.header, m.state, m.sample);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<coupling::PoseSample>& m) {
+  a(m.frame);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::PoseMessage>& m) {
+  a(m.header, m.sample);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<coupling::SensorEvent>& m) {
+  a(m.sensor, m.watched, m.kind, m.value, m.place[0], m.place[1], m.place[2]);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<coupling::SensorSample>& m) {
+  a(List{m.events, coupling::kMaxSensorEvents});
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::SensorMessage>& m) {
   a(m.header, m.state, m.sample);
 }
 

@@ -1,10 +1,8 @@
 #include "transport/cyclone/cyclone_domain.h"
 
-#include <arpa/inet.h>
 #include <dds/dds.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <ifaddrs.h>
 #include <net/if.h>
 #include <netinet/in.h>
 #include <sys/mman.h>
@@ -26,70 +24,15 @@
 #include <utility>
 
 #include "core/escaped.h"
+#include "transport/host_network.h"
 
 namespace slew::transport {
 namespace {
 
-constexpr std::uint32_t kFirstPort = 7400, kPortsOfDomain = 250;  // RTPS 2.5, 9.6.2
 constexpr std::size_t kFiles = 16;
 constexpr std::size_t kSpace = std::size_t{256} << 20;  // bytes of addresses
 constexpr std::size_t kData = std::size_t{128} << 20;   // bytes of those that can be written
 constexpr std::size_t kThreads = 8;
-
-struct Interface {
-  std::string name;
-  std::string address;  // IPv4
-  bool is_up, is_loopback;
-};
-
-// interfaces with an IPv4 address
-std::vector<Interface> interfaces_of_host() {
-  std::vector<Interface> found;
-  ifaddrs* first = nullptr;
-  if (getifaddrs(&first) != 0) return found;
-  for (const ifaddrs* i = first; i != nullptr; i = i->ifa_next) {
-    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
-    char text[INET_ADDRSTRLEN] = "";
-    inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(i->ifa_addr)->sin_addr, text, sizeof text);
-    found.push_back({i->ifa_name, text, (i->ifa_flags & IFF_UP) != 0, (i->ifa_flags & IFF_LOOPBACK) != 0});
-  }
-  freeifaddrs(first);
-  return found;
-}
-
-std::string listing(const std::vector<Interface>& interfaces) {
-  std::string text;
-  for (const Interface& i : interfaces) {
-    text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", i.name, i.address, i.is_up ? "" : ", down");
-  }
-  return text.empty() ? "none" : text;
-}
-
-Status find_address(const std::string& name, std::string& address) {
-  const std::vector<Interface> interfaces = interfaces_of_host();
-  const auto found = std::ranges::find(interfaces, name, &Interface::name);
-  if (found == interfaces.end()) {
-    return Status::error(
-        ExitCode::resources,
-        fmt::format("network interface '{}' does not exist or has no IPv4 address; there are: {}; choose one with "
-                    "--interface",
-                    name, listing(interfaces)));
-  }
-  if (!found->is_up) {
-    return Status::error(ExitCode::resources,
-                         fmt::format("network interface '{0}' is down; bring it up (ip link set {0} up) or choose "
-                                     "another with --interface",
-                                     name));
-  }
-  address = found->address;
-  return Status::ok();
-}
-
-bool is_host(const std::string& text) {
-  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_' || c == ':';
-  });
-}
 
 // the plugins lie beside the library, which finds them by these names
 std::string security_xml(const SecurityFiles& security) {
@@ -241,12 +184,6 @@ Status confine_to_loopback(const Network& network, const std::vector<OpenSocket>
 
 }  // namespace
 
-bool leaves_machine(const std::string& interface) {
-  const std::vector<Interface> interfaces = interfaces_of_host();
-  const auto found = std::ranges::find(interfaces, interface, &Interface::name);
-  return found != interfaces.end() && !found->is_loopback;
-}
-
 std::string cyclone_xml(const Network& network, const std::string& own_address) {
   std::string peers = fmt::format(R"(<Peer Address="{}"/>)", own_address);
   for (const std::string& peer : network.peers) {
@@ -286,17 +223,7 @@ std::string cyclone_xml(const Network& network, const std::string& own_address) 
 }
 
 Status CycloneDomain::open(const Network& network, std::shared_ptr<CycloneDomain>& domain) {
-  if (network.domain > kMaxDomain) {
-    return Status::error(ExitCode::bad_input,
-                         fmt::format("DDS domain {} is out of range; expected 0 to {}", network.domain, kMaxDomain));
-  }
-  for (const std::string& peer : network.peers) {
-    if (!is_host(peer)) {
-      return Status::error(
-          ExitCode::bad_input,
-          fmt::format("'{}' is not the address or name of a peer; expected for example 10.0.0.2", peer));
-    }
-  }
+  if (Status status = check(network); !status.is_ok()) return status;
   if (Status status = enough_resources(); !status.is_ok()) return status;
   std::string own_address;
   if (Status status = find_address(network.interface, own_address); !status.is_ok()) return status;

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <new>
 
-#include "transport/cyclone/sample_pool.h"
+#include "transport/sample_pool.h"
 
 namespace slew::transport {
 namespace {

@@ -3,24 +3,20 @@
 #include <dds/dds.h>
 #include <fmt/format.h>
 #include <slewring.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
-#include <climits>
 #include <utility>
 
-#include "core/printable.h"
 #include "transport/cyclone/cyclone_qos.h"
 #include "transport/cyclone/cyclone_sertype.h"
+#include "transport/discovered_endpoint.h"
+#include "transport/host_network.h"
 
 namespace slew::transport {
 namespace {
 
 static_assert(wire::kTopics < 31);
-
-constexpr std::size_t kInFlight = 64;  // messages received and not taken, or written and not sent
-constexpr std::int32_t kWriters = 4;   // variables: io, mechanics, hydraulics, flex; inputs: as many controllers
 
 // in the order of wire::Topic
 constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors = {
@@ -41,11 +37,9 @@ constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors 
     &slewring_ResendRequest_desc,
     &slewring_StatePart_desc,
     &slewring_StatePart_desc,
+    &slewring_PoseMessage_desc,
+    &slewring_SensorMessage_desc,
 };
-
-[[nodiscard]] std::string partition_of(const std::string& session) {
-  return "slewring/" + session;
-}
 
 [[nodiscard]] Qos partition_qos(const std::string& session) {
   Qos qos(dds_create_qos());
@@ -56,7 +50,7 @@ constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors 
 }
 
 [[nodiscard]] Qos endpoint_qos(const TopicTraits& topic) {
-  const std::int32_t kept = topic.topic == wire::Topic::variables ? kLastBlocks : topic.kept;
+  const std::int32_t kept = kept_by_writer(topic);
   Qos qos(dds_create_qos());
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMaxBlocking.ns);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, topic.depth);
@@ -76,11 +70,6 @@ constexpr std::int64_t kClockLook = 50'000'000;  // between two checks of the wa
 constexpr std::int64_t kClockStep =
     20'000'000;  // the clock was set back when it is behind by more; slewing is far slower
 
-// step by step, at full rate
-[[nodiscard]] bool has_several_writers(wire::Topic topic) {
-  return topic == wire::Topic::variables || topic == wire::Topic::controller_input;
-}
-
 // Cyclone announces name and number of each process in the whole domain, before keys are agreed on. A participant's own
 // properties replace them, and empty ones are not sent.
 [[nodiscard]] Qos participant_qos(bool is_secured) {
@@ -88,13 +77,6 @@ constexpr std::int64_t kClockStep =
   if (!is_secured) return qos;
   for (const char* property : {"__ProcessName", "__Pid", "__Hostname"}) dds_qset_prop(qos.get(), property, "");
   return qos;
-}
-
-// "role:host:pid", published with every writer
-[[nodiscard]] std::string own_user_data(const std::string& role) {
-  char host[HOST_NAME_MAX + 1] = "";
-  gethostname(host, sizeof host - 1);
-  return fmt::format("{}:{}:{}", role, host, getpid());
 }
 
 // "; " and Cyclone's last message, if there is one
@@ -121,11 +103,6 @@ void on_data_available(dds_entity_t, void* bell) {
   topic.doorbell->ring(topic.bit);
 }
 
-[[nodiscard]] bool is_session_name(const std::string& name) {
-  return !name.empty() && name.size() <= wire::kMaxNameLength && name.find_first_of("*?[]") == std::string::npos &&
-         is_printable(name);
-}
-
 }  // namespace
 
 CycloneTransport::CycloneTransport(std::shared_ptr<CycloneDomain> domain, Endpoint options)
@@ -140,13 +117,7 @@ Status CycloneTransport::open(const Network& network, const Endpoint& options,
 
 Status CycloneTransport::open(std::shared_ptr<CycloneDomain> domain, const Endpoint& options,
                               std::unique_ptr<CycloneTransport>& transport) {
-  const bool is_pure_reader = options.writes.is_empty();
-  if (!is_session_name(options.session) && !(is_pure_reader && options.session == kAnySession)) {
-    return Status::error(
-        ExitCode::bad_input,
-        fmt::format("'{}' is no session name; expected 1 to {} characters without * ? [ ] and control characters",
-                    printable(options.session), wire::kMaxNameLength));
-  }
+  if (Status status = check(options); !status.is_ok()) return status;
   std::unique_ptr<CycloneTransport> opened(new CycloneTransport(std::move(domain), options));
   if (Status status = opened->create(); !status.is_ok()) return status;
   transport = std::move(opened);
@@ -177,10 +148,6 @@ Status CycloneTransport::create() {
   return Status::ok();
 }
 
-bool CycloneTransport::receives_kept(wire::Topic topic) const noexcept {
-  return topic != (options_.is_controller ? wire::Topic::controller_lease : wire::Topic::variables);
-}
-
 Status CycloneTransport::create_endpoints(wire::Topic topic, std::int32_t publisher, std::int32_t subscriber) {
   const auto i = static_cast<std::size_t>(topic);
   const std::size_t room =
@@ -199,8 +166,8 @@ Status CycloneTransport::create_endpoints(wire::Topic topic, std::int32_t publis
     dds_listener_t* listener = dds_create_listener(nullptr);
     dds_lset_data_available_arg(listener, on_data_available, &bells_[i], /*reset_on_invoke=*/true);
     // without keys a reader's depth is that of all its writers together
-    if (has_several_writers(topic)) dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kWriters * traits(topic).depth);
-    if (!receives_kept(topic)) dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth_of_reader(traits(topic)));
+    if (!receives_kept(options_, traits(topic))) dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
     readers_[i] = dds_create_reader(subscriber, handle, qos.get(), listener);
     dds_delete_listener(listener);
     if (readers_[i] < 0) return creation_error(traits(topic).name, readers_[i], *domain_);

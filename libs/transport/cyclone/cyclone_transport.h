@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "core/time.h"
 #include "transport/cyclone/cyclone_domain.h"
+#include "transport/delivery.h"
 #include "transport/doorbell.h"
 #include "transport/topics.h"
 #include "transport/transport.h"
@@ -24,11 +24,6 @@ struct ddsi_serdata;
 struct ddsi_sertype;
 
 namespace slew::transport {
-
-inline constexpr SimDuration kMaxBlocking = milliseconds(20);
-inline constexpr SimDuration kFarewell = milliseconds(250);  // for the last messages to arrive, at the end
-// blocks of variables that a writer keeps for a controller that finds it after the first ticks of its loop's delay
-inline constexpr std::int32_t kLastBlocks = 128;
 
 // The receiving thread's arguments to ring for a topic.
 struct TopicBell {
@@ -64,7 +59,6 @@ class CycloneTransport final : public Transport {
 
   CycloneTransport(std::shared_ptr<CycloneDomain> domain, Endpoint options);
   [[nodiscard]] Status create();
-  [[nodiscard]] bool receives_kept(wire::Topic topic) const noexcept;
   [[nodiscard]] Status create_endpoints(wire::Topic topic, std::int32_t publisher, std::int32_t subscriber);
   [[nodiscard]] bool refill();
   void look_at_the_clock() noexcept;

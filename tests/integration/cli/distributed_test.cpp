@@ -51,13 +51,15 @@ TEST_F(Distributed, CranesHaveTheSameHashesAsInOneProcess) {
   struct Case {
     std::string name;
     std::vector<std::string> settings;
-    std::size_t nodes, hashes;  // mechanics and hydraulics at every step, INIT; flex at every tenth or every step, INIT
+    std::size_t nodes, hashes;  // mechanics and hydraulics at every step, INIT; flex at every tenth or every step,
+                                // INIT; sensors at every tenth
   };
   // so that the scripts have moved the valves
   const std::size_t steps = rounds<std::size_t>(1000, 2000), samples = steps + 1;
   std::vector<Case> cases = {{"truck_crane", {"session.exchange_every=5"}, 4, 2 * samples + 1},
                              {"truck_crane_flexible", {"session.flexible=every_step"}, 5, 3 * samples + 2},
-                             {"truck_crane_segmented", {}, 4, 2 * samples + 1}};
+                             {"truck_crane_segmented", {}, 4, 2 * samples + 1},
+                             {"truck_crane_sensors", {}, 5, 2 * samples + 1 + steps / 10 + 1}};
   if (is_nightly()) {
     cases.insert(cases.end(),
                  {{"truck_crane", {}, 4, 2 * samples + 1},

@@ -17,15 +17,18 @@ SampleHashes sample_hashes(const std::filesystem::path& recording) {
     hashes.emplace(std::tuple(header.epoch, header.step, header.role), hash);
   };
   recording::MessageFilter filter;
-  filter.topics = {"mechanism", "actuators", "elastic"};
+  filter.topics = {"mechanism", "actuators", "elastic", "sensors"};
   const Status read = reader->for_each(filter, [&](const recording::RecordedMessage& message) {
     wire::MechanismMessage mechanism;
     wire::ActuatorMessage actuators;
     wire::ElasticMessage elastic;
+    wire::SensorMessage sensors;
     if (message.channel->topic == "mechanism" && transport::decode(message.payload, mechanism)) {
       keep(mechanism.header, mechanism.state.state_hash);
     } else if (message.channel->topic == "elastic" && transport::decode(message.payload, elastic)) {
       keep(elastic.header, elastic.state.state_hash);
+    } else if (message.channel->topic == "sensors" && transport::decode(message.payload, sensors)) {
+      keep(sensors.header, sensors.state.state_hash);
     } else if (transport::decode(message.payload, actuators)) {
       keep(actuators.header, actuators.state.state_hash);
     }

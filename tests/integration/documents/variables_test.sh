@@ -24,7 +24,7 @@ done > "$scratch/wrong"
 for scene in "${scenes[@]}"; do "$slewring" variables "$scene" 2> /dev/null; done |
   awk '$1 != "variable" {
     name = $1; $1 = ""; $NF = ""; gsub(/^ +| +$/, "")
-    if (name !~ /^(mechanics|hydraulics)\./) { sub(/^[^.]*/, "El", name); sub(/\.point[1-8]\./, ".pointN.", name); sub(/\.Node[0-9]+\.deflection/, ".NodeN.deflection", name); sub(/\.Element[0-9]+\.Node[0-9]+\.Point[0-9]+\./, ".ElementE.NodeN.PointP.", name); sub(/\.(Node|Segment|Connector)[0-9]+\./, ".", name); sub(/modal_coordinate_[0-9]+/, "modal_coordinate_k", name); sub(/modal_velocity_[0-9]+/, "modal_velocity_k", name); sub(/\.[wxyz]$/, "", name) }
+    if (name !~ /^(mechanics|hydraulics)\./) { sub(/^[^.]*/, "El", name); sub(/\.point[1-8]\./, ".pointN.", name); sub(/\.Node[0-9]+\.deflection/, ".NodeN.deflection", name); sub(/\.Element[0-9]+\.Node[0-9]+\.Point[0-9]+\./, ".ElementE.NodeN.PointP.", name); sub(/\.(Node|Segment|Connector)[0-9]+\./, ".", name); sub(/modal_coordinate_[0-9]+/, "modal_coordinate_k", name); sub(/modal_velocity_[0-9]+/, "modal_velocity_k", name); sub(/\.[wxyz]$/, "", name); sub(/^El\.[A-Za-z0-9_]+\.inside$/, "El.watched.inside", name); sub(/^El\.[A-Za-z0-9_]+\.time$/, "El.watched.time", name) }
     print name "\t" $0 }' | sort -u > "$scratch/variables"
 
 # quantities and the text that holds the units: the second column of a row, or the third

@@ -179,7 +179,7 @@ FaultyTransport::FaultyTransport(transport::Transport& transport, Role self, con
       clock_(clock),
       plan_(plan),
       count_(count),
-      random_(plan.seed * wire::kRoles + static_cast<std::uint64_t>(self)) {}
+      random_(plan.seed * 5 + static_cast<std::uint64_t>(self)) {}  // nodes of the session: io to recorder
 
 bool FaultyTransport::take(transport::Received& message) {
   fetch();

@@ -46,6 +46,7 @@ LIST
   package_list test << 'LIST'
 libslewring-absent-dev  header slewring_absent/absent.h
 LIST
+  package_list fastdds <<< 'bash command bash'
 }
 
 # state: everything in the tree with its content
@@ -121,7 +122,7 @@ missing_as_root() {
 
 package_lists() {
   local list
-  for list in run test peers fuzz; do
+  for list in run test fastdds peers fuzz; do
     awk -v list="$list" '
       /^#/ || NF == 0 { next }
       NF != 3 || ($2 != "command" && $2 != "header") { print list ": " $0; wrong = 1 }
@@ -189,6 +190,7 @@ help() {
 failed_test() {
   package_list run < /dev/null
   package_list test < /dev/null
+  package_list fastdds < /dev/null
   mkdir -p "$tree/tests/unit/math"
   : > "$tree/tests/unit/math/CMakeLists.txt"
   stand_in cmake

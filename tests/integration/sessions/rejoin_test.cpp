@@ -173,7 +173,7 @@ class ReplacedFlex : public ::testing::TestWithParam<FlexLoss> {
     Observer& observer = session.observer();
     session.start(Role::io);
     session.start(Role::recorder);
-    for (const Role role : wire::kPhysicsRoles) session.start(role, files_);
+    for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex}) session.start(role, files_);
     EXPECT_TRUE(observer.wait_for_step(300)) << session.errors();
     for (const Role role : lost) session.node(role).send(SIGKILL);
     for (const Role role : lost) {

@@ -75,9 +75,9 @@ class BytesOf : public ::testing::Test {};
 
 using Pairs = ::testing::Types<testing::SessionDescriptionPair, testing::NodeStatusPair, testing::TickPair,
                                testing::MechanismPair, testing::ActuatorPair, testing::FlexiblePair,
-                               testing::ElasticPair, testing::DirectoryPair, testing::BlockPair, testing::InputPair,
-                               testing::LeasePair, testing::RequestPair, testing::ReplyPair, testing::HealthPair,
-                               testing::ResendPair, testing::StatePair>;
+                               testing::ElasticPair, testing::PosePair, testing::SensorPair, testing::DirectoryPair,
+                               testing::BlockPair, testing::InputPair, testing::LeasePair, testing::RequestPair,
+                               testing::ReplyPair, testing::HealthPair, testing::ResendPair, testing::StatePair>;
 TYPED_TEST_SUITE(BytesOf, Pairs);
 
 TYPED_TEST(BytesOf, ArriveFieldByFieldInTheGeneratedTypeAndComeBackTheSame) {
@@ -121,6 +121,8 @@ TEST(IdlCaps, AreTheConstantsOfTheMessages) {
   EXPECT_EQ(slewring_kProtocolVersion, wire::kProtocolVersion);
   EXPECT_EQ(slewring_kMaxPorts, coupling::kMaxPorts);
   EXPECT_EQ(slewring_kMaxPortPairs, coupling::PortMatrix::capacity());
+  EXPECT_EQ(slewring_kMaxPoseNumbers, coupling::kMaxSensedBodies * coupling::kPoseNumbers);
+  EXPECT_EQ(slewring_kMaxSensorEvents, coupling::kMaxSensorEvents);
   EXPECT_EQ(slewring_kMaxChannels, wire::kMaxChannels);
   EXPECT_EQ(slewring_kMaxCommandsPerTick, wire::kMaxCommandsPerTick);
   EXPECT_EQ(slewring_kMaxVariablesPerBlock, wire::kMaxVariablesPerBlock);

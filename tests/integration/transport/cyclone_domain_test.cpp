@@ -73,7 +73,7 @@ TEST(CycloneSockets, OfTheDomainReceiveFromLoopbackAloneAndThoseOfTheProgramAreL
 
 TEST(CycloneMessages, AreSilentAboutAnEndpointThatCannotBeMatchedYet) {
   CycloneLog log;
-  const auto write = [&](const std::string& line) { log.write(line.data(), line.size()); };
+  const auto write = [&](const std::string& line) { log.write(line); };
   ::testing::internal::CaptureStderr();
   write("Remote secure participant 8457bbc2:e7e764c:2db260e0:1c1 not allowed\n");
   EXPECT_EQ(log.last_line(), "");

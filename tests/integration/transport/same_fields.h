@@ -22,6 +22,7 @@ bool same(const slewring_Asset& a, const wire::Asset& b);
 bool same(const slewring_GivenUp& a, const wire::GivenUp& b);
 bool same(const slewring_Heard& a, const wire::Heard& b);
 bool same(const slewring_VariableEntry& a, const wire::VariableEntry& b);
+bool same(const slewring_SensorEvent& a, const coupling::SensorEvent& b);
 
 template <typename Sequence, typename V>
 bool same_list(const Sequence& theirs, const V& ours) {
@@ -87,6 +88,19 @@ inline bool same(const slewring_ElasticSample& a, const coupling::ElasticSample&
 
 inline bool same(const slewring_ElasticMessage& a, const wire::ElasticMessage& b) {
   return same(a.header, b.header) && same(a.state, b.state) && same(a.sample, b.sample);
+}
+
+inline bool same(const slewring_PoseMessage& a, const wire::PoseMessage& b) {
+  return same(a.header, b.header) && same_numbers(a.sample.frame, b.sample.frame);
+}
+
+inline bool same(const slewring_SensorEvent& a, const coupling::SensorEvent& b) {
+  return a.sensor == b.sensor && a.watched == b.watched && a.kind == b.kind && a.value == b.value &&
+         std::equal(b.place.begin(), b.place.end(), a.place);
+}
+
+inline bool same(const slewring_SensorMessage& a, const wire::SensorMessage& b) {
+  return same(a.header, b.header) && same(a.state, b.state) && same_list(a.sample.events, b.sample.events);
 }
 
 inline bool same(const slewring_Command& a, const wire::Command& b) {

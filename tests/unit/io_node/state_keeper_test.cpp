@@ -98,7 +98,7 @@ TEST_F(Keeper, LoadsStatesOfOneStepWithinTheSession) {
 }
 
 TEST_F(Keeper, HoldsARoleOnlyWithAStateFromWhichNoSampleIsMissing) {
-  SampleProgress samples(config.session, 1, member.session().required_roles);
+  SampleProgress samples(config.session, 1, 10, member.session().required_roles);
   samples.receive(Role::mechanics, 20, 20);
   EXPECT_FALSE(keeper.hold_role(Role::hydraulics, 20, samples, 0)) << "there is no state";
   ResumeState states;

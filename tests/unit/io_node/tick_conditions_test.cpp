@@ -23,7 +23,7 @@ scene::SessionDef free_pace() {
 }
 
 TEST(SampleProgress, ATickNeedsTheSamplesOfTheWindow) {
-  SampleProgress samples(free_pace(), 1, kRoles);
+  SampleProgress samples(free_pace(), 1, 10, kRoles);
   samples.restart(0);
   EXPECT_FALSE(samples.missing(2)) << "tick 2 needs sample -1";
   EXPECT_EQ(samples.missing(3), Role::mechanics);
@@ -35,7 +35,7 @@ TEST(SampleProgress, ATickNeedsTheSamplesOfTheWindow) {
 }
 
 TEST(SampleProgress, ALaterSampleProvesTheEarlierOnes) {
-  SampleProgress samples({}, 1, kRoles);
+  SampleProgress samples({}, 1, 10, kRoles);
   samples.restart(0);
   EXPECT_EQ(samples.receive(Role::mechanics, 2, 2), Receipt::later);
   EXPECT_EQ(samples.receive(Role::mechanics, 1, 2), Receipt::repeated);
@@ -45,17 +45,17 @@ TEST(SampleProgress, ALaterSampleProvesTheEarlierOnes) {
 TEST(SampleProgress, OnlyAFreeRunningNodeCanBeAheadOfTheTicks) {
   scene::SessionDef session;
   session.window = 5;
-  SampleProgress lockstep(session, 1, kRoles);
+  SampleProgress lockstep(session, 1, 10, kRoles);
   EXPECT_EQ(lockstep.receive(Role::mechanics, 11, 10), Receipt::too_far_ahead);
   EXPECT_EQ(lockstep.newest(Role::mechanics), kJoinStep);
   session.mode = scene::ExchangeMode::free_running;
-  SampleProgress free_running(session, 1, kRoles);
+  SampleProgress free_running(session, 1, 10, kRoles);
   EXPECT_EQ(free_running.receive(Role::mechanics, 15, 10), Receipt::later);
   EXPECT_EQ(free_running.receive(Role::mechanics, 16, 10), Receipt::too_far_ahead);
 }
 
 TEST(SampleProgress, AFlexNodeFollowsAndDoesNotDelayTheStatistics) {
-  SampleProgress samples({}, 4, kRoles | bit(Role::flex));
+  SampleProgress samples({}, 4, 10, kRoles | bit(Role::flex));
   samples.restart(0);
   for (const Role role : {Role::mechanics, Role::hydraulics}) samples.receive(role, 100, 100);
   EXPECT_EQ(samples.needed(Role::flex, 63), kJoinStep);

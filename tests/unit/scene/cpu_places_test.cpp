@@ -24,7 +24,7 @@ TEST(CpuPlaces, WhatIsNoneIsNamed) {
   std::vector<CpuPlace> places;
   const auto text = [&places](const char* list) { return parse_cpu_places(list, places).text; };
   EXPECT_EQ(text("mechanics"), "'mechanics' is no role=number");
-  EXPECT_EQ(text("mechanic=1"), "'mechanic' is no role: io, mechanics, hydraulics, flex, recorder");
+  EXPECT_EQ(text("mechanic=1"), "'mechanic' is no role: io, mechanics, hydraulics, flex, recorder, sensor");
   EXPECT_EQ(text("mechanics=one"), "'one' is no number of a processor");
   EXPECT_EQ(text("mechanics=-1"), "'-1' is no number of a processor");
   EXPECT_EQ(text("mechanics=1, mechanics=0"), "'mechanics' stands there twice");

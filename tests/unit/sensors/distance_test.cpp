@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "math/rotation.h"
@@ -146,6 +147,81 @@ TEST(Distance, OfBoxesIsThatOfTheirTriangles) {
     const double expected = surface_distance(triangles_of(box_mesh(1, 2, 0.5), a), triangles_of(box_mesh(2, 1, 1), b));
     EXPECT_NEAR(distance_of(pair(box(1, 2, 0.5), box(2, 1, 1), clearance()), a, b), expected, kSearch);
     EXPECT_NEAR(distance_of(pair(box_mesh(1, 2, 0.5), box(2, 1, 1), clearance()), a, b), expected, kSearch);
+  }
+}
+
+// Many corners are equally far in such places, where a search may end too early: turns by quarters, centres on a grid.
+TEST(Distance, OfShapesAlongTheAxesIsThatOfTheirFaces) {
+  Draw draw(11);
+  const auto edges_of = [](const Mat3& R, Vec3 size) {
+    Triple half{};
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) half[k] += 0.5 * std::fabs(R(k, j)) * size[j];
+    }
+    return half;
+  };
+  const auto quarters = [&] { return math::rotation_x(M_PI_2 * std::floor(draw.number(0, 4))); };
+  for (int i = 0; i < 200; ++i) {
+    SCOPED_TRACE(i);
+    const auto grid = [&] { return 0.5 * std::floor(draw.number(-6, 7)); };
+    const FrameMotion a{{}, quarters(), {}, {}}, b{{grid(), grid(), grid()}, quarters(), {}, {}};
+    const Triple half_a = edges_of(a.R_W, {0.2, 1, 1}), half_b = edges_of(b.R_W, {1, 2, 0.5});
+    Triple gap{}, from_centre{};
+    for (int k = 0; k < 3; ++k) {
+      gap[k] = std::max(std::fabs(b.p_W[k]) - half_a[k] - half_b[k], 0.0);
+      from_centre[k] = std::max(std::fabs(b.p_W[k]) - half_a[k], 0.0);
+    }
+    for (const ShapeDef& first : {box(0.2, 1, 1), box_mesh(0.2, 1, 1)}) {
+      EXPECT_NEAR(distance_of(pair(first, box(1, 2, 0.5), clearance()), a, b), norm(Vec3(gap)), kSearch);
+      EXPECT_NEAR(distance_of(pair(first, box_mesh(1, 2, 0.5), clearance()), a, b), norm(Vec3(gap)), kSearch);
+      ShapeDef surface = box_mesh(1, 2, 0.5);
+      surface.type = ShapeType::triangle_mesh;
+      if (norm(Vec3(gap)) > 0) {
+        EXPECT_NEAR(distance_of(pair(first, surface, clearance()), a, b), norm(Vec3(gap)), kSearch);
+      }
+      EXPECT_NEAR(distance_of(pair(first, sphere(0.1), clearance()), a, b),
+                  std::max(norm(Vec3(from_centre)) - 0.1, 0.0), kSearch);
+    }
+  }
+}
+
+// places, found among some 50,000 each, where a search ends 14 mm and 47 mm too early
+TEST(Distance, OfBoxesHoldsWhereASearchEndsTooEarly) {
+  struct Place {
+    Vec3 size;
+    math::Quaternion a, b;
+    Vec3 p_B;
+  };
+  const Place places[] = {
+      {{4.170006376471302, 1.1218030106059735, 2.6425704547955102},
+       {0.51967006069132826, 0.38605855922831944, -0.09869375281282089, 0.67769007605895371},
+       {-0.24186840696147516, -0.8997931174641044, -0.54824890859441466, 0.92986919399803258},
+       {-2.3625647223531248, 1.6934648851677034, -2.71290822748472}},
+      {{3.8856237181550974, 1.5366003834653679, 17.906244704098551},
+       {0.3803957347253708, -0.81145024607760097, 0.38445431309733191, -0.26290247648408194},
+       {-0.17783220990414239, 0.4893030862669463, 0.15261818609929634, -0.64712774221189207},
+       {7.1648973311693611, 7.1648973311693611, 7.1648973311693611}},
+  };
+  for (const auto& [size, q_a, q_b, p_B] : places) {
+    const auto rotation = [](const math::Quaternion& q) {
+      const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+      return math::rotation_of({q.w / length, q.x / length, q.y / length, q.z / length});
+    };
+    const FrameMotion a{{}, rotation(q_a), {}, {}}, b{p_B, rotation(q_b), {}, {}};
+    const ShapeDef mesh = box_mesh(size[0], size[1], size[2]), solid = box(size[0], size[1], size[2]);
+    const double expected = surface_distance(triangles_of(mesh, a), triangles_of(mesh, b));
+    ASSERT_GT(expected, 0.1);
+    EXPECT_NEAR(distance_of(pair(solid, solid, clearance()), a, b), expected, kSearch);
+  }
+}
+
+TEST(Distance, IsNotFoundBetweenPlacesThatAreNotFinite) {
+  for (const double x : {std::numeric_limits<double>::quiet_NaN(), 1e200}) {
+    for (const ShapeDef& second : {box(1, 1, 1), sphere(1)}) {
+      Sensors sensors(pair(box(1, 2, 1), second, clearance()));
+      EXPECT_FALSE(sensors.observe(at({}, {{x, 0, 0}, Mat3::identity(), {}, {}})));
+      EXPECT_EQ(sensors.failed(), 0U);
+    }
   }
 }
 

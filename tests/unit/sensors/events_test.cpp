@@ -38,7 +38,7 @@ TEST(Clearance, IsCloseBelowItsLimitUntilItIsBeyondTheHysteresis) {
     ASSERT_TRUE(sensors.observe(at(at_x(x))));
     EXPECT_EQ(words(sensors), expected) << x;
   }
-  EXPECT_EQ(sensors.text(sensors.events()[0]), "S: 0.25 m, below the limit of 0.5 m");
+  EXPECT_EQ(event_text(sensor, sensors.events()[0]), "S: 0.25 m, below the limit of 0.5 m");
   EXPECT_EQ(value(sensors, "S.close"), 1);
 }
 
@@ -53,7 +53,7 @@ TEST(Zone, TellsWhoEntersStaysAndLeaves) {
   for (const auto& [x, expected] : steps) {
     ASSERT_TRUE(sensors.observe(at(at_x(x))));
     EXPECT_EQ(words(sensors), expected) << x;
-    for (const Event& event : sensors.events()) texts.push_back(sensors.text(event));
+    for (const Event& event : sensors.events()) texts.push_back(event_text(zone, event));
   }
   const std::vector<std::string> expected = {"S: A entered", "S: A has stayed for 0.06 s", "S: A left after 0.08 s",
                                              "S: A entered"};
@@ -91,12 +91,12 @@ TEST(Collision, GivesSpeedAndPlaceOfAHit) {
   EXPECT_DOUBLE_EQ(value(sensors, "S.speed"), 3);
   EXPECT_EQ(value(sensors, "S.touching"), 1);
   EXPECT_NEAR(norm(point(sensors, "S.place") - Vec3(1, 2, -0.01)), 0, 1e-12);
-  EXPECT_EQ(sensors.text(sensors.events()[0]), "S: hit at 3 m/s, at 1.000 2.000 -0.010 m");
+  EXPECT_EQ(event_text(sensor, sensors.events()[0]), "S: hit at 3 m/s, at 1.000 2.000 -0.010 m");
   ASSERT_TRUE(sensors.observe(at(falling(0.48))));
   EXPECT_EQ(words(sensors), "");
   ASSERT_TRUE(sensors.observe(at(falling(0.51))));
   EXPECT_EQ(words(sensors), "apart");
-  EXPECT_EQ(sensors.text(sensors.events()[0]), "S: apart after 0.02 s");
+  EXPECT_EQ(event_text(sensor, sensors.events()[0]), "S: apart after 0.02 s");
   EXPECT_EQ(value(sensors, "S.hits"), 1);
 }
 
@@ -122,6 +122,19 @@ TEST(ContinuousCollision, FindsABallThatPassesAPlateBetweenTwoSamples) {
   ASSERT_TRUE(blind.observe(at(at_x(-0.13, 40))));
   ASSERT_TRUE(blind.observe(at(at_x(0.27, 40))));
   EXPECT_EQ(words(blind), "");
+}
+
+// a face that meets a face in parallel, where the last stride could end in the contact
+TEST(ContinuousCollision, HasTheSpeedOfFacesThatMeetFlat) {
+  for (const double start : {-1.6, -1.9, -2.13}) {
+    Sensors sensors(pair(box(1, 1, 1), box(1, 2, 2), continuous()));
+    ASSERT_TRUE(sensors.observe(at(at_x(start, 60))));
+    ASSERT_TRUE(sensors.observe(at(at_x(start + 0.6, 60))));
+    ASSERT_TRUE(sensors.observe(at(at_x(start + 1.2, 60))));
+    EXPECT_EQ(value(sensors, "S.hits"), 1) << start;
+    EXPECT_NEAR(value(sensors, "S.speed"), 60, 1e-9) << start;
+    EXPECT_NEAR(value(sensors, "S.place.x"), -0.5, 1e-4) << start;
+  }
 }
 
 // a bar of 2 m turns by 1.2 rad about the origin of its frame, past a thin post

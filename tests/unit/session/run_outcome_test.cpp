@@ -1,5 +1,5 @@
 // Which of the nodes' messages a person gets to see.
-#include "session/run_outcome.h"
+#include "session/run.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "transport/cyclone/sample_pool.h"
+#include "transport/sample_pool.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -4,13 +4,12 @@
 #include <algorithm>
 
 #include "tests/integration/transport/child_process.h"
+#include "tests/integration/transport/middlewares.h"
 #include "tests/integration/transport/waiting.h"
-#include "tests/support/test_domain.h"
 #include "transport/cdr/codec.h"
-#include "transport/cyclone/cyclone_transport.h"
 
 namespace slew::transport {
-namespace cyclone_loss_test {
+namespace middleware_loss_test {
 
 using testing::ChildProcess;
 using testing::eventually;
@@ -23,21 +22,21 @@ constexpr StepIndex kStopAt = 1000;
 constexpr StepIndex kStopFor = 800;   // steps: 200 ms
 constexpr StepIndex kReported = 200;  // steps from one report of the reader to the next
 
-bool report(CycloneTransport& transport) {
+bool report(Transport& transport) {
   ByteBuffer bytes;
   return encode(wire::NodeStatus{}, bytes) && transport.publish(Topic::node_status, bytes).is_ok();
 }
 
 // Publishes a status when the writer has been discovered: all its later messages arrive.
-bool publish_ready(CycloneTransport& transport) {
+bool publish_ready(Transport& transport) {
   return eventually([&] { return !transport.discovered_writers(Topic::tick).empty(); }) && report(transport);
 }
 
 // the recorder's place: every step of both topics, in order
-bool receive_every_step(std::uint32_t domain) {
-  std::unique_ptr<CycloneTransport> transport;
+bool receive_every_step(const Network& network) {
+  std::unique_ptr<Transport> transport;
   const Endpoint options{"loss", "recorder", {Topic::node_status}, {Topic::tick, Topic::variables}};
-  if (!CycloneTransport::open(Network{domain, "lo", {}}, options, transport).is_ok()) return false;
+  if (!open_transport(network, options, transport).is_ok()) return false;
   if (!publish_ready(*transport)) return false;
   StepIndex next_tick = 0;
   StepIndex next_block = 0;
@@ -65,13 +64,11 @@ enum class Stream : std::uint8_t {
   paced,    // as in a session: a reader that gets no processor for 50 ms behind its stop loses steps
 };
 
-void expect_no_step_lost(Stream stream) {
-  const testing::TestDomain domain;
-  ChildProcess recorder([&] { return receive_every_step(domain.number()); });
-  std::unique_ptr<CycloneTransport> transport;
+void expect_no_step_lost(const Network& network, Stream stream) {
+  ChildProcess recorder([&] { return receive_every_step(network); });
+  std::unique_ptr<Transport> transport;
   const Status status =
-      CycloneTransport::open(Network{domain.number(), "lo", {}},
-                             {"loss", "io", {Topic::tick, Topic::variables}, {Topic::node_status}}, transport);
+      open_transport(network, {"loss", "io", {Topic::tick, Topic::variables}, {Topic::node_status}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   Received received;
   ASSERT_TRUE(next(*transport, received));
@@ -100,18 +97,21 @@ void expect_no_step_lost(Stream stream) {
   EXPECT_EQ(recorder.wait(), 0);
 }
 
-TEST(CycloneLoss, AReaderStoppedFor800StepsLosesNothing) {
-  expect_no_step_lost(Stream::waiting);
+class Loss : public testing::OverMiddleware {};
+INSTANTIATE_TEST_SUITE_P(Over, Loss, testing::kAllMiddlewares, testing::name_of);
+
+TEST_P(Loss, AReaderStoppedFor800StepsLosesNothing) {
+  expect_no_step_lost(network(), Stream::waiting);
 }
 
-TEST(CycloneLoss, NightlyAReaderStoppedFor200MillisecondsAtFourKilohertzLosesNothing) {
-  expect_no_step_lost(Stream::paced);
+TEST_P(Loss, NightlyAReaderStoppedFor200MillisecondsAtFourKilohertzLosesNothing) {
+  expect_no_step_lost(network(), Stream::paced);
 }
 
-bool receive_ticks(std::uint32_t domain, StepIndex count) {
-  std::unique_ptr<CycloneTransport> transport;
+bool receive_ticks(const Network& network, StepIndex count) {
+  std::unique_ptr<Transport> transport;
   const Endpoint options{"loss", "recorder", {Topic::node_status}, {Topic::tick}};
-  if (!CycloneTransport::open(Network{domain, "lo", {}}, options, transport).is_ok()) return false;
+  if (!open_transport(network, options, transport).is_ok()) return false;
   if (!publish_ready(*transport)) return false;
   Received message;
   wire::Header header;
@@ -121,13 +121,11 @@ bool receive_ticks(std::uint32_t domain, StepIndex count) {
   return true;
 }
 
-TEST(CycloneLoss, TheLastMessagesOfALeavingWriterArrive) {
-  const testing::TestDomain domain;
+TEST_P(Loss, TheLastMessagesOfALeavingWriterArrive) {
   constexpr StepIndex kCount = 1000;
-  ChildProcess recorder([&] { return receive_ticks(domain.number(), kCount); });
-  std::unique_ptr<CycloneTransport> transport;
-  const Status status = CycloneTransport::open(Network{domain.number(), "lo", {}},
-                                               {"loss", "io", {Topic::tick}, {Topic::node_status}}, transport);
+  ChildProcess recorder([&] { return receive_ticks(network(), kCount); });
+  std::unique_ptr<Transport> transport;
+  const Status status = open_transport(network(), {"loss", "io", {Topic::tick}, {Topic::node_status}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   Received ready;
   ASSERT_TRUE(next(*transport, ready));
@@ -141,27 +139,25 @@ TEST(CycloneLoss, TheLastMessagesOfALeavingWriterArrive) {
   EXPECT_EQ(recorder.wait(), 0);
 }
 
-bool receive_the_session(std::uint32_t domain) {
-  std::unique_ptr<CycloneTransport> transport;
+bool receive_the_session(const Network& network) {
+  std::unique_ptr<Transport> transport;
   const Endpoint options{"loss", "mechanics", {}, {Topic::session}};
-  if (!CycloneTransport::open(Network{domain, "lo", {}}, options, transport).is_ok()) return false;
+  if (!open_transport(network, options, transport).is_ok()) return false;
   Received message;
   wire::SessionDescription session;
   return next(*transport, message) && decode(message.bytes, session) &&
          session.scene_text == std::string(wire::kMaxSceneBytes, 'x');
 }
 
-TEST(CycloneLoss, TheLargestSceneReachesALateNode) {
-  const testing::TestDomain domain;
+TEST_P(Loss, TheLargestSceneReachesALateNode) {
   // a signal starts the late node; before that, no part of DDS may exist in this process
   ChildProcess node([&] {
     raise(SIGSTOP);
-    return receive_the_session(domain.number());
+    return receive_the_session(network());
   });
   ASSERT_TRUE(node.wait_until_stopped());
-  std::unique_ptr<CycloneTransport> transport;
-  const Status status =
-      CycloneTransport::open(Network{domain.number(), "lo", {}}, {"loss", "io", {Topic::session}, {}}, transport);
+  std::unique_ptr<Transport> transport;
+  const Status status = open_transport(network(), {"loss", "io", {Topic::session}, {}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   wire::SessionDescription session;
   session.scene_text.assign(wire::kMaxSceneBytes, 'x');
@@ -172,5 +168,5 @@ TEST(CycloneLoss, TheLargestSceneReachesALateNode) {
   EXPECT_EQ(node.wait(), 0);
 }
 
-}  // namespace cyclone_loss_test
+}  // namespace middleware_loss_test
 }  // namespace slew::transport

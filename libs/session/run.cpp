@@ -1,4 +1,4 @@
-#include "session/run_outcome.h"
+#include "session/run.h"
 
 #include <cstdio>
 #include <filesystem>

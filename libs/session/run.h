@@ -1,4 +1,4 @@
-// Options of a run, and its outcome.
+// A run of a session: its options, the two ways to run, and its outcome.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/status.h"
+#include "io_node/session_scene.h"
 #include "node/session_options.h"
 #include "observer/observer.h"
 #include "scene/scene_options.h"
@@ -82,6 +83,15 @@ struct RunOutcome {
   StepIndex begin = 0;                // step that the session began with
   StepIndex steps = 0;
 };
+
+// Starts the nodes that the scene needs as processes, watches over them, and ends them in order.
+[[nodiscard]] RunOutcome run_distributed(const RunOptions& options, const io_node::SessionScene& session,
+                                         RunWatcher& watcher);
+
+// All nodes on one thread of this process: for the debugger, for speed, and as the reference that a distributed run
+// must equal bit for bit.
+[[nodiscard]] RunOutcome run_in_process(const RunOptions& options, const io_node::SessionScene& session,
+                                        RunWatcher& watcher);
 
 // Messages "program: reason" without those that only repeat the reason of another, in the order given.
 [[nodiscard]] std::vector<std::string> without_echoes(const std::vector<std::string>& messages);

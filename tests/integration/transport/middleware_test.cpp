@@ -1,17 +1,17 @@
-#include "transport/cyclone/cyclone_transport.h"
-
+// Claims about every middleware, and those about the configuration of Cyclone.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <climits>
 
 #include "tests/integration/transport/child_process.h"
+#include "tests/integration/transport/middlewares.h"
 #include "tests/integration/transport/waiting.h"
-#include "tests/support/test_domain.h"
 #include "transport/cdr/codec.h"
+#include "transport/cyclone/cyclone_domain.h"
 
 namespace slew::transport {
-namespace cyclone_transport_test {
+namespace middleware_test {
 
 using testing::eventually;
 using testing::next;
@@ -20,24 +20,15 @@ using wire::Topic;
 constexpr std::int64_t kSilence = 50'000'000;  // ns in which nothing more may come
 
 // Several transports of one process on a test domain.
-class CycloneBus : public ::testing::Test {
+class Bus : public testing::OverMiddleware {
  protected:
-  void SetUp() override {
-    const Status status = CycloneDomain::open({number_.number(), "lo", {}}, domain_);
-    ASSERT_TRUE(status.is_ok()) << status.text;
+  using OverMiddleware::connect;
+  std::unique_ptr<Transport> connect(const std::string& session, const std::string& role, TopicSet writes,
+                                     TopicSet reads) const {
+    return connect(Endpoint{session, role, writes, reads});
   }
-
-  std::unique_ptr<CycloneTransport> connect(const std::string& session, const std::string& role, TopicSet writes,
-                                            TopicSet reads) {
-    std::unique_ptr<CycloneTransport> transport;
-    const Status status = CycloneTransport::open(domain_, {session, role, writes, reads}, transport);
-    EXPECT_TRUE(status.is_ok()) << status.text;
-    return transport;
-  }
-
-  testing::TestDomain number_;
-  std::shared_ptr<CycloneDomain> domain_;
 };
+INSTANTIATE_TEST_SUITE_P(Over, Bus, testing::kAllMiddlewares, testing::name_of);
 
 ByteBuffer status_of(wire::Role role, std::int32_t number) {
   wire::NodeStatus status;
@@ -56,7 +47,7 @@ ByteBuffer tick_of(StepIndex step) {
   return bytes;
 }
 
-TEST_F(CycloneBus, CarriesMessagesInOrder) {
+TEST_P(Bus, CarriesMessagesInOrder) {
   const auto io = connect("a", "io", {Topic::tick}, {});
   const auto node = connect("a", "mechanics", {}, {Topic::tick});
   ASSERT_TRUE(eventually([&] { return io->matched_readers(Topic::tick) == 1; }));
@@ -72,7 +63,7 @@ TEST_F(CycloneBus, CarriesMessagesInOrder) {
   }
 }
 
-TEST_F(CycloneBus, DistinguishesTheWritersOfValuesAndSeesThemLeave) {
+TEST_P(Bus, DistinguishesTheWritersOfValuesAndSeesThemLeave) {
   const auto io = connect("a", "io", {}, {Topic::controller_input});
   const auto a = connect("a", "controller", {Topic::controller_input}, {});
   auto b = connect("a", "controller", {Topic::controller_input}, {});
@@ -82,7 +73,7 @@ TEST_F(CycloneBus, DistinguishesTheWritersOfValuesAndSeesThemLeave) {
   ByteBuffer bytes;
   ASSERT_TRUE(encode(input, bytes));
   Received message;
-  const auto writer = [&](CycloneTransport& from) {
+  const auto writer = [&](Transport& from) {
     EXPECT_TRUE(from.publish(Topic::controller_input, bytes).is_ok());
     EXPECT_TRUE(next(*io, message));
     return message.writer;
@@ -101,7 +92,7 @@ TEST_F(CycloneBus, DistinguishesTheWritersOfValuesAndSeesThemLeave) {
   EXPECT_FALSE(io->see_writer(Topic::controller_input, of_a).has_left);
 }
 
-TEST_F(CycloneBus, AnEndpointDoesNotReceiveItsOwnMessages) {
+TEST_P(Bus, AnEndpointDoesNotReceiveItsOwnMessages) {
   const auto a = connect("a", "io", TopicSet::all(), TopicSet::all());
   const auto b = connect("a", "mechanics", TopicSet::all(), TopicSet::all());
   ASSERT_TRUE(eventually([&] { return a->matched_readers(Topic::tick) == 1; }));
@@ -111,7 +102,7 @@ TEST_F(CycloneBus, AnEndpointDoesNotReceiveItsOwnMessages) {
   EXPECT_FALSE(next(*a, message, kSilence));
 }
 
-TEST_F(CycloneBus, SessionsAreSeparateAndAnObserverReceivesAll) {
+TEST_P(Bus, SessionsAreSeparateAndAnObserverReceivesAll) {
   const auto a = connect("a", "io", {Topic::tick}, {});
   const auto b = connect("b", "io", {Topic::tick}, {});
   const auto node_a = connect("a", "mechanics", {}, {Topic::tick});
@@ -130,7 +121,7 @@ TEST_F(CycloneBus, SessionsAreSeparateAndAnObserverReceivesAll) {
   EXPECT_TRUE(next(*observer, message));
 }
 
-TEST_F(CycloneBus, ALateNodeGetsEachWritersLastStatus) {
+TEST_P(Bus, ALateNodeGetsEachWritersLastStatus) {
   const auto io = connect("a", "io", {Topic::node_status}, {});
   const auto mechanics = connect("a", "mechanics", {Topic::node_status}, {});
   const auto hydraulics = connect("a", "hydraulics", {Topic::node_status}, {});
@@ -153,12 +144,12 @@ TEST_F(CycloneBus, ALateNodeGetsEachWritersLastStatus) {
   EXPECT_FALSE(next(*late, message, kSilence));
 }
 
-TEST_F(CycloneBus, UndeclaredTopicsAreRefused) {
+TEST_P(Bus, UndeclaredTopicsAreRefused) {
   const auto node = connect("a", "mechanics", {Topic::mechanism}, {Topic::tick});
   EXPECT_FALSE(node->publish(Topic::tick, tick_of(1)).is_ok());
 }
 
-TEST_F(CycloneBus, NamesTheWritersOfATopic) {
+TEST_P(Bus, NamesTheWritersOfATopic) {
   const auto io = connect("a", "io", {Topic::tick}, {});
   const auto other = connect("b", "io", {Topic::tick}, {});
   const auto node = connect("a", "mechanics", {}, {Topic::tick});
@@ -173,35 +164,40 @@ TEST_F(CycloneBus, NamesTheWritersOfATopic) {
   EXPECT_EQ(writers[0].find("layout"), std::string::npos);
 }
 
-TEST_F(CycloneBus, PatternsAreNoSessionNames) {
+TEST_P(Bus, PatternsAreNoSessionNames) {
   for (const char* name : {"", "a*", "?", "[x]"}) {
-    std::unique_ptr<CycloneTransport> transport;
-    EXPECT_EQ(CycloneTransport::open(domain_, {name, "io", {Topic::tick}, {}}, transport).code, ExitCode::bad_input);
+    std::unique_ptr<Transport> transport;
+    EXPECT_EQ(open_transport(network(), {name, "io", {Topic::tick}, {}}, transport).code, ExitCode::bad_input);
   }
 }
 
-TEST(CycloneDomainErrors, AMissingInterfaceIsNamedWithThoseThatExist) {
-  std::shared_ptr<CycloneDomain> domain;
-  const Status status = CycloneDomain::open({1, "nonesuch0", {}}, domain);
+Status error_of(const Network& network) {
+  std::unique_ptr<Transport> transport;
+  return open_transport(network, {"a", "observer", {}, {}}, transport);
+}
+
+TEST_P(Bus, AMissingInterfaceIsNamedWithThoseThatExist) {
+  const Status status = error_of({1, "nonesuch0", {}, {}, GetParam()});
   EXPECT_EQ(status.code, ExitCode::resources);
   EXPECT_NE(status.text.find("'nonesuch0'"), std::string::npos) << status.text;
   EXPECT_NE(status.text.find("lo (127.0.0.1)"), std::string::npos) << status.text;
   EXPECT_NE(status.text.find("--interface"), std::string::npos) << status.text;
 }
 
-TEST(CycloneDomainErrors, WrongPeersAndNumbersAreRefused) {
-  std::shared_ptr<CycloneDomain> domain;
-  EXPECT_EQ(CycloneDomain::open({1, "lo", {"10.0.0.2\"/>"}}, domain).code, ExitCode::bad_input);
-  EXPECT_EQ(CycloneDomain::open({kMaxDomain + 1, "lo", {}}, domain).code, ExitCode::bad_input);
+TEST_P(Bus, WrongPeersAndNumbersAreRefused) {
+  EXPECT_EQ(error_of({1, "lo", {"10.0.0.2\"/>"}, {}, GetParam()}).code, ExitCode::bad_input);
+  EXPECT_EQ(error_of({kMaxDomain + 1, "lo", {}, {}, GetParam()}).code, ExitCode::bad_input);
 }
 
-TEST(CycloneDomainErrors, AnExhaustedParticipantIndexIsExplained) {
-  const testing::TestDomain number;
-  const auto hold = [&number] {
-    std::shared_ptr<CycloneDomain> domain;
-    std::unique_ptr<CycloneTransport> transport;
-    const Status status =
-        CycloneTransport::open(Network{number.number(), "lo", {}}, {"a", "observer", {}, {}}, transport);
+TEST_P(Bus, TheGreatestDomainHasPortsForAllProcesses) {
+  const Status status = error_of({kMaxDomain, "lo", {}, {}, GetParam()});
+  EXPECT_TRUE(status.is_ok()) << status.text;
+}
+
+TEST_P(Bus, AnExhaustedParticipantIndexIsExplained) {
+  const auto hold = [this] {
+    std::unique_ptr<Transport> transport;
+    const Status status = open_transport(network(), {"a", "observer", {}, {}}, transport);
     if (!status.is_ok()) {
       std::fprintf(stderr, "%s\n", status.text.c_str());
       return false;
@@ -213,10 +209,8 @@ TEST(CycloneDomainErrors, AnExhaustedParticipantIndexIsExplained) {
   for (int i = 0; i < kMaxProcesses; ++i) children.emplace_back(hold);
   for (testing::ChildProcess& child : children) ASSERT_TRUE(child.wait_until_stopped());
   // in a process of its own, as Cyclone leaks memory on this path
-  testing::ChildProcess one_too_many([&number] {
-    std::unique_ptr<CycloneTransport> transport;
-    const Status status =
-        CycloneTransport::open(Network{number.number(), "lo", {}}, {"a", "observer", {}, {}}, transport);
+  testing::ChildProcess one_too_many([this] {
+    const Status status = error_of(network());
     return status.code == ExitCode::resources && status.text.find("--domain") != std::string::npos;
   });
   EXPECT_EQ(one_too_many.wait(), 0);
@@ -226,7 +220,7 @@ TEST(CycloneLogging, AFloodOfMessagesBecomesOneLine) {
   ::testing::internal::CaptureStderr();
   {
     CycloneLog log;
-    for (int i = 0; i < 1000; ++i) log.write("sendmsg failed\n", 15);
+    for (int i = 0; i < 1000; ++i) log.write("sendmsg failed\n");
     EXPECT_EQ(log.last_line(), "sendmsg failed");
   }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "slewring: DDS: sendmsg failed\n");
@@ -240,5 +234,5 @@ TEST(CycloneConfiguration, SendsOnlyToOwnHostUnlessPeersAreNamed) {
   EXPECT_NE(two.find(R"(<Peers><Peer Address="10.0.0.1"/><Peer Address="10.0.0.2"/></Peers>)"), std::string::npos);
 }
 
-}  // namespace cyclone_transport_test
+}  // namespace middleware_test
 }  // namespace slew::transport

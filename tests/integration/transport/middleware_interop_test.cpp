@@ -1,20 +1,22 @@
-// Programs that depend only on idl/slewring.idl and Cyclone, in a process of their own, against the transport.
+// Programs that depend only on idl/slewring.idl and Cyclone, in a process of their own, against every middleware.
 #include <dds/dds.h>
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <random>
+#include <tuple>
 
 #include "tests/integration/transport/child_process.h"
 #include "tests/integration/transport/generated_types.h"
+#include "tests/integration/transport/middlewares.h"
 #include "tests/integration/transport/same_fields.h"
 #include "tests/integration/transport/waiting.h"
 #include "tests/support/random_message.h"
-#include "tests/support/test_domain.h"
 #include "transport/cdr/codec.h"
-#include "transport/cyclone/cyclone_transport.h"
+#include "transport/cyclone/cyclone_domain.h"
 
 namespace slew::transport {
-namespace cyclone_interop_test {
+namespace middleware_interop_test {
 
 using testing::ChildProcess;
 using testing::eventually;
@@ -75,6 +77,9 @@ bool has_reader(dds_entity_t writer) {
   return dds_get_publication_matched_status(writer, &status) == DDS_RETCODE_OK && status.current_count > 0;
 }
 
+class Interop : public testing::OverMiddleware {};
+INSTANTIATE_TEST_SUITE_P(Over, Interop, testing::kAllMiddlewares, testing::name_of);
+
 // other program: reports ready, then reads typed messages and compares every field
 bool read_typed_mechanism_messages(std::uint32_t domain) {
   const TypedProgram program(domain);
@@ -95,14 +100,10 @@ bool read_typed_mechanism_messages(std::uint32_t domain) {
   return true;
 }
 
-TEST(CycloneInterop, ATypedReaderOfAnotherProgramReadsEveryFieldOfWhatWeSend) {
-  const testing::TestDomain domain;
-  ChildProcess program([&] { return read_typed_mechanism_messages(domain.number()); });
-  std::unique_ptr<CycloneTransport> transport;
-  const Status status =
-      CycloneTransport::open(Network{domain.number(), "lo", {}},
-                             {kSession, "mechanics", {Topic::mechanism}, {Topic::control_request}}, transport);
-  ASSERT_TRUE(status.is_ok()) << status.text;
+TEST_P(Interop, ATypedReaderOfAnotherProgramReadsEveryFieldOfWhatWeSend) {
+  ChildProcess program([&] { return read_typed_mechanism_messages(domain_.number()); });
+  const auto transport = connect({kSession, "mechanics", {Topic::mechanism}, {Topic::control_request}});
+  ASSERT_NE(transport, nullptr);
   Received message;
   ASSERT_TRUE(testing::next(*transport, message));
   wire::ControlRequest ready;
@@ -139,13 +140,10 @@ bool write_typed_inputs(std::uint32_t domain) {
   return eventually([&] { return dds_take(done, &sample, &about, 1, 1) == 1; });
 }
 
-TEST(CycloneInterop, WeReadWhatATypedWriterOfAnotherProgramSends) {
-  const testing::TestDomain domain;
-  ChildProcess program([&] { return write_typed_inputs(domain.number()); });
-  std::unique_ptr<CycloneTransport> transport;
-  const Status status = CycloneTransport::open(Network{domain.number(), "lo", {}},
-                                               {kSession, "io", {Topic::tick}, {Topic::controller_input}}, transport);
-  ASSERT_TRUE(status.is_ok()) << status.text;
+TEST_P(Interop, WeReadWhatATypedWriterOfAnotherProgramSends) {
+  ChildProcess program([&] { return write_typed_inputs(domain_.number()); });
+  const auto transport = connect({kSession, "io", {Topic::tick}, {Topic::controller_input}});
+  ASSERT_NE(transport, nullptr);
   Received message;
   wire::ControllerInput input;
   for (int i = 0; i < kCount; ++i) {
@@ -185,9 +183,9 @@ bool write_another_layout(std::uint32_t domain) {
 TEST(CycloneInterop, AWriterOfAnotherLayoutIsNamedAsSuch) {
   const testing::TestDomain domain;
   ChildProcess program([&] { return write_another_layout(domain.number()); });
-  std::unique_ptr<CycloneTransport> transport;
-  const Status status =
-      CycloneTransport::open(Network{domain.number(), "lo", {}}, {kSession, "mechanics", {}, {Topic::tick}}, transport);
+  std::unique_ptr<Transport> transport;
+  const Status status = open_transport(testing::network_of(domain, Middleware::cyclone),
+                                       {kSession, "mechanics", {}, {Topic::tick}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   std::vector<std::string> writers;
   ASSERT_TRUE(eventually([&] {
@@ -210,26 +208,23 @@ bool take_part_wrongly(std::uint32_t domain) {
   dds_qset_durability(program.qos(), DDS_DURABILITY_VOLATILE);
   dds_qset_reliability(program.qos(), DDS_RELIABILITY_BEST_EFFORT, 0);
   static_cast<void>(program.writer(slewring_MechanismMessage_desc, "slewring/mechanism"));
-  // one message is to arrive, and the other program may discover this reader before this one discovers its writer
   dds_qset_reliability(program.qos(), DDS_RELIABILITY_RELIABLE, DDS_SECS(10));
   const dds_entity_t done = program.reader(slewring_Health_desc, "slewring/health");
   if (!eventually([&] { return has_reader(fits) && has_match(done); })) return false;
+  slewring_ActuatorMessage ready{};
+  if (dds_write(fits, &ready) != DDS_RETCODE_OK) return false;
   void* sample = nullptr;
   dds_sample_info_t about{};
   return eventually([&] { return dds_take(done, &sample, &about, 1, 1) == 1; });
 }
 
-TEST(CycloneInterop, AnEndpointWithTheWrongTypeOrQosIsNamed) {
-  const testing::TestDomain domain;
-  ChildProcess program([&] { return take_part_wrongly(domain.number()); });
-  std::unique_ptr<CycloneTransport> transport;
-  const Status status = CycloneTransport::open(Network{domain.number(), "lo", {}},
-                                               {kSession,
-                                                "observer",
-                                                {Topic::control_request, Topic::health},
-                                                {Topic::tick, Topic::mechanism, Topic::actuators, Topic::session}},
-                                               transport);
-  ASSERT_TRUE(status.is_ok()) << status.text;
+TEST_P(Interop, AnEndpointWithTheWrongTypeOrQosIsNamed) {
+  ChildProcess program([&] { return take_part_wrongly(domain_.number()); });
+  const auto transport = connect({kSession,
+                                  "observer",
+                                  {Topic::control_request, Topic::health},
+                                  {Topic::tick, Topic::mechanism, Topic::actuators, Topic::session}});
+  ASSERT_NE(transport, nullptr);
   std::vector<std::string> misfits;
   ASSERT_TRUE(eventually([&] {
     misfits = transport->misfits();
@@ -251,6 +246,10 @@ TEST(CycloneInterop, AnEndpointWithTheWrongTypeOrQosIsNamed) {
           program_name +
               "writes topic 'slewring/tick' with type slewring::NodeStatus, which is slewring::Tick here; it is "
               "ignored; see idl/README.md"}));
+  // the two sides discover each other independently
+  Received ready;
+  ASSERT_TRUE(testing::next(*transport, ready));
+  EXPECT_EQ(ready.topic, Topic::actuators);
   ASSERT_TRUE(eventually([&] { return transport->matched_readers(Topic::health) > 0; }));
   ByteBuffer bytes;
   ASSERT_TRUE(encode(wire::Health{}, bytes));
@@ -265,6 +264,10 @@ struct QosMisfit {
   void (*change)(dds_qos_t* qos);
   const char* problem;
 };
+// in the names of tests
+void PrintTo(const QosMisfit& misfit, std::ostream* out) {
+  *out << misfit.name;
+}
 
 bool take_part_with(std::uint32_t domain, const QosMisfit& misfit) {
   TypedProgram program(domain, misfit.change);
@@ -276,14 +279,18 @@ bool take_part_with(std::uint32_t domain, const QosMisfit& misfit) {
   return true;
 }
 
-class ForeignQos : public ::testing::TestWithParam<QosMisfit> {};
+class ForeignQos : public ::testing::TestWithParam<std::tuple<Middleware, QosMisfit>> {
+ protected:
+  void SetUp() override { testing::need(std::get<0>(GetParam())); }
+  [[nodiscard]] static const QosMisfit& misfit() { return std::get<1>(GetParam()); }
+};
 
 TEST_P(ForeignQos, ThatDoesNotFitIsNamed) {
   const testing::TestDomain domain;
-  ChildProcess program([&] { return take_part_with(domain.number(), GetParam()); });
-  std::unique_ptr<CycloneTransport> transport;
-  const Status status = CycloneTransport::open(
-      Network{domain.number(), "lo", {}}, {kSession, "observer", {Topic::control_request}, {Topic::tick}}, transport);
+  ChildProcess program([&] { return take_part_with(domain.number(), misfit()); });
+  std::unique_ptr<Transport> transport;
+  const Status status = open_transport(testing::network_of(domain, std::get<0>(GetParam())),
+                                       {kSession, "observer", {Topic::control_request}, {Topic::tick}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   std::vector<std::string> misfits;
   EXPECT_TRUE(eventually([&] {
@@ -291,40 +298,42 @@ TEST_P(ForeignQos, ThatDoesNotFitIsNamed) {
     return !misfits.empty();
   }));
   const std::string does =
-      GetParam().is_writer ? "writes topic 'slewring/tick' with " : "reads topic 'slewring/control_request' with ";
-  const std::string so = GetParam().is_writer ? "; it is ignored" : "; it receives nothing";
-  EXPECT_EQ(misfits, std::vector<std::string>{"a program that is not of Slewring " + does + GetParam().problem + so +
+      misfit().is_writer ? "writes topic 'slewring/tick' with " : "reads topic 'slewring/control_request' with ";
+  const std::string so = misfit().is_writer ? "; it is ignored" : "; it receives nothing";
+  EXPECT_EQ(misfits, std::vector<std::string>{"a program that is not of Slewring " + does + misfit().problem + so +
                                               "; see idl/README.md"});
   EXPECT_EQ(transport->matched_readers(Topic::control_request), 0u);
 }
 
-std::string name_of(const ::testing::TestParamInfo<QosMisfit>& misfit) {
-  return misfit.param.name;
+std::string name_of(const ::testing::TestParamInfo<std::tuple<Middleware, QosMisfit>>& info) {
+  return testing::text_of(std::get<0>(info.param)) + std::get<1>(info.param).name;
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Of, ForeignQos,
-    ::testing::Values(
-        QosMisfit{"Deadline", false, [](dds_qos_t* qos) { dds_qset_deadline(qos, DDS_MSECS(100)); },
-                  "a deadline shorter than the one that the writer offers (none is expected)"},
-        QosMisfit{"LatencyBudget", true, [](dds_qos_t* qos) { dds_qset_latency_budget(qos, DDS_MSECS(1)); },
-                  "a latency budget above the one that the reader requests (0 is expected)"},
-        QosMisfit{"LivelinessKind", false,
-                  [](dds_qos_t* qos) { dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_INFINITY); },
-                  "another kind of liveliness (automatic is expected)"},
-        QosMisfit{"LivelinessLease", false,
-                  [](dds_qos_t* qos) { dds_qset_liveliness(qos, DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(500)); },
-                  "a lease of its liveliness shorter than the one that the writer offers (none is expected)"},
-        QosMisfit{"DestinationOrder", false,
-                  [](dds_qos_t* qos) { dds_qset_destination_order(qos, DDS_DESTINATIONORDER_BY_SOURCE_TIMESTAMP); },
-                  "another destination order (by reception timestamp is expected)"},
-        QosMisfit{"PresentationScope", false,
-                  [](dds_qos_t* qos) { dds_qset_presentation(qos, DDS_PRESENTATION_TOPIC, false, false); },
-                  "another presentation (access scope instance, neither coherent nor ordered, is expected)"},
-        QosMisfit{"PresentationOrder", false,
-                  [](dds_qos_t* qos) { dds_qset_presentation(qos, DDS_PRESENTATION_INSTANCE, false, true); },
-                  "another presentation (access scope instance, neither coherent nor ordered, is expected)"}),
+    ::testing::Combine(
+        ::testing::Values(Middleware::cyclone, Middleware::fastdds),
+        ::testing::Values(
+            QosMisfit{"Deadline", false, [](dds_qos_t* qos) { dds_qset_deadline(qos, DDS_MSECS(100)); },
+                      "a deadline shorter than the one that the writer offers (none is expected)"},
+            QosMisfit{"LatencyBudget", true, [](dds_qos_t* qos) { dds_qset_latency_budget(qos, DDS_MSECS(1)); },
+                      "a latency budget above the one that the reader requests (0 is expected)"},
+            QosMisfit{"LivelinessKind", false,
+                      [](dds_qos_t* qos) { dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_INFINITY); },
+                      "another kind of liveliness (automatic is expected)"},
+            QosMisfit{"LivelinessLease", false,
+                      [](dds_qos_t* qos) { dds_qset_liveliness(qos, DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(500)); },
+                      "a lease of its liveliness shorter than the one that the writer offers (none is expected)"},
+            QosMisfit{"DestinationOrder", false,
+                      [](dds_qos_t* qos) { dds_qset_destination_order(qos, DDS_DESTINATIONORDER_BY_SOURCE_TIMESTAMP); },
+                      "another destination order (by reception timestamp is expected)"},
+            QosMisfit{"PresentationScope", false,
+                      [](dds_qos_t* qos) { dds_qset_presentation(qos, DDS_PRESENTATION_TOPIC, false, false); },
+                      "another presentation (access scope instance, neither coherent nor ordered, is expected)"},
+            QosMisfit{"PresentationOrder", false,
+                      [](dds_qos_t* qos) { dds_qset_presentation(qos, DDS_PRESENTATION_INSTANCE, false, true); },
+                      "another presentation (access scope instance, neither coherent nor ordered, is expected)"})),
     name_of);
 
-}  // namespace cyclone_interop_test
+}  // namespace middleware_interop_test
 }  // namespace slew::transport

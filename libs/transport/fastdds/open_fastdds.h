@@ -1,0 +1,16 @@
+// The one function of the library of Fast DDS. It is built with the programs and lies beside them.
+#pragma once
+
+#include <memory>
+
+#include "transport/network.h"
+
+namespace slew::transport {
+
+inline constexpr const char* kFastDdsLibrary = "libslewring_fastdds.so";
+inline constexpr const char* kOpenFastDds = "slewring_open_fastdds";
+
+// See open_transport().
+using OpenFastDds = Status(const Network& network, const Endpoint& endpoint, std::unique_ptr<Transport>& transport);
+
+}  // namespace slew::transport
