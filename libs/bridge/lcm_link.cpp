@@ -95,11 +95,28 @@ std::string remedy(const LcmUrl& url) {
   return fmt::format("as root: 'ip link set lo multicast on' and 'ip route add {}/32 dev lo'", url.address);
 }
 
+// liblcm finds this too, and prints lines of its own.
+void require_route(const LcmUrl& url) {
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(url.port));
+  inet_pton(AF_INET, url.address.c_str(), &to.sin_addr);
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool is_routed = probe < 0 || connect(probe, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0 ||
+                         (errno != ENETUNREACH && errno != EHOSTUNREACH);
+  if (probe >= 0) close(probe);
+  if (is_routed) return;
+  throw Failure(ExitCode::resources,
+                fmt::format("{} has no route, and LCM needs one; nothing was started; {}", url.address, remedy(url)));
+}
+
 // LCM takes regular expressions.
 std::string literal(const std::string& channel) {
   std::string pattern;
   for (const char c : channel) {
-    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    // a byte of a longer character of UTF-8 cannot be escaped
+    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+                          (static_cast<unsigned char>(c) & 0x80) != 0;
     if (!is_plain) pattern += '\\';
     pattern += c;
   }
@@ -159,21 +176,22 @@ LcmUrl read_url(const std::string& text, Reach reach) {
 }
 
 void require_loopback(const LcmUrl& url) {
+  require_route(url);
   const std::string interface = interface_to(url);
   if (interface != kLoopback) {
     throw Failure(ExitCode::resources,
-                  fmt::format("{} is routed to {} and not to the loopback: hosts of the network could send inputs; "
-                              "nothing was started; {}, or use --insecure-lan",
-                              url.address, interface.empty() ? "no interface" : interface, remedy(url)));
+                  fmt::format("{} is not routed to the loopback{}: hosts of the network could send inputs; nothing was "
+                              "started; {}, or use --insecure-lan",
+                              url.address, interface.empty() ? "" : " but to " + interface, remedy(url)));
   }
 }
 
 LcmLink::LcmLink(const LcmUrl& url, Reach reach) : url_(url), reach_(reach), sockets_before_(inodes()) {
+  require_route(url);
   lcm_ = lcm_create(url.text().c_str());
   if (lcm_ == nullptr) {
-    throw Failure(
-        ExitCode::resources,
-        fmt::format("LCM cannot open {}; nothing was started; multicast needs a route: {}", url.text(), remedy(url)));
+    throw Failure(ExitCode::resources,
+                  fmt::format("LCM cannot open {}; nothing was started; {}", url.text(), remedy(url)));
   }
 }
 

@@ -120,16 +120,6 @@ std::int64_t on_step(std::int64_t time_us, SimDuration step) {
   return std::abs(nearest - time_ns) <= 1000 ? nearest : time_ns;
 }
 
-std::string refusals_text(const InputCounts& counts, std::uint64_t held_by_others) {
-  std::string text;
-  const auto add = [&](std::uint64_t number, std::string_view cause) {
-    if (number > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", number, cause);
-  };
-  for (std::size_t i = 0; i < kCauses; ++i) add(counts.refused[i], to_text(static_cast<Cause>(i)));
-  add(held_by_others, "for a channel of another controller");
-  return text;
-}
-
 }  // namespace
 
 InputTable input_table(std::string_view log, std::span<const TableChannel> channels, SimDuration step,
@@ -167,7 +157,10 @@ InputTable input_table(std::string_view log, std::span<const TableChannel> chann
     table.expected = "a log of lcm-logger or 'slewring export --lcm'";
     return table;
   }
-  const std::string refused = refusals_text(filter.counts(), held_by_others);
+  std::string refused = refusals_text(filter.counts());
+  if (held_by_others > 0) {
+    refused += fmt::format("{}{} for a channel of another controller", refused.empty() ? "" : ", ", held_by_others);
+  }
   if (inputs == 0) {
     table.problem = "has no input_t message for an input of the scene" + (refused.empty() ? "" : ": " + refused);
     table.expected = "inputs of 'slewring bridge lcm' or 'slewring export --lcm'";
