@@ -261,7 +261,7 @@ bool Bridge::State::is_silent(const observer::SessionView& view, std::int64_t no
 void Bridge::State::each_second(observer::Observer& observer, std::int64_t now_ns) {
   const StepIndex step = observer.view().step();
   const bool is_silent_now = is_silent(observer.view(), now_ns);
-  if (is_silent_now != std::exchange(was_silent, is_silent_now)) {
+  if (is_silent_now != std::exchange(was_silent, is_silent_now) && !has_new_session) {
     notices.push_back(
         is_silent_now ? fmt::format("no message of session '{}' has come for 5 s; its health is not published until "
                                     "one comes; look with 'slewring sessions' whether it still runs",
