@@ -295,7 +295,7 @@ def refuse_exports(slewring, recording, folder):
 
 def export_and_drive(slewring, scene, recording, folder, steps):
     """The recording as a log; a run with the log as its input has the same inputs and the same motion, to the bit, up to
-    the step in which a parameter was changed."""
+    the step in which a parameter was changed or of which a busy machine's recorder lacks values."""
     log = f"{folder}/exported.lcm"
     run(slewring, "export", recording, "--lcm", log, "--channel", PREFIX, "--signals", SIGNALS,
         "--every", str(EVERY))
@@ -303,21 +303,25 @@ def export_and_drive(slewring, scene, recording, folder, steps):
     stamps = [stamp for _, stamp, _ in events(log)]
     require(stamps == sorted(stamps) and stamps[0] == 0, "the times of the log are not in order")
     print(f"export --lcm: {counts}")
-    raw = column(slewring, recording, "Input_Lift.raw")
-    end = len(raw) * STEP
+    recorded = {variable: column(slewring, recording, variable)
+                for variable in ("Input_Lift.raw", "Input_Jib.raw", "Cyl_Lift.stroke", "Cyl_Lift.force")}
+    for rows in recorded.values():
+        missing = (i for i, row in enumerate(rows) if round(float(row[0]) / STEP) != i)
+        steps = min(steps, len(rows), next(missing, len(rows)))
+    end = steps * STEP
     run(slewring, "run", scene, "--input", log, "--in-process", "--pace", "free", "--duration", f"{end} s",
         "--step", f"{STEP} s", "--set", "recording.every=1", "--session", "again", "--out", f"{folder}/again", "--quiet", cwd=folder)
     second = f"{folder}/again/" + os.listdir(f"{folder}/again")[0]
     moved = 0
-    for variable in ("Input_Lift.raw", "Cyl_Lift.stroke", "Cyl_Lift.force"):
-        first, again = column(slewring, recording, variable), column(slewring, second, variable)
-        size = min(len(first), len(again), steps)
-        require(size > 500, f"only {size} rows of {variable}")
-        differs = [i for i in range(size) if first[i] != again[i]]
+    require(steps > 500, f"only {steps} steps")
+    for variable, first in recorded.items():
+        again = column(slewring, second, variable)
+        require(len(again) >= steps, f"only {len(again)} rows of {variable}")
+        differs = [i for i in range(steps) if first[i] != again[i]]
         require(not differs, f"{variable} differs: {[(first[i], again[i]) for i in differs[:1]]}")
-        moved = max(moved, len({row[1] for row in first[:size]}))
+        moved = max(moved, len({row[1] for row in first[:steps]}))
     require(moved > 100, "nothing moved")
-    print(f"run --input: {size} steps, equal bit for bit")
+    print(f"run --input: {steps} steps, equal bit for bit")
 
 
 def inside(source, build, slewring, is_long):
