@@ -155,6 +155,7 @@ void SessionView::take_health(Bytes bytes) {
   }
   node->times.max = std::max(node->times.max, health.step_time_max);
   node->steps_seen = health.steps_done;
+  ++node->healths;
   if (health.header.role == Role::io) step_ = health.header.step;
   node->health = std::move(health);
 }
