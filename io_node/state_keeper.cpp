@@ -127,7 +127,7 @@ StateKeeper::Progress StateKeeper::advance_saving(StepIndex n, std::int64_t now_
   if (saving_->deadline_ns == 0 && n >= saving_->step) saving_->deadline_ns = now_ns + kSaveTimeout.ns;
   if (saving_->deadline_ns != 0 && now_ns > saving_->deadline_ns) {
     const std::string missed = member_.describe_peer(missing.value_or(Role::io)) + " has not given its state of step " +
-                               std::to_string(saving_->step) + " within " + node::seconds_text(kSaveTimeout);
+                               std::to_string(saving_->step) + " within " + seconds_text(kSaveTimeout);
     if (!saving_->is_published) {
       member_.warn(missed + ", or one above " + std::to_string(node::kMaxStateBytes >> 20) +
                    " MiB; the session goes on, but until a state of it has come no other process can take its place");
@@ -245,7 +245,7 @@ bool StateKeeper::is_replacing() const noexcept {
 
 std::string StateKeeper::text_of(const HeldRole& held) const {
   return held.lost + " is gone at step " + std::to_string(held.lost_at) + "; its place is held for " +
-         node::seconds_text(duration_of_seconds(config_.session.rejoin)) + ", a replacement gets the state of step " +
+         seconds_text(duration_of_seconds(config_.session.rejoin)) + ", a replacement gets the state of step " +
          std::to_string(held.from);
 }
 
@@ -345,7 +345,7 @@ std::vector<StateKeeper::HeldChange> StateKeeper::watch_held(StepIndex n, std::i
     if (now_ns > held.deadline_ns) {
       changes.push_back({HeldChange::Kind::expired, role,
                          held.lost + " is gone, and no other process took its place within " +
-                             node::seconds_text(duration_of_seconds(config_.session.rejoin)) +
+                             seconds_text(duration_of_seconds(config_.session.rejoin)) +
                              "; the session was held after step " + std::to_string(n) +
                              " and ended, what was recorded up to there is valid"});
       break;

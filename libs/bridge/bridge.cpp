@@ -108,7 +108,7 @@ void wait_for_names(const std::vector<lcm_log::SignalList>& lists, observer::Obs
     throw Failure(ExitCode::failed,
                   fmt::format("session '{}' has not named its variables within {}; nothing was written or sent; it may "
                               "still be starting: try again, or look with 'slewring sessions'",
-                              observer.session_name(), observer::seconds_text(kDirectoryTimeout)));
+                              observer.session_name(), seconds_text(kDirectoryTimeout)));
   }
   if (view.has_whole_directory()) check_names(lists, view, "the session");
 }

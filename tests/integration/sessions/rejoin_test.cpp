@@ -264,8 +264,7 @@ TEST_F(RunWithRejoin, NightlyReplacesANodeWhoseLoopHangs) {
   HeldLoop held(pid_of(Role::mechanics));
   if (!held.is_held()) GTEST_SKIP() << "no process may trace another one here";
   expect_one_restart_and_undisturbed_bits();
-  EXPECT_NE(run_.err().find("mechanics: warning: the loop of this node has stood still for 1 s at step "),
-            std::string::npos)
+  EXPECT_NE(run_.err().find("mechanics: warning: the loop of this node has stood still for "), std::string::npos)
       << run_.err();
   EXPECT_NE(run_.err().find("was silent for 2 s (session.give_up_after) and has lost its place; it is killed"),
             std::string::npos)
