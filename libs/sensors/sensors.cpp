@@ -147,7 +147,7 @@ std::size_t add_shape(fcl_border::Geometries& geometries, const ShapeDef& def, c
   return add_surface(geometries, vertices.data(), geometry.vertices.size(), triangles, geometry.triangles.size());
 }
 
-// Motion of a frame over an interval: a straight line, and a turn about a fixed axis.
+// Motion of a frame over an interval: a straight line, and a turn about a fixed axis by less than half a turn.
 struct Path {
   FrameMotion start;
   Vec3 way;   // m
@@ -162,10 +162,16 @@ struct Path {
     if (sine > 0) turn = v * (angle / sine);
   }
 
-  // tau: share of the interval, which lasts so long [s].
-  [[nodiscard]] FrameMotion at(double tau, double interval) const {
-    return {start.p_W + way * tau, start.R_W * rotation_of(math::turn_by(turn * tau)), way * (1 / interval),
-            start.R_W * turn * (1 / interval)};
+  // Pose at this share of the interval, with the velocities of its start.
+  [[nodiscard]] FrameMotion at(double tau) const {
+    return {start.p_W + way * tau, start.R_W * rotation_of(math::turn_by(turn * tau)), start.v_W, start.w_W};
+  }
+  // The same with the mean velocities of the interval, which lasts so long [s].
+  [[nodiscard]] FrameMotion mean_at(double tau, double interval) const {
+    FrameMotion motion = at(tau);
+    motion.v_W = way * (1 / interval);
+    motion.w_W = start.R_W * turn * (1 / interval);
+    return motion;
   }
 };
 
@@ -210,7 +216,13 @@ struct Sensors::Search {
   struct Nearest {
     double distance = 0;
     Vec3 p_a_W, p_b_W, n_W;
-    double closing_speed = 0;  // m/s, (2)
+    std::size_t frame_a = 0, frame_b = 0;
+
+    // m/s, (2); motion_of: motion of a frame
+    template <typename MotionOf>
+    [[nodiscard]] double closing_speed(const MotionOf& motion_of) const {
+      return -dot(velocity_of(motion_of(frame_a), p_a_W) - velocity_of(motion_of(frame_b), p_b_W), n_W);
+    }
   };
 
   explicit Search(const SensorsDef& def)
@@ -247,15 +259,16 @@ struct Sensors::Search {
     }
   }
 
-  // Nearest points of two placed groups, and how fast they close.
-  template <typename MotionOf>
-  bool find_nearest(std::size_t a, std::size_t b, const MotionOf& motion_of, Nearest& found) {
+  // Nearest points of two placed groups.
+  bool find_nearest(std::size_t a, std::size_t b, Nearest& found) {
     fcl_border::Nearest raw{};
     if (fcl_border::find_nearest(*groups, a, b, raw) != QueryResult::fine) return false;
-    found = {raw.distance, vector(raw.p_a_W), vector(raw.p_b_W), vector(raw.n_W), 0};
-    const FrameMotion frame_a = motion_of(shapes[group_shapes[a][raw.member_a]].frame);
-    const FrameMotion frame_b = motion_of(shapes[group_shapes[b][raw.member_b]].frame);
-    found.closing_speed = -dot(velocity_of(frame_a, found.p_a_W) - velocity_of(frame_b, found.p_b_W), found.n_W);
+    found = {raw.distance,
+             vector(raw.p_a_W),
+             vector(raw.p_b_W),
+             vector(raw.n_W),
+             shapes[group_shapes[a][raw.member_a]].frame,
+             shapes[group_shapes[b][raw.member_b]].frame};
     return true;
   }
 
@@ -340,10 +353,10 @@ bool Sensors::observe_clearance(std::size_t index, std::span<const FrameMotion> 
   const Sensor& sensor = sensors_[index];
   Clearance& clearance = clearances_[sensor.first];
   Search::Nearest nearest;
+  if (!search_->find_nearest(sensor.groups[0], sensor.groups[1], nearest)) return false;
   const auto motion_of = [&](std::size_t frame) { return frames[frame]; };
-  if (!search_->find_nearest(sensor.groups[0], sensor.groups[1], motion_of, nearest)) return false;
   clearance.distance = nearest.distance;
-  clearance.closing_speed = nearest.distance > 0 ? nearest.closing_speed : 0;
+  clearance.closing_speed = nearest.distance > 0 ? nearest.closing_speed(motion_of) : 0;
   clearance.p_of_W = nearest.p_a_W;
   clearance.p_to_W = nearest.p_b_W;
   const double border = sensor.def.limit + (clearance.is_close ? sensor.def.hysteresis : 0);
@@ -389,17 +402,17 @@ void Sensors::add_hit(std::size_t index, Collision& collision, double speed, Vec
 bool Sensors::observe_collision(std::size_t index, std::span<const FrameMotion> frames) {
   const Sensor& sensor = sensors_[index];
   Collision& collision = collisions_[sensor.first];
-  const std::size_t a = sensor.groups[0], b = sensor.groups[1];
   Search::Nearest nearest;
-  const auto motion_of = [&](std::size_t frame) { return frames[frame]; };
-  if (!search_->find_nearest(a, b, motion_of, nearest)) return false;
+  if (!search_->find_nearest(sensor.groups[0], sensor.groups[1], nearest)) return false;
   const bool is_touching = nearest.distance <= (sensor.def.is_continuous ? kReached : 0);
+  // shapes that overlap have many contacts: the first one since the sample before has the speed and the place of a hit
   bool has_hit = false;
-  if (sensor.def.is_continuous && has_last_ && !collision.is_touching) {
+  if ((sensor.def.is_continuous || is_touching) && has_last_ && !collision.is_touching) {
     if (!search_motion(index, frames, has_hit)) return false;
   }
+  // they overlap at the start: no motion is known
   if (is_touching && !collision.is_touching && !has_hit) {
-    add_hit(index, collision, nearest.closing_speed, 0.5 * (nearest.p_a_W + nearest.p_b_W));
+    add_hit(index, collision, 0, 0.5 * (nearest.p_a_W + nearest.p_b_W));
     has_hit = true;
   }
   if (!is_touching && (collision.is_touching || has_hit)) {
@@ -431,14 +444,17 @@ bool Sensors::search_motion(std::size_t index, std::span<const FrameMotion> fram
   bool is_fine = true;
   double tau = 0;
   while (mu > 0 && tau < 1 && !has_hit) {
-    const auto motion_of = [&](std::size_t frame) { return paths[frame].at(tau, interval_); };
-    search_->place(a, motion_of);
-    search_->place(b, motion_of);
+    const auto at_tau = [&](std::size_t frame) { return paths[frame].at(tau); };
+    search_->place(a, at_tau);
+    search_->place(b, at_tau);
     Search::Nearest nearest;
-    is_fine = search_->find_nearest(a, b, motion_of, nearest);
+    is_fine = search_->find_nearest(a, b, nearest);
     if (!is_fine) break;
     if (nearest.distance <= kReached) {
-      add_hit(index, collisions_[sensor.first], nearest.closing_speed, 0.5 * (nearest.p_a_W + nearest.p_b_W));
+      // (4)
+      const auto mean = [&](std::size_t frame) { return paths[frame].mean_at(tau, interval_); };
+      const double speed = std::max({nearest.closing_speed(at_tau), nearest.closing_speed(mean), 0.0});
+      add_hit(index, collisions_[sensor.first], speed, 0.5 * (nearest.p_a_W + nearest.p_b_W));
       has_hit = true;
     }
     // not to the contact itself, where the shapes have no direction from one to the other
