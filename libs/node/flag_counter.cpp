@@ -10,8 +10,11 @@ bool is_up(StepFlag flag, const wire::SampleState& state) {
   return (state.flags & static_cast<std::uint32_t>(flag)) != 0;
 }
 
-// The offender of a sample of hydraulics is a volume unless a flag that names something else is up.
-bool names_volume(StepFlag flag, const wire::SampleState& state) {
+// The offender of a sample of sensors is a sensor, that of hydraulics a volume unless a flag that names something else
+// is up.
+bool names_offender(wire::Role role, StepFlag flag, const wire::SampleState& state) {
+  if (role == wire::Role::sensor) return flag == StepFlag::not_converged;
+  if (role != wire::Role::hydraulics) return false;
   for (const StepFlag other : {StepFlag::not_converged, StepFlag::step_budget, StepFlag::non_finite}) {
     if (is_up(other, state)) return false;
   }
@@ -29,7 +32,9 @@ void FlagCounter::take(const wire::Header& header, const wire::SampleState& stat
     if (!is_same_epoch || header.step < counts.step) is_in_order_ = false;
     return;
   }
-  if (is_same_epoch) counts.missed += static_cast<std::uint64_t>(header.step - counts.step - 1);
+  // sensors publish at every k-th step only
+  if (is_same_epoch && header.role != wire::Role::sensor)
+    counts.missed += static_cast<std::uint64_t>(header.step - counts.step - 1);
   if (!counts.has_sample) counts.begin = header.step;
   counts.has_sample = true;
   counts.epoch = header.epoch;
@@ -39,8 +44,7 @@ void FlagCounter::take(const wire::Header& header, const wire::SampleState& stat
     if (!is_up(kFlags[i], state)) continue;
     Seen& entry = counts.seen[i];
     if (entry.steps++ == 0) entry.first = header.step;
-    const bool is_named = header.role == wire::Role::hydraulics && names_volume(kFlags[i], state);
-    if (entry.volume < 0 && is_named) entry.volume = state.offender;
+    if (entry.offender < 0 && names_offender(header.role, kFlags[i], state)) entry.offender = state.offender;
   }
 }
 
@@ -67,7 +71,7 @@ std::string FlagCounter::text() const {
   for (const auto& [role, c] : of_) {
     text << ' ' << static_cast<int>(role) << ' ' << c.steps << ' ' << c.late << ' ' << c.longest << ' ' << c.lost << ' '
          << c.missed << ' ' << c.begin << ' ' << c.step << ' ' << c.epoch;
-    for (const Seen& seen : c.seen) text << ' ' << seen.steps << ' ' << seen.first << ' ' << seen.volume;
+    for (const Seen& seen : c.seen) text << ' ' << seen.steps << ' ' << seen.first << ' ' << seen.offender;
   }
   return text.str();
 }
@@ -81,7 +85,7 @@ std::optional<FlagCounter> FlagCounter::of_text(const std::string& text) {
     int role = -1;
     Counts c;
     words >> role >> c.steps >> c.late >> c.longest >> c.lost >> c.missed >> c.begin >> c.step >> c.epoch;
-    for (Seen& seen : c.seen) words >> seen.steps >> seen.first >> seen.volume;
+    for (Seen& seen : c.seen) words >> seen.steps >> seen.first >> seen.offender;
     if (role < 0 || role >= static_cast<int>(wire::kRoles)) return std::nullopt;
     c.has_sample = true;
     flags.of_.emplace(static_cast<wire::Role>(role), c);

@@ -406,13 +406,15 @@ bool Sensors::observe_collision(std::size_t index, std::span<const FrameMotion> 
   if (!search_->find_nearest(sensor.groups[0], sensor.groups[1], nearest)) return false;
   const bool is_touching = nearest.distance <= (sensor.def.is_continuous ? kReached : 0);
   // shapes that overlap have many contacts: the first one since the sample before has the speed and the place of a hit
-  bool has_hit = false;
+  bool has_hit = false, is_fine = true;
   if ((sensor.def.is_continuous || is_touching) && has_last_ && !collision.is_touching) {
-    if (!search_motion(index, frames, has_hit)) return false;
+    is_fine = search_motion(index, frames, has_hit);
   }
-  // they overlap at the start: no motion is known
+  // they overlap at the start, where no motion is known, or the motion could not be searched
   if (is_touching && !collision.is_touching && !has_hit) {
-    add_hit(index, collision, 0, 0.5 * (nearest.p_a_W + nearest.p_b_W));
+    const auto before = [&](std::size_t frame) { return last_[frame]; };
+    const double speed = has_last_ ? std::max(nearest.closing_speed(before), 0.0) : 0;
+    add_hit(index, collision, speed, 0.5 * (nearest.p_a_W + nearest.p_b_W));
     has_hit = true;
   }
   if (!is_touching && (collision.is_touching || has_hit)) {
@@ -420,15 +422,23 @@ bool Sensors::observe_collision(std::size_t index, std::span<const FrameMotion> 
   }
   collision.samples = is_touching && collision.is_touching ? collision.samples + 1 : 0;
   collision.is_touching = is_touching;
-  return true;
+  return is_fine;
 }
 
-// Conservative advancement over the interval before this sample.
+// Conservative advancement over the interval before this sample. False: a search failed, or a body turns by half a turn
+// or more, which poses do not show.
 bool Sensors::search_motion(std::size_t index, std::span<const FrameMotion> frames, bool& has_hit) {
   const Sensor& sensor = sensors_[index];
   const std::size_t a = sensor.groups[0], b = sensor.groups[1];
   std::vector<Path> paths;
   for (std::size_t frame = 0; frame < frames.size(); ++frame) paths.emplace_back(last_[frame], frames[frame]);
+  for (const std::size_t group : {a, b}) {
+    for (const std::size_t i : search_->group_shapes[group]) {
+      const std::size_t frame = search_->shapes[i].frame;
+      const double rate = std::max(norm(last_[frame].w_W), norm(frames[frame].w_W));
+      if (rate * interval_ >= M_PI) return false;
+    }
+  }
   // (3)
   double mu = 0;
   for (const std::size_t i : search_->group_shapes[a]) {

@@ -84,7 +84,9 @@ class Sensors {
   Sensors(const Sensors&) = delete;
   Sensors& operator=(const Sensors&) = delete;
 
-  // Takes the next sample, by frame. False: a search failed; the values of that sensor stay, and failed() names it.
+  // Takes the next sample, by frame. False: a search failed, and the values of that sensor stay; or the motion before a
+  // sample was not searched, since a body turns by half a turn or more in an interval, and its values are those of the
+  // sample alone. failed() names the sensor.
   bool observe(std::span<const FrameMotion> frames);
   [[nodiscard]] std::size_t failed() const noexcept { return failed_; }
   // Events of the last sample, in the order of the sensors.

@@ -199,6 +199,23 @@ TEST(ContinuousCollision, FindsABarThatTurnsPastAPost) {
   EXPECT_NEAR(value(sensors, "S.place.y"), post.p_W[1], 1e-3);
 }
 
+// from half a turn in an interval on, two poses do not show which way a body has turned, and how often
+TEST(ContinuousCollision, IsNotFineWhereABodyTurnsByHalfATurnInAnInterval) {
+  for (const auto& [rate, is_fine] : {std::pair(310.0, true), std::pair(320.0, false), std::pair(628.0, false)}) {
+    Sensors sensors(pair(box(2, 0.01, 0.01), box(0.001, 0.001, 1), continuous()));
+    const auto turned = [&](double t) { return FrameMotion{.R_W = math::rotation_z(rate * t), .w_W = {0, 0, rate}}; };
+    const FrameMotion post{.p_W = {0, 2, 0}};
+    ASSERT_TRUE(sensors.observe(at(turned(0), post)));
+    EXPECT_EQ(sensors.observe(at(turned(0.01), post)), is_fine) << rate;
+    EXPECT_EQ(sensors.failed(), 0U);
+    EXPECT_EQ(value(sensors, "S.touching"), 0);
+    // the sample itself counts all the same
+    EXPECT_EQ(sensors.observe(at(turned(0.02), {})), is_fine) << rate;
+    EXPECT_EQ(value(sensors, "S.touching"), 1);
+    EXPECT_EQ(value(sensors, "S.hits"), 1);
+  }
+}
+
 TEST(ContinuousCollision, FindsNothingWherePathsMiss) {
   Sensors sensors(pair(sphere(0.005), box(0.001, 1, 1), continuous()));
   FrameMotion ball = at_x(-0.2, 40);
