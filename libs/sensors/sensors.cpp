@@ -379,11 +379,10 @@ bool Sensors::observe_zone(std::size_t index) {
       is_fine = false;
       continue;
     }
-    const double before = time_of(watched.samples);
+    const double before = time_of(watched.samples), now = time_of(watched.samples + 1);
     watched.samples = is_inside && watched.is_inside ? watched.samples + 1 : 0;
-    const double now = time_of(watched.samples);
     if (is_inside != watched.is_inside) {
-      events_.push_back({index, k, is_inside ? EventKind::enter : EventKind::leave, is_inside ? 0 : before, {}});
+      events_.push_back({index, k, is_inside ? EventKind::enter : EventKind::leave, is_inside ? 0 : now, {}});
     } else if (is_inside && sensor.def.stay > 0 && before < sensor.def.stay && now >= sensor.def.stay) {
       events_.push_back({index, k, EventKind::stay, now, {}});
     }
@@ -392,11 +391,13 @@ bool Sensors::observe_zone(std::size_t index) {
   return is_fine;
 }
 
-void Sensors::add_hit(std::size_t index, Collision& collision, double speed, Vec3 place_W) {
+void Sensors::add_hit(std::size_t index, Collision& collision, double speed, Vec3 place_W, double before) {
   ++collision.hits;
+  collision.samples = 0;
+  collision.hit_before = before;
   collision.speed = speed;
   collision.place_W = place_W;
-  events_.push_back({index, 0, EventKind::hit, speed, place_W});
+  events_.push_back({index, 0, EventKind::hit, speed, place_W, before});
 }
 
 bool Sensors::observe_collision(std::size_t index, std::span<const FrameMotion> frames) {
@@ -414,13 +415,14 @@ bool Sensors::observe_collision(std::size_t index, std::span<const FrameMotion> 
   if (is_touching && !collision.is_touching && !has_hit) {
     const auto before = [&](std::size_t frame) { return last_[frame]; };
     const double speed = has_last_ ? std::max(nearest.closing_speed(before), 0.0) : 0;
-    add_hit(index, collision, speed, 0.5 * (nearest.p_a_W + nearest.p_b_W));
+    add_hit(index, collision, speed, 0.5 * (nearest.p_a_W + nearest.p_b_W), 0);
     has_hit = true;
   }
+  if (!has_hit) ++collision.samples;
   if (!is_touching && (collision.is_touching || has_hit)) {
-    events_.push_back({index, 0, EventKind::apart, collision.is_touching ? time_of(collision.samples + 1) : 0, {}});
+    events_.push_back({index, 0, EventKind::apart, collision.hit_before + time_of(collision.samples), {}});
   }
-  collision.samples = is_touching && collision.is_touching ? collision.samples + 1 : 0;
+  if (!is_touching) collision.samples = 0;
   collision.is_touching = is_touching;
   return is_fine;
 }
@@ -464,7 +466,7 @@ bool Sensors::search_motion(std::size_t index, std::span<const FrameMotion> fram
       // (4)
       const auto mean = [&](std::size_t frame) { return paths[frame].mean_at(tau, interval_); };
       const double speed = std::max({nearest.closing_speed(at_tau), nearest.closing_speed(mean), 0.0});
-      add_hit(index, collisions_[sensor.first], speed, 0.5 * (nearest.p_a_W + nearest.p_b_W));
+      add_hit(index, collisions_[sensor.first], speed, 0.5 * (nearest.p_a_W + nearest.p_b_W), (1 - tau) * interval_);
       has_hit = true;
     }
     // not to the contact itself, where the shapes have no direction from one to the other
@@ -564,8 +566,8 @@ std::string event_text(const SensorDef& def, const Event& event) {
     case EventKind::stay:
       return fmt::format("{}: {} has stayed for {:.3g} s", def.name, watched(), event.value);
     case EventKind::hit:
-      return fmt::format("{}: hit at {:.3g} m/s, at {:.3f} {:.3f} {:.3f} m", def.name, event.value, event.place_W[0],
-                         event.place_W[1], event.place_W[2]);
+      return fmt::format("{}: hit at {:.3g} m/s, {:.3g} ms before the step, at {:.3f} {:.3f} {:.3f} m", def.name,
+                         event.value, 1000 * event.before, event.place_W[0], event.place_W[1], event.place_W[2]);
     case EventKind::apart:
       return fmt::format("{}: apart after {:.3g} s", def.name, event.value);
   }
@@ -597,6 +599,7 @@ void Sensors::visit(Bytes& bytes, Self& self) {
   for (auto& collision : self.collisions_) {
     bytes.flag(collision.is_touching);
     bytes.count(collision.samples, kLastStep);
+    bytes.number(collision.hit_before);
     bytes.count(collision.hits, kLastStep);
     bytes.number(collision.speed);
     visit_vector(bytes, collision.place_W);

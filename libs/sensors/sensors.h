@@ -69,11 +69,12 @@ struct Event {
   std::size_t sensor = 0;   // index of SensorsDef::sensors
   std::size_t watched = 0;  // zone: index of `watch`
   EventKind kind = EventKind::close;
-  double value = 0;    // m (close, clear), s (leave, stay, apart), m/s (hit); enter: 0
+  double value = 0;    // m (close, clear), s since enter or hit (leave, stay, apart), m/s (hit); enter: 0
   math::Vec3 place_W;  // m, of a hit
+  double before = 0;   // s, by which a hit was before the sample
 };
 
-// "Boom_Cab: 0.482 m, below the limit of 0.5 m"
+// "Boom_Cab: 0.482 m, below the limit of 0.5 m"; of a hit with its time before the sample
 [[nodiscard]] std::string event_text(const SensorDef& def, const Event& event);
 
 class Sensors {
@@ -116,7 +117,8 @@ class Sensors {
   };
   struct Collision {
     bool is_touching = false;
-    std::int64_t samples = 0;  // since the hit
+    std::int64_t samples = 0;  // since the one of the hit
+    double hit_before = 0;     // s, of the hit before that sample
     std::int64_t hits = 0;
     double speed = 0;  // m/s, of the last hit
     math::Vec3 place_W;
@@ -133,7 +135,7 @@ class Sensors {
   bool observe_zone(std::size_t index);
   bool observe_collision(std::size_t index, std::span<const FrameMotion> frames);
   bool search_motion(std::size_t index, std::span<const FrameMotion> frames, bool& has_hit);
-  void add_hit(std::size_t index, Collision& collision, double speed, math::Vec3 place_W);
+  void add_hit(std::size_t index, Collision& collision, double speed, math::Vec3 place_W, double before);
   template <typename Bytes, typename Self>
   static void visit(Bytes& bytes, Self& self);
 

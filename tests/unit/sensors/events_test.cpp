@@ -55,7 +55,7 @@ TEST(Zone, TellsWhoEntersStaysAndLeaves) {
     EXPECT_EQ(words(sensors), expected) << x;
     for (const Event& event : sensors.events()) texts.push_back(event_text(zone, event));
   }
-  const std::vector<std::string> expected = {"S: A entered", "S: A has stayed for 0.06 s", "S: A left after 0.08 s",
+  const std::vector<std::string> expected = {"S: A entered", "S: A has stayed for 0.06 s", "S: A left after 0.1 s",
                                              "S: A entered"};
   EXPECT_EQ(texts, expected);
   EXPECT_EQ(value(sensors, "S.inside"), 1);
@@ -92,12 +92,13 @@ TEST(Collision, GivesSpeedAndPlaceOfAHit) {
   EXPECT_NEAR(value(sensors, "S.speed"), 3, 1e-12);
   EXPECT_EQ(value(sensors, "S.touching"), 1);
   EXPECT_NEAR(norm(point(sensors, "S.place") - Vec3(1, 2, 0)), 0, 1e-4);
-  EXPECT_EQ(event_text(sensor, sensors.events()[0]), "S: hit at 3 m/s, at 1.000 2.000 0.000 m");
+  EXPECT_EQ(event_text(sensor, sensors.events()[0]),
+            "S: hit at 3 m/s, 6.65 ms before the step, at 1.000 2.000 0.000 m");
   ASSERT_TRUE(sensors.observe(at(falling(0.48))));
   EXPECT_EQ(words(sensors), "");
   ASSERT_TRUE(sensors.observe(at(falling(0.51))));
   EXPECT_EQ(words(sensors), "apart");
-  EXPECT_EQ(event_text(sensor, sensors.events()[0]), "S: apart after 0.08 s");
+  EXPECT_EQ(event_text(sensor, sensors.events()[0]), "S: apart after 0.0867 s");
   EXPECT_EQ(value(sensors, "S.hits"), 1);
 }
 
@@ -162,6 +163,9 @@ TEST(ContinuousCollision, FindsABallThatPassesAPlateBetweenTwoSamples) {
   EXPECT_NEAR(value(sensors, "S.speed"), 40, 1e-9);
   // where the ball's front meets the plate, to the 0.1 mm of the search
   EXPECT_NEAR(norm(point(sensors, "S.place") - Vec3(-0.0005, 0, 0)), 0, 1e-4);
+  // and when: both events name the same time
+  EXPECT_NEAR(sensors.events()[0].before, (0.27 + 0.0055) / 40, 1e-4 / 40);
+  EXPECT_EQ(sensors.events()[1].value, sensors.events()[0].before);
   EXPECT_EQ(value(sensors, "S.touching"), 0);
 
   SensorsDef by_samples = def;

@@ -78,6 +78,9 @@ TEST(FallingBall, IsSeenAtTheHeightAndSpeedOfItsFall) {
   // the speed of the sample before, or of the way since: within what gravity adds in a sample
   EXPECT_NEAR(events[3].second.value, kSpeed, kGravity * 0.01);
   EXPECT_NEAR(events[3].second.place[1], 0, 1e-4);
+  // the way between two samples differs from a straight line by g h^2 / 8
+  const double time = 1e-3 * static_cast<double>(events[3].first) - events[3].second.before;
+  EXPECT_NEAR(time, time_of(kHeight - kRadius), (1e-4 + kGravity * 1e-4 / 8) / kSpeed);
 }
 
 // half a period of the contact is 2 ms: 1.3 ms after the ball has met the floor, a sample sees it on its way up
