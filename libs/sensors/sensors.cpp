@@ -25,13 +25,18 @@ namespace {
 
 constexpr double kReached = 1e-4;  // m, distance at which a continuous search has found a hit
 
-// Indices of the shapes that a list names; in the list's order, each once.
+bool is_zone(const SensorsDef& def, const std::string& shape) {
+  return std::any_of(def.sensors.begin(), def.sensors.end(), [&](const SensorDef& s) { return s.zone == shape; });
+}
+
+// Indices of the shapes that a list names; in the list's order, each once. A zone is no part of its body: it counts
+// under its own name only.
 std::vector<std::size_t> shapes_of(const SensorsDef& def, const std::vector<std::string>& names) {
   std::vector<std::size_t> found;
   for (const std::string& name : names) {
     for (std::size_t i = 0; i < def.shapes.size(); ++i) {
       const ShapeDef& shape = def.shapes[i];
-      if (shape.name != name && shape.frame != name) continue;
+      if (shape.name != name && (shape.frame != name || is_zone(def, shape.name))) continue;
       if (std::find(found.begin(), found.end(), i) == found.end()) found.push_back(i);
     }
   }
@@ -62,7 +67,7 @@ class Validator {
   std::vector<std::size_t> group(const SensorDef& sensor, const char* key, const std::vector<std::string>& names) {
     for (const std::string& name : names) {
       if (shapes_of(def_, {name}).empty()) {
-        add(sensor, key, fmt::format("'{}' has no shape", name), "a shape, or a body with a shape");
+        add(sensor, key, fmt::format("'{}' has no shape", name), "a shape, or a body with a shape that is no zone");
       }
     }
     if (names.empty()) add(sensor, key, "the list is empty", "names of shapes or bodies");

@@ -23,7 +23,7 @@ namespace slew::sensors {
 enum class SensorType : int { clearance, zone, collision };
 
 // One struct for every type; each type's field table lists the members that it has. Names are shapes, or frames: then
-// all shapes of the frame.
+// all shapes of the frame that are no zone of any sensor.
 struct SensorDef {
   std::string name{};
   SensorType type = SensorType::clearance;

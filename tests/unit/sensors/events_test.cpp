@@ -79,6 +79,22 @@ TEST(Zone, SeesEveryShapeOfABody) {
   }
 }
 
+// a clearance to the body of a zone does not fall to 0 in the zone
+TEST(Zone, IsNoPartOfItsBody) {
+  SensorsDef def = pair(sphere(0.5), box(1, 1, 1), clearance());
+  def.sensors[0].to = {"B"};
+  def.shapes.push_back(in_frame(box(9, 9, 9), "space", "B"));
+  def.sensors.push_back({.name = "Z", .type = SensorType::zone, .zone = "space", .watch = {"A"}});
+  Sensors sensors(def);
+  ASSERT_TRUE(sensors.observe(at(at_x(3))));
+  EXPECT_NEAR(value(sensors, "S.distance"), 2, 1e-9);
+  EXPECT_EQ(value(sensors, "Z.inside"), 1);
+  def.sensors[0].to = {"space"};
+  Sensors by_name(def);
+  ASSERT_TRUE(by_name.observe(at(at_x(3))));
+  EXPECT_EQ(value(by_name, "S.distance"), 0);
+}
+
 TEST(Collision, GivesSpeedAndPlaceOfAHit) {
   SensorDef sensor{.name = "S", .type = SensorType::collision, .of = {"A"}, .to = {"b"}};
   SensorsDef def = pair(sphere(0.5), plane(), sensor);
