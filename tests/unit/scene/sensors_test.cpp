@@ -70,6 +70,24 @@ TEST(SensorSection, RefusesWhatCannotWorkWithItsPlace) {
   EXPECT_NE(problem_of("  S: {type: camera}").find("camera"), std::string::npos);
 }
 
+TEST(SensorSection, TakesAPlaneOnABodyThatIsFixedToGround) {
+  const std::string foot = kYard + R"(
+  Slab: {type: plane, body: Foot, position: [0, 1 m, 0], orientation: [0, -90 deg, 0]}
+sensors:
+  Gap: {type: clearance, of: [Ball], to: [Slab]}
+)";
+  const auto with = [&](const std::string& type) {
+    std::string text = foot;
+    text.insert(text.find("joints:"), "  Foot: {mass: 1 kg, inertia: [0.1, 0.1, 0.1], position: [0, 2 m, 0]}\n");
+    text.insert(text.find("shapes:"), "  Foot_Joint: {type: " + type + ", body2: Foot, point1: [0, 2 m, 0]}\n");
+    return text;
+  };
+  const sensors::SensorsDef def = sensors_of(load_text(with("fixed"), "test"));
+  ASSERT_EQ(def.frames.size(), 3u);
+  EXPECT_TRUE(def.frames[2].is_static);
+  EXPECT_THROW(static_cast<void>(load_text(with("floating"), "test")), LoadError);
+}
+
 // contact needs convex pieces where sensors do not
 TEST(SensorSection, OffersSensorsWhereAMeshThatMovesIsInContact) {
   const std::string pair = kYard + "contacts: {Touch: {shape_a: Sheet, shape_b: Floor, spring_constant: 1e6 N/m}}\n";

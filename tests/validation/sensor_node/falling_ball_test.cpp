@@ -104,6 +104,17 @@ TEST(BouncingBall, HitsAtTheSpeedOfItsFall) {
   }
 }
 
+// a plane on a body that is fixed to Ground stands where that body stands
+TEST(FixedPlane, HasTheHeightOfItsBody) {
+  std::string text(kScene);
+  text.insert(text.find("joints:"), "  Foot: {mass: 1 kg, inertia: [0.1, 0.1, 0.1], position: [0, 1 m, 0]}\n");
+  text.insert(text.find("shapes:"), "  Foot_Joint: {type: fixed, body2: Foot, point1: [0, 1 m, 0]}\n");
+  text.insert(text.find("type: plane") + 11, ", body: Foot");
+  DirectSession session(scene::load_text(text, "ball"));
+  ASSERT_TRUE(session.start().is_ok());
+  EXPECT_NEAR(value(session, "Gap.distance"), kHeight - kRadius - 1, 1e-12);
+}
+
 TEST(CraneWithSensors, ComputesTheSamePhysicsAsWithout) {
   const std::string file = SLEWRING_SOURCE_DIR "/scenes/truck_crane_sensors.yaml";
   const scene::Scene with = scene::load_file(file);
