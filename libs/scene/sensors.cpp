@@ -55,8 +55,12 @@ void check_sensors(const Scene& scene, Problems& problems) {
   for (const sensors::SensorDef& sensor : scene.sensors) {
     most_events += std::max<std::size_t>(2, sensor.watch.size());
     if (most_events <= coupling::kMaxSensorEvents) continue;
-    problems.push_back({sensor.name, "the sensors can have more events in one sample than a message holds",
-                        fmt::format("at most {} sensors, or bodies in zones", coupling::kMaxSensorEvents / 2), ""});
+    problems.push_back(
+        {sensor.name, "up to here the sensors can have more events in one sample than a message holds",
+         fmt::format("at most {}: two of a clearance or a collision, one of each watched name of a zone, "
+                     "at least two of a zone",
+                     coupling::kMaxSensorEvents),
+         ""});
     break;
   }
   if (def.frames.size() > coupling::kMaxSensedBodies + 1) {

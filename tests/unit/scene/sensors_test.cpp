@@ -67,7 +67,21 @@ TEST(SensorSection, RefusesWhatCannotWorkWithItsPlace) {
             std::string::npos);
   EXPECT_NE(problem_of("  S: {type: zone, zone: Sheet, watch: [Ball]}").find("has no inside"), std::string::npos);
   EXPECT_NE(problem_of("  S: {type: zone, zone: Gate, watch: [Ball, Ball]}").find("named twice"), std::string::npos);
+  EXPECT_NE(problem_of("  S: {type: clearance, of: 3, to: [Ball]}").find("a list of names of bodies or shapes"),
+            std::string::npos);
   EXPECT_NE(problem_of("  S: {type: camera}").find("camera"), std::string::npos);
+}
+
+TEST(SensorSection, HasAsManyEventsAsAMessageHolds) {
+  std::string sensors;
+  const auto add = [&](int i) {
+    sensors += "  S" + std::to_string(i) + ": {type: clearance, of: [Ball], to: [Plate]}\n";
+  };
+  for (int i = 0; i < 128; ++i) add(i);
+  EXPECT_EQ(problem_of(sensors), "");
+  add(128);
+  EXPECT_NE(problem_of(sensors).find("S128: up to here the sensors can have more events"), std::string::npos);
+  EXPECT_NE(problem_of(sensors).find("at most 256: two of a clearance or a collision"), std::string::npos);
 }
 
 TEST(SensorSection, TakesAPlaneOnABodyThatIsFixedToGround) {
