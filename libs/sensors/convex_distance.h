@@ -23,7 +23,7 @@ namespace slew::sensors::fcl_border {
 using Vector3 = Eigen::Vector3d;
 
 constexpr double kEnough = 1e-13;       // share of the shapes' size: (1) is closed
-constexpr double kProved = 1e-9;        // the same: the widest gap of (1) that counts as a distance
+constexpr double kProved = 1e-7;        // the same: the widest gap of (1) that counts as a distance, seen: 7e-9
 constexpr double kTouching = 1e-14;     // the same: rounding of a difference of points
 constexpr int kMostDifferences = 1000;  // of D, in a search; polyhedra need some ten, a cylinder up to a hundred
 
@@ -103,16 +103,17 @@ inline Nearest nearest_of(const Corners& s) {
 }
 
 // Keeps the corners of the nearest point, and returns this as a point of D.
-inline Difference shrink(Corners& s, const Nearest& nearest) {
-  Corners kept;
+inline Difference shrink(Corners& s, Nearest nearest) {
   Difference point{nearest.x, Vector3::Zero(), Vector3::Zero()};
   for (std::size_t k = 0; k < nearest.count; ++k) {
-    const Difference& corner = s.at[nearest.corner[k]];
-    point.on_a += nearest.weight[k] * corner.on_a;
-    point.on_b += nearest.weight[k] * corner.on_b;
-    kept.at[kept.count++] = corner;
+    point.on_a += nearest.weight[k] * s.at[nearest.corner[k]].on_a;
+    point.on_b += nearest.weight[k] * s.at[nearest.corner[k]].on_b;
   }
-  s = kept;
+  const auto kept = nearest.corner.begin();
+  std::sort(kept, kept + static_cast<std::ptrdiff_t>(nearest.count));
+  for (s.count = 0; s.count < nearest.count; ++s.count) {
+    if (nearest.corner[s.count] != s.count) s.at[s.count] = s.at[nearest.corner[s.count]];
+  }
   return point;
 }
 
@@ -137,7 +138,9 @@ ConvexDistance find_convex_distance(const Farthest& farthest) {
     if (s.count == 4 && simplex::holds_origin(s)) return {true, 0, v.on_a, v.on_b};
     simplex::Nearest next = simplex::nearest_of(s);
     if (!(next.square < square)) {
-      s = {{v, w}, 2};
+      s.at[0] = v;
+      s.at[1] = w;
+      s.count = 2;
       next = simplex::nearest_of(s);
       if (!(next.square < square)) break;
     }

@@ -323,7 +323,7 @@ ConvexDistance proved(const ConvexDistance& found) {
 }
 
 // The triangle of a surface that is nearest to a convex shape, by FCL's tree of boxes about the triangles. FCL's own
-// search between a triangle and a shape ends too early in one of some 50,000 places.
+// search between a triangle and a shape ends too early in one of some 1,500 places.
 template <typename Shape>
 class SurfaceWalk {
  public:

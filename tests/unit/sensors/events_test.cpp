@@ -109,7 +109,7 @@ TEST(Collision, GivesSpeedAndPlaceOfAHit) {
   EXPECT_EQ(value(sensors, "S.touching"), 1);
   EXPECT_NEAR(norm(point(sensors, "S.place") - Vec3(1, 2, 0)), 0, 1e-4);
   EXPECT_EQ(event_text(sensor, sensors.events()[0]),
-            "S: hit at 3 m/s, 6.65 ms before the step, at 1.000 2.000 0.000 m");
+            "S: hit at 3 m/s, 6.68 ms before the step, at 1.000 2.000 0.000 m");
   ASSERT_TRUE(sensors.observe(at(falling(0.48))));
   EXPECT_EQ(words(sensors), "");
   ASSERT_TRUE(sensors.observe(at(falling(0.51))));
