@@ -32,9 +32,7 @@ void FlagCounter::take(const wire::Header& header, const wire::SampleState& stat
     if (!is_same_epoch || header.step < counts.step) is_in_order_ = false;
     return;
   }
-  // sensors publish at every k-th step only
-  if (is_same_epoch && header.role != wire::Role::sensor)
-    counts.missed += static_cast<std::uint64_t>(header.step - counts.step - 1);
+  if (is_same_epoch) counts.missed += static_cast<std::uint64_t>(header.step - counts.step - 1);
   if (!counts.has_sample) counts.begin = header.step;
   counts.has_sample = true;
   counts.epoch = header.epoch;
@@ -60,6 +58,7 @@ void FlagCounter::take_lateness(const wire::Header& header, const wire::SampleSt
 std::uint64_t FlagCounter::missed(StepIndex begin) const {
   std::uint64_t missed = 0;
   for (const auto& [role, counts] : of_) {
+    if (role == wire::Role::sensor) continue;  // every k-th step only
     missed += counts.missed + static_cast<std::uint64_t>(std::max<StepIndex>(0, counts.begin - begin - 1));
   }
   return missed;

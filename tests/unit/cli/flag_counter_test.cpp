@@ -49,13 +49,13 @@ TEST(FlagCounter, SamplesThatDidNotArriveAreCountedAndANewEpochIsNoGap) {
 // sensors publish at every k-th step
 TEST(FlagCounter, NamesTheSensorWhoseSearchFailed) {
   FlagCounter flags;
-  take(flags, 0, StepFlag{}, 1, wire::Role::sensor);
-  for (const StepIndex step : {10, 20}) take(flags, step, StepFlag::not_converged, 1, wire::Role::sensor);
+  take(flags, 20, StepFlag{}, 1, wire::Role::sensor);
+  for (const StepIndex step : {30, 40}) take(flags, step, StepFlag::not_converged, 1, wire::Role::sensor);
   EXPECT_EQ(flags.missed(0), 0u);
   EXPECT_EQ(flag_sentences(flags, milliseconds(1), kNames),
             std::vector<std::string>{
                 "sensor: Hit: no distance was found, or a body turned by half a turn or more between two samples in 2 "
-                "steps, first at 10 ms; lower recording.every, or look for a body that leaves the machine"});
+                "steps, first at 30 ms; lower recording.every, or look for a body that leaves the machine"});
 }
 
 TEST(FlagCounter, ComesBackFromItsLine) {
