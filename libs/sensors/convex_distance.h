@@ -16,11 +16,11 @@
 #include <initializer_list>
 #include <limits>
 
-#include <Eigen/Core>
+#include <fcl/common/types.h>
 
 namespace slew::sensors::fcl_border {
 
-using Vector3 = Eigen::Vector3d;
+using Vector3 = fcl::Vector3d;
 
 constexpr double kEnough = 1e-13;       // share of the shapes' size: (1) is closed
 constexpr double kProved = 1e-7;        // the same: the widest gap of (1) that counts as a distance, seen: 7e-9

@@ -125,7 +125,7 @@ ShapeDef surface(double x, double y, double z) {
 }
 
 // The sides of both are in one plane, and meet nowhere but over each other; the ball's centre is beyond the plate's.
-// The second sample is beyond a bounce, of which the speed of the hit knows nothing.
+// The second sample is beyond a bounce, which does not change the speed of the hit.
 TEST(Collision, HasTheSpeedAndThePlaceOfTheFirstContact) {
   for (const bool is_continuous : {false, true}) {
     const SensorDef sensor{
