@@ -110,9 +110,9 @@ std::string PhysicsNode::outrun_text() const {
   const bool is_behind = writer.step_epoch == member_.epoch() && writer.step - awaited.step > kept;
   if (!is_follower() || member_.session().pace != Pace::real || !is_behind) return "";
   return "is " + std::to_string(writer.step - awaited.step) + " steps behind " + std::string(to_text(awaited.role)) +
-         ", which keeps the last " + std::to_string(kept) + ": this node takes longer than the " +
-         std::to_string(samples_.stride()) + " steps from one sample to the next; it stopped after step " +
-         std::to_string(n_) + "; choose a larger recording.every, fewer shapes or triangles, or pace free, which waits";
+         ", which keeps the last " + std::to_string(kept) + "; it stopped after step " + std::to_string(n_) +
+         ": a sample takes longer than its " + std::to_string(samples_.stride()) +
+         " steps; choose a larger recording.every, fewer shapes or triangles, or pace free";
 }
 
 void PhysicsNode::watch(std::int64_t now_ns) {
