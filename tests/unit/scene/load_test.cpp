@@ -326,8 +326,8 @@ TEST(Load, ATextThatIsTooLongForTheWireIsRefused) {
 }
 
 TEST(Load, ATextThatIsTooLongForTheWireNamesTheLongestElementAndItsLine) {
-  std::string numbers = "0.123456789";
-  for (int i = 1; i < 720'000; ++i) numbers += ", 0.123456789";
+  std::string numbers = "0, 0, 0, 1, 0, 0, 0, 1, 0";
+  for (int i = 0; i < 720'000; ++i) numbers += ", 0.123456789";
   const std::string shape =
       "shapes:\n  Yard: {type: triangle_mesh, vertices: [" + numbers + "], triangles: [0, 1, 2]}\n";
   try {
