@@ -14,8 +14,14 @@ using wire::Topic;
 
 namespace {
 
-// steps that every node can resend, less those on their way
-constexpr StepIndex kReach = static_cast<StepIndex>(node::kSentDepth) - 2 * node::kFollowerWindow;
+// Steps that every node can resend, less those on their way. In pace `real` the session goes on while a sensor node is
+// silent, until that is given up; so long mechanics keeps the poses.
+StepIndex reach_of(Role role, const scene::SessionDef& session) noexcept {
+  const std::size_t kept = role == Role::sensor
+                               ? node::sent_depth(duration_of_seconds(session.give_up_after), session.step_duration())
+                               : node::kSentDepth;
+  return static_cast<StepIndex>(kept) - 2 * node::kFollowerWindow;
+}
 
 }  // namespace
 
@@ -284,7 +290,7 @@ bool StateKeeper::is_suitable(Role role, StepIndex step, StepIndex n, const Samp
     if (reads_other && step < begun.from) return false;
     if (is_read && step > reached) return false;
   }
-  return step <= n && n - step <= kReach;
+  return step <= n && n - step <= reach_of(role, config_.session);
 }
 
 // The newest suitable state from which the recorder, too, misses no sample: it has all up to its published step.
