@@ -59,20 +59,22 @@ bridge::SceneView lcm_scene(const scene::Scene& scene) {
   return view;
 }
 
-void add_lcm_options(options::Command& verb, bridge::Settings& settings) {
-  verb.option("--channel", settings.prefix, "beginning of the names of channels; without it SLEWRING_<session>")
-      .value_name("PREFIX")
-      .group("LCM");
-  verb.option("--signals", settings.signals,
-              "these variables as a struct NAME_t of their own on channel PREFIX_NAME; repeat for more")
-      .value_name("NAME=VAR,VAR")
-      .one_value_each()
-      .group("LCM");
-  verb.option("--every", settings.every, "steps between two messages; 0: as often as variables are published")
-      .not_negative()
-      .value_name("N")
-      .show_default()
-      .group("LCM");
+std::vector<options::Option> add_lcm_options(options::Command& verb, bridge::Settings& settings) {
+  std::vector<options::Option> added;
+  added.push_back(
+      verb.option("--channel", settings.prefix, "beginning of the names of channels; without it SLEWRING_<session>")
+          .value_name("PREFIX"));
+  added.push_back(verb.option("--signals", settings.signals,
+                              "these variables as a struct NAME_t of their own on channel PREFIX_NAME; repeat for more")
+                      .value_name("NAME=VAR,VAR")
+                      .one_value_each());
+  added.push_back(
+      verb.option("--every", settings.every, "steps between two messages; 0: as often as variables are published")
+          .not_negative()
+          .value_name("N")
+          .show_default());
+  for (options::Option& option : added) option.group("LCM");
+  return added;
 }
 
 void add_bridge(options::Command& program) {

@@ -132,6 +132,11 @@ void write_log(const Options& options, const recording::Reader& reader, const sc
   session::watch_recording(reader, view, log.receiver(view));
   if (log.events() == 0)
     throw Failure(ExitCode::bad_input, "the recording has no variables in this time; nothing was written");
+  if (log.incomplete() > 0) {
+    fmt::print(stderr,
+               "warning: {} messages of the signal lists are left out: the recording lacks values of their steps\n",
+               log.incomplete());
+  }
   for (const std::string& input : log.missing_inputs()) {
     fmt::print(stderr, "warning: {}.raw is not recorded (recording.variables): the log has no inputs for {}\n", input,
                input);
@@ -148,8 +153,10 @@ ExitCode export_lcm(Options options) {
   if (!options.output.empty()) {
     throw Failure(ExitCode::bad_input, "--lcm FILE and -o exclude each other; nothing was written; leave -o out");
   }
+  if (options.lcm == "-") throw Failure(ExitCode::bad_input, "an event log needs a name; nothing was written");
   options.output = options.lcm;
   check_output(options);
+  require_writable(options.output);
   const auto reader = session::open_recording(options.recording);
   const scene::Scene scene = scene::load_text(session::recorded_scene_text(*reader), reader->identity().scene);
   return write_file(options, [&](const std::filesystem::path& path) {
@@ -214,7 +221,7 @@ void add_export(options::Command& program) {
   csv.excludes(mat);
   input.excludes(mat);
   for (const options::Option& other : {csv, mat, input}) lcm.excludes(other);
-  add_lcm_options(verb, options->for_lcm);
+  for (options::Option& option : add_lcm_options(verb, options->for_lcm)) option.needs(lcm);
   verb.option("--from", options->from, "leave out what lies before, such as '2.5 s'").value_name("TIME");
   verb.option("--to", options->to, "leave out what lies behind").value_name("TIME");
   verb.option("-o,--output", options->output, "file to write; without it standard output").value_name("FILE");

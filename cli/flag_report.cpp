@@ -38,11 +38,17 @@ constexpr std::array<Meaning, FlagCounter::kFlags.size()> kMeanings = {{
      "its theory is one of small deflections: take the numbers for estimates"},
 }};
 
+constexpr Meaning kSearchFailed = {"no distance was found, or a body turned by half a turn or more between two samples",
+                                   "lower recording.every, or look for a body that leaves the machine"};
+
+const Meaning& meaning_of(wire::Role role, std::size_t flag) {
+  const bool is_search = role == wire::Role::sensor && FlagCounter::kFlags[flag] == StepFlag::not_converged;
+  return is_search ? kSearchFailed : kMeanings[flag];
+}
+
 }  // namespace
 
-// volumes: names, in the order of the scene.
-std::vector<std::string> flag_sentences(const FlagCounter& flags, SimDuration step,
-                                        const std::vector<std::string>& volumes) {
+std::vector<std::string> flag_sentences(const FlagCounter& flags, SimDuration step, const OffenderNames& names) {
   std::vector<std::string> sentences;
   for (const auto& [role, counts] : flags.by_role()) {
     if (counts.late == 0 && counts.lost == 0) continue;
@@ -57,12 +63,14 @@ std::vector<std::string> flag_sentences(const FlagCounter& flags, SimDuration st
     for (std::size_t i = 0; i < kMeanings.size(); ++i) {
       const FlagCounter::Seen& entry = counts.seen[i];
       if (entry.steps == 0) continue;
-      const bool is_named = entry.volume >= 0 && static_cast<std::size_t>(entry.volume) < volumes.size();
-      const std::string name = is_named ? volumes[static_cast<std::size_t>(entry.volume)] + ": " : "";
-      sentences.push_back(fmt::format("{}: {}{} in {}, first at {}; {}", node::to_text(role), name, kMeanings[i].what,
+      const std::vector<std::string>& of_role = role == wire::Role::sensor ? names.sensors : names.volumes;
+      const bool is_named = entry.offender >= 0 && static_cast<std::size_t>(entry.offender) < of_role.size();
+      const std::string name = is_named ? of_role[static_cast<std::size_t>(entry.offender)] + ": " : "";
+      const Meaning& meaning = meaning_of(role, i);
+      sentences.push_back(fmt::format("{}: {}{} in {}, first at {}; {}", node::to_text(role), name, meaning.what,
                                       counted(entry.steps, "step", "steps"),
                                       duration_text(static_cast<double>(entry.first) * step.seconds()),
-                                      kMeanings[i].remedy));
+                                      meaning.remedy));
     }
   }
   return sentences;
@@ -70,31 +78,38 @@ std::vector<std::string> flag_sentences(const FlagCounter& flags, SimDuration st
 
 namespace {
 
-std::vector<std::string> volume_names(const scene::Scene& scene) {
-  std::vector<std::string> names;
-  for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) names.push_back(volume.name);
+OffenderNames names_of(const scene::Scene& scene) {
+  OffenderNames names;
+  for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) names.volumes.push_back(volume.name);
+  for (const sensors::SensorDef& sensor : scene.sensors) names.sensors.push_back(sensor.name);
   return names;
+}
+
+template <typename Message>
+void take_sample(const recording::RecordedMessage& recorded, FlagCounter& flags) {
+  Message sample;
+  if (transport::decode(recorded.payload, sample)) flags.take(sample.header, sample.state);
 }
 
 }  // namespace
 
 std::vector<std::string> explain_flags(const FlagCounter& flags, const scene::Scene& scene) {
-  return flag_sentences(flags, scene.session.step_duration(), volume_names(scene));
+  return flag_sentences(flags, scene.session.step_duration(), names_of(scene));
 }
 
 std::vector<std::string> explain_flags(const recording::Reader& reader) {
   FlagCounter flags;
   recording::MessageFilter filter;
-  for (const wire::Topic topic : {wire::Topic::mechanism, wire::Topic::actuators}) {
+  for (const wire::Topic topic : {wire::Topic::mechanism, wire::Topic::actuators, wire::Topic::sensors}) {
     filter.topics.emplace_back(node::to_text(topic));
   }
   const Status status = reader.for_each(filter, [&](const recording::RecordedMessage& message) {
-    if (message.channel->topic == filter.topics.front()) {
-      wire::MechanismMessage sample;
-      if (transport::decode(message.payload, sample)) flags.take(sample.header, sample.state);
+    if (message.channel->topic == filter.topics[0]) {
+      take_sample<wire::MechanismMessage>(message, flags);
+    } else if (message.channel->topic == filter.topics[1]) {
+      take_sample<wire::ActuatorMessage>(message, flags);
     } else {
-      wire::ActuatorMessage sample;
-      if (transport::decode(message.payload, sample)) flags.take(sample.header, sample.state);
+      take_sample<wire::SensorMessage>(message, flags);
     }
     return recording::Reader::Visit::go_on;
   });
@@ -103,7 +118,7 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
   // the scene is read for the names in the sentences alone
   if (flag_sentences(flags, step, {}).empty()) return {};
   const scene::Scene scene = scene::load_text(session::recorded_scene_text(reader), reader.identity().scene);
-  return flag_sentences(flags, step, volume_names(scene));
+  return flag_sentences(flags, step, names_of(scene));
 }
 
 std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const scene::Scene& scene) {

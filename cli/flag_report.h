@@ -12,14 +12,19 @@
 
 namespace slew::cli {
 
-// Flags of the two physics nodes' samples: not converged, sub-step budget, clamp, energy from the coupling, cavitation
-// and pressures beyond the oil's law with the volume's name, deflections that are not small.
-// Flags that occur in sound runs too, end stops and open relief valves, are left out. For a free-running session the
+// Names of what samples name by number, in the order of the scene.
+struct OffenderNames {
+  std::vector<std::string> volumes, sensors;
+};
+
+// Flags of the samples of mechanics, hydraulics and sensors: not converged, sub-step budget, clamp, energy from the
+// coupling, cavitation and pressures beyond the oil's law with the volume's name, deflections that are not small. Flags
+// that occur in sound runs too, end stops and open relief valves, are left out. For a free-running session the
 // sentences also count steps without a sample. Throws Failure when the recording cannot be read.
 [[nodiscard]] std::vector<std::string> explain_flags(const recording::Reader& reader);
-// A sentence for each flag that was counted. volumes: names, in the order of the scene.
+// A sentence for each flag that was counted.
 [[nodiscard]] std::vector<std::string> flag_sentences(const node::FlagCounter& flags, SimDuration step,
-                                                      const std::vector<std::string>& volumes);
+                                                      const OffenderNames& names);
 [[nodiscard]] std::vector<std::string> explain_flags(const node::FlagCounter& flags, const scene::Scene& scene);
 // The same of the samples that were read while the session ran, and how many did not arrive.
 [[nodiscard]] std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const scene::Scene& scene);

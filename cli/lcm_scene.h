@@ -1,6 +1,8 @@
 // What the verbs for LCM share: a scene as the bridge needs it, and the options of its messages.
 #pragma once
 
+#include <vector>
+
 #include "bridge/bridge.h"
 #include "options/options.h"
 #include "scene/scene.h"
@@ -10,6 +12,6 @@ namespace slew::cli {
 [[nodiscard]] bridge::SceneView lcm_scene(const scene::Scene& scene);
 
 // --channel, --signals, --every.
-void add_lcm_options(options::Command& verb, bridge::Settings& settings);
+std::vector<options::Option> add_lcm_options(options::Command& verb, bridge::Settings& settings);
 
 }  // namespace slew::cli

@@ -43,6 +43,9 @@ endif()
 target_include_directories(slewring_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/libs)
 # as fmt::fmt does: with the same definitions everywhere all targets can share the precompiled headers
 target_compile_definitions(slewring_flags INTERFACE FMT_SHARED)
+# fmt asks for some optimisation of its own where there is none; after it in a precompiled header g++ 12 takes everything
+# for optimised, and its vector instructions do not compile
+target_compile_options(slewring_flags INTERFACE "-DFMT_GCC_PRAGMA(text)=")
 # what a damaged stack, a wrong length or an overwritten table of functions must not become; docs/security.md. The
 # sanitizers bring checks of their own. In libraries with the property SLEWRING_COMPUTES guarded stacks would cost 1.5
 # to 3 % of the forward dynamics' instructions; they read no bytes of others.
@@ -64,6 +67,7 @@ endif()
 
 # What is compiled more often than its loops turn: a third less to wait for a build, the same bits.
 set(SLEWRING_QUICK_TO_COMPILE $<$<CONFIG:Release>:-O1>)
+set(SLEWRING_QUICKEST_TO_COMPILE $<$<CONFIG:Release>:-O0>)
 
 # Standard headers, parsed once for each set of compiler options: a third to a half of the time of most units. Every
 # source still includes what it uses. KIND: usual, computes or texts (see slewring_library), or tests.
@@ -82,8 +86,10 @@ function(slewring_precompile target kind)
       add_library(${owner} OBJECT EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/generated/${owner}.cpp)
     endif()
     target_link_libraries(${owner} PRIVATE slewring_flags)
-    if(kind MATCHES "texts|tests")
+    if(kind STREQUAL texts)
       target_compile_options(${owner} PRIVATE ${SLEWRING_QUICK_TO_COMPILE})
+    elseif(kind STREQUAL tests)
+      target_compile_options(${owner} PRIVATE ${SLEWRING_QUICKEST_TO_COMPILE})
     endif()
     if(kind STREQUAL computes)
       set_target_properties(${owner} PROPERTIES SLEWRING_COMPUTES ON)
@@ -99,12 +105,12 @@ function(slewring_compile_apart options)
                                                  SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# Headers and instances of templates are compiled once for six files. The sources of a library therefore name no two
+# Headers and instances of templates are compiled once for twelve files. The sources of a library therefore name no two
 # things of their unnamed namespaces alike, and each test file has a namespace of its own; asan-ubsan compiles every file
 # alone. Sources that are long to compile stay alone with slewring_compile_alone.
 function(slewring_compile_together target)
   if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
   endif()
 endfunction()
 function(slewring_compile_alone)
@@ -156,7 +162,7 @@ function(slewring_test name)
   cmake_parse_arguments(ARG "SERIAL" "LABEL;TIMEOUT" "SOURCES;DEPENDS;LINK" ${ARGN})
   slewring_program(${name} SOURCES ${ARG_SOURCES} DEPENDS ${ARG_DEPENDS}
                    LINK ${ARG_LINK} slewring_build_paths GTest::gtest_main)
-  target_compile_options(${name} PRIVATE ${SLEWRING_QUICK_TO_COMPILE})
+  target_compile_options(${name} PRIVATE ${SLEWRING_QUICKEST_TO_COMPILE})
   slewring_compile_together(${name})
   if(NOT "${ARG_SOURCES}" MATCHES "\\.c(;|$)")  # the headers are those of C++
     slewring_precompile(${name} tests)

@@ -328,10 +328,10 @@ bool IoNode::advance_join(std::int64_t now_ns) {
     return true;
   }
   if (now_ns > deadline_ns_) {
-    begin_ending(ExitCode::failed,
-                 "JOIN did not come about within " + node::seconds_text(config_.join_timeout) + ": " +
-                     member_.missing_join_text(),
-                 now_ns);
+    begin_ending(
+        ExitCode::failed,
+        "JOIN did not come about within " + seconds_text(config_.join_timeout) + ": " + member_.missing_join_text(),
+        now_ns);
     return true;
   }
   if (member_.probe_is_due(now_ns)) {
@@ -346,10 +346,9 @@ bool IoNode::advance_join(std::int64_t now_ns) {
 bool IoNode::advance_initialising(std::int64_t now_ns) {
   if (!member_.all_required(NodeState::ready)) {
     if (now_ns > deadline_ns_) {
-      begin_ending(
-          ExitCode::failed,
-          "not every node became ready within " + node::seconds_text(config_.join_timeout) + ": " + not_ready_text(),
-          now_ns);
+      begin_ending(ExitCode::failed,
+                   "not every node became ready within " + seconds_text(config_.join_timeout) + ": " + not_ready_text(),
+                   now_ns);
     }
     return false;
   }
@@ -441,7 +440,7 @@ bool IoNode::has_holders(std::int64_t now_ns) {
   if (event == ControllerWait::Event::times_out) {
     const std::string& name = inputs_.gate().config(static_cast<std::size_t>(vacant)).name;
     begin_ending(ExitCode::failed,
-                 "no controller took channel " + name + " within " + node::seconds_text(config_.join_timeout) +
+                 "no controller took channel " + name + " within " + seconds_text(config_.join_timeout) +
                      ", and the scene has it as controller: lockstep; nothing was computed; start the controller with "
                      "the session (--join-timeout waits longer), or run with --set " +
                      name + ".controller=sampled",
@@ -762,11 +761,11 @@ void IoNode::watch_stall(std::int64_t now_ns) {
   if (!stall_.is_named() || stall_.waited() < longest || stall_.awaited().role == Role::recorder) return;
   const std::string text = stall_.text(member_, requests);
   if (config_.session.rejoin > 0 && hold_role(stall_.awaited().role, now_ns)) {
-    member_.warn(text + " for " + node::seconds_text(longest) + "; its place was given away");
+    member_.warn(text + " for " + seconds_text(longest) + "; its place was given away");
     return;
   }
   begin_ending(ExitCode::node_lost,
-               text + ", nothing came within " + node::seconds_text(longest) +
+               text + ", nothing came within " + seconds_text(longest) +
                    " (session.stall_timeout); the session was held after step " + std::to_string(n_) +
                    " and ended, what was recorded up to there is valid; look for a filter or tunnel that drops some "
                    "datagrams",

@@ -14,8 +14,14 @@ using wire::Topic;
 
 namespace {
 
-// steps that every node can resend, less those on their way
-constexpr StepIndex kReach = static_cast<StepIndex>(node::kSentDepth) - 2 * node::kFollowerWindow;
+// Steps that every node can resend, less those on their way. In pace `real` the session goes on while a sensor node is
+// silent, until that is given up; so long mechanics keeps the poses.
+StepIndex reach_of(Role role, const scene::SessionDef& session) noexcept {
+  const std::size_t kept = role == Role::sensor
+                               ? node::sent_depth(duration_of_seconds(session.give_up_after), session.step_duration())
+                               : node::kSentDepth;
+  return static_cast<StepIndex>(kept) - 2 * node::kFollowerWindow;
+}
 
 }  // namespace
 
@@ -127,7 +133,7 @@ StateKeeper::Progress StateKeeper::advance_saving(StepIndex n, std::int64_t now_
   if (saving_->deadline_ns == 0 && n >= saving_->step) saving_->deadline_ns = now_ns + kSaveTimeout.ns;
   if (saving_->deadline_ns != 0 && now_ns > saving_->deadline_ns) {
     const std::string missed = member_.describe_peer(missing.value_or(Role::io)) + " has not given its state of step " +
-                               std::to_string(saving_->step) + " within " + node::seconds_text(kSaveTimeout);
+                               std::to_string(saving_->step) + " within " + seconds_text(kSaveTimeout);
     if (!saving_->is_published) {
       member_.warn(missed + ", or one above " + std::to_string(node::kMaxStateBytes >> 20) +
                    " MiB; the session goes on, but until a state of it has come no other process can take its place");
@@ -245,7 +251,7 @@ bool StateKeeper::is_replacing() const noexcept {
 
 std::string StateKeeper::text_of(const HeldRole& held) const {
   return held.lost + " is gone at step " + std::to_string(held.lost_at) + "; its place is held for " +
-         node::seconds_text(duration_of_seconds(config_.session.rejoin)) + ", a replacement gets the state of step " +
+         seconds_text(duration_of_seconds(config_.session.rejoin)) + ", a replacement gets the state of step " +
          std::to_string(held.from);
 }
 
@@ -284,7 +290,7 @@ bool StateKeeper::is_suitable(Role role, StepIndex step, StepIndex n, const Samp
     if (reads_other && step < begun.from) return false;
     if (is_read && step > reached) return false;
   }
-  return step <= n && n - step <= kReach;
+  return step <= n && n - step <= reach_of(role, config_.session);
 }
 
 // The newest suitable state from which the recorder, too, misses no sample: it has all up to its published step.
@@ -345,7 +351,7 @@ std::vector<StateKeeper::HeldChange> StateKeeper::watch_held(StepIndex n, std::i
     if (now_ns > held.deadline_ns) {
       changes.push_back({HeldChange::Kind::expired, role,
                          held.lost + " is gone, and no other process took its place within " +
-                             node::seconds_text(duration_of_seconds(config_.session.rejoin)) +
+                             seconds_text(duration_of_seconds(config_.session.rejoin)) +
                              "; the session was held after step " + std::to_string(n) +
                              " and ended, what was recorded up to there is valid"});
       break;

@@ -38,8 +38,9 @@ std::int32_t first_not_finite(const multibody::State& state) noexcept {
 std::vector<int> sensed_bodies(const scene::Scene& scene, const multibody::Model& model) {
   std::vector<int> bodies;
   if (!scene.has_sensors()) return bodies;
-  for (const contact::FrameDef& frame : scene::sensors_of(scene).frames) {
-    if (!frame.is_static) bodies.push_back(multibody::find_body(model, frame.name));
+  const sensors::SensorsDef def = scene::sensors_of(scene);
+  for (const contact::FrameDef& frame : std::span(def.frames).subspan(1)) {  // after Ground
+    bodies.push_back(multibody::find_body(model, frame.name));
   }
   return bodies;
 }

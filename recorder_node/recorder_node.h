@@ -207,6 +207,7 @@ class RecorderNode final : public node::Node {
   wire::NodeStatus status_;
   wire::MechanismMessage mechanism_;
   wire::ActuatorMessage actuators_;
+  wire::SensorMessage sensors_;
   bool has_warned_of_waiting_ = false;
   std::array<recording::ChannelId, wire::kTopics> channels_{};
   std::array<TopicCounts, wire::kTopics> counts_{};

@@ -138,6 +138,9 @@ void RecorderNode::count(const transport::Received& message) {
     case Topic::actuators:
       if (transport::decode(message.bytes, actuators_)) flags_.take(actuators_.header, actuators_.state);
       return;
+    case Topic::sensors:
+      if (transport::decode(message.bytes, sensors_)) flags_.take(sensors_.header, sensors_.state);
+      return;
     case Topic::variables:
       variables_digest_ += digest_of(message.bytes);
       return;

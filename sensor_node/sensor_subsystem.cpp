@@ -11,7 +11,7 @@
 namespace slew::sensor_node {
 namespace {
 
-constexpr std::uint32_t kLayout = 1;  // layout of a saved state
+constexpr std::uint32_t kLayout = 2;  // layout of a saved state
 
 }  // namespace
 
@@ -54,7 +54,8 @@ bool SensorSubsystem::observe(const coupling::PoseSample& poses, coupling::OwnSa
   published_.events.clear();
   for (const sensors::Event& event : sensors_.events()) {
     published_.events.push_back({static_cast<std::uint16_t>(event.sensor), static_cast<std::uint16_t>(event.watched),
-                                 static_cast<std::uint8_t>(event.kind), event.value, event.place_W.array()});
+                                 static_cast<std::uint8_t>(event.kind), event.value, event.place_W.array(),
+                                 event.before});
   }
   sample.sensors = published_;
   return is_fine;
@@ -94,6 +95,7 @@ std::uint64_t SensorSubsystem::state_hash() const noexcept {
     hash.add(static_cast<std::uint64_t>(event.kind));
     hash.add(event.value);
     hash.add(std::span<const double>(event.place));
+    hash.add(event.before);
   }
   return hash.digest();
 }
@@ -112,6 +114,7 @@ void SensorSubsystem::save(std::vector<std::byte>& state) const {
     bytes.number(event.kind);
     bytes.number(event.value);
     bytes.numbers(std::span<const double>(event.place));
+    bytes.number(event.before);
   }
   bytes.finish();
 }
@@ -130,6 +133,7 @@ Status SensorSubsystem::load(std::span<const std::byte> state, coupling::OwnSamp
     bytes.number(event.kind);
     bytes.number(event.value);
     bytes.numbers(std::span<double>(event.place));
+    bytes.number(event.before);
   }
   if (Status status = bytes.finish("sensors"); !status.is_ok()) {
     reset();

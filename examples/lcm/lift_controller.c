@@ -1,6 +1,6 @@
 /* A position loop on LCM, in C, on the code that lcm-gen generates: crane_t comes in, input_t goes out.
  *   lift_controller SESSION TARGET SECONDS
- * Ends when the stroke has been within 1 mm of the target for half a second of the session, with 0, or after SECONDS of
+ * Ends when the stroke has been within 2 mm of the target for half a second of the session, with 0, or after SECONDS of
  * the session without that, with 1. */
 #include <lcm/lcm.h>
 #include <math.h>
@@ -21,9 +21,9 @@ typedef struct {
   int result; /* -1: goes on */
 } controller;
 
-/* The valve passes no oil below 32 % of the stick: proportional with a jump over that, at rest within 0.5 mm. */
+/* The valve passes no oil below 32 % of the stick: proportional with a jump over that, at rest within 1 mm. */
 static double stick(double error) {
-  return fabs(error) < 0.5e-3 ? 0 : copysign(0.32 + 0.68 * fmin(1, fabs(20 * error)), error);
+  return fabs(error) < 1e-3 ? 0 : copysign(0.32 + 0.68 * fmin(1, fabs(20 * error)), error);
 }
 
 static void take_crane(const lcm_recv_buf_t* buffer, const char* channel, const slewring_crane_t* crane, void* user) {
@@ -38,7 +38,7 @@ static void take_crane(const lcm_recv_buf_t* buffer, const char* channel, const 
   }
   c->last_step = crane->step;
   if (c->begin < 0) c->begin = crane->time;
-  if (fabs(error) > 1e-3) c->near_since = -1;
+  if (fabs(error) > 2e-3) c->near_since = -1;
   else if (c->near_since < 0) c->near_since = crane->time;
   c->input.sequence += 1;
   c->input.value = stick(error);
@@ -69,8 +69,8 @@ int main(int argc, char** argv) {
   c.input.sender = (int64_t)time(NULL) * 65536 + getpid() % 65536; /* another process has another number */
   slewring_crane_t_subscribe(lcm, crane_channel, take_crane, &c);
   while (c.result < 0) {
-    if (lcm_handle_timeout(lcm, 10000) <= 0) {
-      fprintf(stderr, "lift_controller: no message on %s for 10 s\n", crane_channel);
+    if (lcm_handle_timeout(lcm, 60000) <= 0) {
+      fprintf(stderr, "lift_controller: no message on %s for 60 s\n", crane_channel);
       c.result = 1;
     }
   }

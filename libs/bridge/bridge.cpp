@@ -21,22 +21,28 @@ namespace {
 constexpr SimDuration kDirectoryTimeout = milliseconds(5000);
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr SimDuration kLongestWait = milliseconds(20);
-constexpr int kInputWaitMs = 1;  // with inputs: variables leave this much later at most
+constexpr int kInputWaitMs = 1;                    // with inputs: variables leave this much later at most
+constexpr std::int64_t kSilentNs = 5 * kSecondNs;  // nodes publish their health each second
 constexpr std::string_view kLongestSuffix = "_DIRECTORY";
-constexpr std::string_view kOwnSuffixes[] = {"VARIABLES", "DIRECTORY", "HEALTH", "BRIDGE",
-                                             "INPUT",     "PARAMETER", "REPLY"};
+// types of idl/slewring.lcm, without _t; in capitals the endings of their channels
+constexpr std::string_view kOwnTypes[] = {"variables", "directory", "health", "bridge", "input", "parameter", "reply"};
 constexpr const char* kOfRecording = "recording";  // controller in an exported log
+
+std::string lower_case(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
 
 std::vector<lcm_log::SignalList> read_lists(const Settings& settings) {
   std::vector<lcm_log::SignalList> lists;
   for (const std::string& text : settings.signals) {
     lcm_log::SignalList list;
     require(read_signal_list(text, list));
-    const bool is_taken = std::ranges::find(kOwnSuffixes, list.name) != std::end(kOwnSuffixes) ||
+    const bool is_taken = std::ranges::find(kOwnTypes, lower_case(list.name)) != std::end(kOwnTypes) ||
                           std::ranges::find(lists, list.name, &lcm_log::SignalList::name) != lists.end();
     if (is_taken) {
-      throw Failure(ExitCode::bad_input, fmt::format("--signals {}: the name {} is taken; nothing was started; choose "
-                                                     "another",
+      throw Failure(ExitCode::bad_input, fmt::format("--signals {}: a channel or type has the name {} already; nothing "
+                                                     "was started; choose another",
                                                      text, list.name));
     }
     lists.push_back(std::move(list));
@@ -74,8 +80,9 @@ void check_every(const Settings& settings, const SceneView& scene) {
                   settings.every, scene.variables_every, scene.variables_every));
 }
 
-// A variable that no node has, with the one that was probably meant.
-void check_names(const std::vector<lcm_log::SignalList>& lists, const observer::SessionView& view) {
+// A variable that no node has, with the one that was probably meant. source: "the session", "the recording".
+void check_names(const std::vector<lcm_log::SignalList>& lists, const observer::SessionView& view,
+                 std::string_view source) {
   std::vector<std::string_view> names;
   for (const observer::VariableView* variable : view.variables()) names.emplace_back(variable->name);
   for (const lcm_log::SignalList& list : lists) {
@@ -85,10 +92,25 @@ void check_names(const std::vector<lcm_log::SignalList>& lists, const observer::
       throw Failure(
           ExitCode::bad_input,
           fmt::format(
-              "--signals {}: the session publishes no variable '{}'; nothing was sent; {}", list.name, variable,
+              "--signals {}: {} has no variable '{}'; nothing was written or sent; {}", list.name, source, variable,
               meant.empty() ? "'slewring variables SCENE' lists them" : fmt::format("did you mean '{}'?", meant)));
     }
   }
+}
+
+// Waits until the session has named its variables, and compares the lists with them.
+void wait_for_names(const std::vector<lcm_log::SignalList>& lists, observer::Observer& observer) {
+  if (lists.empty()) return;
+  const observer::SessionView& view = observer.view();
+  const bool has_names =
+      observer.wait_for([&] { return view.has_whole_directory() || view.is_over(); }, kDirectoryTimeout);
+  if (!has_names && !observer.is_stopped()) {
+    throw Failure(ExitCode::failed,
+                  fmt::format("session '{}' has not named its variables within {}; nothing was written or sent; it may "
+                              "still be starting: try again, or look with 'slewring sessions'",
+                              observer.session_name(), seconds_text(kDirectoryTimeout)));
+  }
+  if (view.has_whole_directory()) check_names(lists, view, "the session");
 }
 
 }  // namespace
@@ -110,6 +132,9 @@ struct Bridge::State final : observer::Receiver {
   }
   void take_block(const wire::VariableBlock& block, std::span<const std::byte>, double time) override {
     if (incoming) incoming->take_epoch(block.header.epoch);
+    if (block.header.epoch != epoch) newest_step = kJoinStep;
+    epoch = block.header.epoch;
+    newest_step = std::max(newest_step, block.header.step);
     if (outgoing) outgoing->take(block, time);
   }
   void take_lease(const wire::ControllerLease& lease) override {
@@ -121,7 +146,8 @@ struct Bridge::State final : observer::Receiver {
 
   void open(observer::Observer& observer, const SceneView& scene);
   void open_door(observer::Observer& observer, const SceneView& scene, const std::string& prefix);
-  void each_second(observer::Observer& observer);
+  void each_second(observer::Observer& observer, std::int64_t now_ns);
+  [[nodiscard]] bool is_silent(const observer::SessionView& view, std::int64_t now_ns);
   [[nodiscard]] bool receives() const { return !settings.controllers.empty() || settings.takes_parameters; }
 
   Settings settings;
@@ -133,7 +159,13 @@ struct Bridge::State final : observer::Receiver {
   std::optional<ParameterDoor> door;
   std::vector<wire::VariableDirectory> early;  // received before the channels had their names
   bool has_new_session = false;
+  std::uint32_t epoch = 0;
+  StepIndex newest_step = kJoinStep;  // of the blocks of this epoch
   std::uint64_t unsent_inputs = 0;
+  std::uint64_t healths = 0;  // messages of all nodes
+  std::int64_t healths_ns = 0;
+  bool was_silent = false;
+  std::vector<std::string> notices;
 };
 
 Bridge::Bridge(Settings settings) : state_(std::make_unique<State>(std::move(settings))) {
@@ -164,9 +196,9 @@ std::string Bridge::types(observer::Observer& observer) {
                   "--write-types writes the types of signal lists, and there is none; nothing was written; add "
                   "--signals crane=Cyl_Lift.stroke,Cyl_Lift.force");
   }
-  observer.wait_for([&] { return observer.view().has_whole_directory() || observer.view().is_over(); },
-                    kDirectoryTimeout);
-  check_names(state_->lists, observer.view());
+  wait_for_names(state_->lists, observer);
+  if (!observer.view().has_whole_directory())
+    throw Failure(ExitCode::failed, "the session ended, or a stop was requested; nothing was written");
   std::vector<std::vector<std::string>> units;
   for (const lcm_log::SignalList& list : state_->lists) {
     std::vector<std::string>& of_list = units.emplace_back();
@@ -178,6 +210,7 @@ std::string Bridge::types(observer::Observer& observer) {
 void Bridge::State::open(observer::Observer& observer, const SceneView& scene) {
   const std::string prefix = prefix_of(settings, observer.session_name(), lists);
   check_every(settings, scene);
+  if (receives() && !settings.is_insecure_lan) require_loopback(url);
   link.emplace(url, settings.is_insecure_lan ? Reach::network : Reach::this_machine);
   if (receives()) open_door(observer, scene, prefix);
   outgoing.emplace(
@@ -201,9 +234,8 @@ void Bridge::State::open_door(observer::Observer& observer, const SceneView& sce
                        message.session = observer.session_name();
                        if (!observer.send(message).is_ok()) ++unsent_inputs;
                      });
-    link->subscribe(prefix + "_INPUT", [this, &observer](std::span<const std::byte> bytes) {
-      incoming->take(bytes, monotonic_ns(), observer.view().step());
-    });
+    link->subscribe(prefix + "_INPUT",
+                    [this](std::span<const std::byte> bytes) { incoming->take(bytes, monotonic_ns(), newest_step); });
   }
   if (settings.takes_parameters) {
     door.emplace([&observer](wire::ControlRequest request) { return observer.send(std::move(request)); },
@@ -217,10 +249,29 @@ void Bridge::State::open_door(observer::Observer& observer, const SceneView& sce
   }
 }
 
-void Bridge::State::each_second(observer::Observer& observer) {
+// Processes that were killed publish no end.
+bool Bridge::State::is_silent(const observer::SessionView& view, std::int64_t now_ns) {
+  std::uint64_t all = 0;
+  for (const wire::Role role : wire::kNodeRoles) all += view.node(role).healths;
+  if (all != healths || healths_ns == 0) healths_ns = now_ns;
+  healths = all;
+  return now_ns - healths_ns > kSilentNs;
+}
+
+void Bridge::State::each_second(observer::Observer& observer, std::int64_t now_ns) {
   const StepIndex step = observer.view().step();
-  outgoing->publish_directory(step);
-  outgoing->publish_health(observer.view(), step);
+  const bool is_silent_now = is_silent(observer.view(), now_ns);
+  if (is_silent_now != std::exchange(was_silent, is_silent_now) && !has_new_session) {
+    notices.push_back(
+        is_silent_now ? fmt::format("no message of session '{}' has come for 5 s; its health is not published until "
+                                    "one comes; look with 'slewring sessions' whether it still runs",
+                                    observer.session_name())
+                      : fmt::format("messages of session '{}' come again", observer.session_name()));
+  }
+  if (!is_silent_now) {
+    outgoing->publish_directory(step);
+    outgoing->publish_health(observer.view(), step);
+  }
   if (receives())
     outgoing->publish(incoming ? incoming->counts() : lcm_log::InputCounts(), door ? door->refused() : 0, step);
 }
@@ -229,15 +280,12 @@ void Bridge::run(observer::Observer& observer, const SceneView& scene,
                  const std::function<void(const std::string&)>& report) {
   State& state = *state_;
   state.open(observer, scene);
-  if (!state.lists.empty()) {
-    observer.wait_for([&] { return observer.view().has_whole_directory() || observer.view().is_over(); },
-                      kDirectoryTimeout);
-    check_names(state.lists, observer.view());
-  }
   state.has_new_session = false;
+  wait_for_names(state.lists, observer);
   report(fmt::format("session '{}' on {}, channels {}_*", observer.session_name(), state.url.text(),
                      prefix_of(state.settings, observer.session_name(), state.lists)));
   const auto report_notices = [&] {
+    for (const std::string& notice : std::exchange(state.notices, {})) report(notice);
     if (!state.incoming) return;
     for (const std::string& notice : state.incoming->take_notices()) report(notice);
   };
@@ -256,12 +304,18 @@ void Bridge::run(observer::Observer& observer, const SceneView& scene,
     report_notices();
     if (now_ns < next_ns) continue;
     next_ns = now_ns + kSecondNs;
-    state.each_second(observer);
+    state.each_second(observer, now_ns);
   }
   if (state.incoming && !has_ended) state.incoming->release();
-  state.each_second(observer);
+  state.each_second(observer, monotonic_ns());
   report_notices();
-  if (state.has_new_session) report("another session of this name has begun; start the bridge again for it");
+  const observer::SessionView& view = observer.view();
+  if (state.has_new_session && view.has_session()) {
+    report("another session of this name has begun; start the bridge again for it");
+  } else if (has_ended) {
+    const std::string cause = view.end().value_or("");
+    report(fmt::format("session '{}' has ended{}{}", observer.session_name(), cause.empty() ? "" : ": ", cause));
+  }
 }
 
 Json Bridge::summary() const {
@@ -292,12 +346,7 @@ std::string Bridge::summary_text() const {
     const lcm_log::InputCounts& counts = state.incoming->counts();
     text += fmt::format("\n{} inputs applied, {} lost in {} gaps", counts.applied, counts.lost, counts.gaps);
     add(state.unsent_inputs, "not sent into the session");
-    std::string refused;
-    for (std::size_t i = 0; i < lcm_log::kCauses; ++i) {
-      if (counts.refused[i] == 0) continue;
-      refused += fmt::format("{}{} {}", refused.empty() ? "" : ", ", counts.refused[i],
-                             to_text(static_cast<lcm_log::Cause>(i)));
-    }
+    const std::string refused = refusals_text(counts);
     if (!refused.empty()) text += "\nnot applied: " + refused;
   }
   if (state.door && state.door->refused() > 0)
@@ -355,7 +404,6 @@ struct LogExport::State final : observer::Receiver {
   std::int64_t from_ns = 0, to_ns = INT64_MAX;
   std::int64_t next_directory_ns = 0;
   std::optional<std::uint32_t> epoch;
-  StepIndex last_step = 0;
   std::int64_t sequence = 0;
   std::string line, input_bytes;
 };
@@ -369,12 +417,11 @@ void LogExport::State::take_block(const wire::VariableBlock& block, std::span<co
         "the session was reset on the way, so its time is no one line; nothing was written; record it without "
         "a reset");
   }
+  if (!epoch) check_names(outgoing.lists(), *view, "the recording");
   epoch = block.header.epoch;
-  // blocks of several nodes; the events of a log are in the order of time
-  last_step = std::max(last_step, step);
   const std::int64_t time_ns = step * step_ns;
-  if (writer.count() == 0) outgoing.publish_directory(0);
   if (time_ns < from_ns || time_ns > to_ns) return;
+  if (writer.count() == 0) outgoing.publish_directory(0);
   if (time_ns >= next_directory_ns) {
     next_directory_ns = (time_ns / kSecondNs + 1) * kSecondNs;
     outgoing.publish_directory(step);
@@ -420,6 +467,10 @@ observer::Receiver& LogExport::receiver(const observer::SessionView& view) {
 
 std::int64_t LogExport::events() const noexcept {
   return state_->writer.count();
+}
+
+std::uint64_t LogExport::incomplete() const noexcept {
+  return state_->outgoing.incomplete();
 }
 
 std::vector<std::string> LogExport::missing_inputs() const {

@@ -85,6 +85,8 @@ class LogExport {
   // Throws Failure from its calls when the session was reset.
   [[nodiscard]] observer::Receiver& receiver(const observer::SessionView& view);
   [[nodiscard]] std::int64_t events() const noexcept;
+  // Steps of signal lists of which the recording has not all values.
+  [[nodiscard]] std::uint64_t incomplete() const noexcept;
   // Inputs of the scene whose raw value the recording does not have.
   [[nodiscard]] std::vector<std::string> missing_inputs() const;
 

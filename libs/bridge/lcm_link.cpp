@@ -3,17 +3,21 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <lcm/lcm.h>
+#include <net/route.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <optional>
+#include <sstream>
 
 #include "core/failure.h"
 
@@ -64,31 +68,55 @@ std::vector<std::uint64_t> inodes() {
   return found;
 }
 
-// Whether datagrams to the address go by the loopback.
-bool is_routed_to_loopback(const LcmUrl& url) {
-  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd < 0) return false;
-  sockaddr_in to{}, from{};
-  to.sin_family = AF_INET;
-  to.sin_port = htons(static_cast<std::uint16_t>(url.port));
-  inet_pton(AF_INET, url.address.c_str(), &to.sin_addr);
-  socklen_t size = sizeof from;
-  const bool is_loopback = connect(fd, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0 &&
-                           getsockname(fd, reinterpret_cast<sockaddr*>(&from), &size) == 0 &&
-                           (ntohl(from.sin_addr.s_addr) >> 24) == 127;
-  close(fd);
-  return is_loopback;
+// Interface that datagrams to the address leave by; empty: there is no route. A route to the loopback gives no source
+// address, so that a connected socket does not show it.
+std::string interface_to(const LcmUrl& url) {
+  in_addr to{};
+  inet_pton(AF_INET, url.address.c_str(), &to);
+  std::ifstream routes("/proc/net/route");
+  std::string line, found;
+  std::getline(routes, line);  // headings
+  int longest = -1;
+  while (std::getline(routes, line)) {
+    std::istringstream columns(line);
+    std::string name, gateway, count, use, metric;
+    in_addr_t destination = 0, mask = 0;
+    unsigned flags = 0;
+    columns >> name >> std::hex >> destination >> gateway >> flags >> count >> use >> metric >> mask;
+    const bool is_route = !columns.fail() && (flags & RTF_UP) != 0 && (flags & RTF_REJECT) == 0;
+    if (!is_route || (to.s_addr & mask) != destination || std::popcount(mask) <= longest) continue;
+    longest = std::popcount(mask);
+    found = name;
+  }
+  return found;
 }
 
 std::string remedy(const LcmUrl& url) {
   return fmt::format("as root: 'ip link set lo multicast on' and 'ip route add {}/32 dev lo'", url.address);
 }
 
+// liblcm finds this too, and prints lines of its own.
+void require_route(const LcmUrl& url) {
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(url.port));
+  inet_pton(AF_INET, url.address.c_str(), &to.sin_addr);
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool is_routed = probe < 0 || connect(probe, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0 ||
+                         (errno != ENETUNREACH && errno != EHOSTUNREACH);
+  if (probe >= 0) close(probe);
+  if (is_routed) return;
+  throw Failure(ExitCode::resources,
+                fmt::format("{} has no route, and LCM needs one; nothing was started; {}", url.address, remedy(url)));
+}
+
 // LCM takes regular expressions.
 std::string literal(const std::string& channel) {
   std::string pattern;
   for (const char c : channel) {
-    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    // a byte of a longer character of UTF-8 cannot be escaped
+    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+                          (static_cast<unsigned char>(c) & 0x80) != 0;
     if (!is_plain) pattern += '\\';
     pattern += c;
   }
@@ -147,12 +175,23 @@ LcmUrl read_url(const std::string& text, Reach reach) {
   return url;
 }
 
+void require_loopback(const LcmUrl& url) {
+  require_route(url);
+  const std::string interface = interface_to(url);
+  if (interface != kLoopback) {
+    throw Failure(ExitCode::resources,
+                  fmt::format("{} is not routed to the loopback{}: hosts of the network could send inputs; nothing was "
+                              "started; {}, or use --insecure-lan",
+                              url.address, interface.empty() ? "" : " but to " + interface, remedy(url)));
+  }
+}
+
 LcmLink::LcmLink(const LcmUrl& url, Reach reach) : url_(url), reach_(reach), sockets_before_(inodes()) {
+  require_route(url);
   lcm_ = lcm_create(url.text().c_str());
   if (lcm_ == nullptr) {
-    throw Failure(
-        ExitCode::resources,
-        fmt::format("LCM cannot open {}; nothing was started; multicast needs a route: {}", url.text(), remedy(url)));
+    throw Failure(ExitCode::resources,
+                  fmt::format("LCM cannot open {}; nothing was started; {}", url.text(), remedy(url)));
   }
 }
 
@@ -162,12 +201,6 @@ LcmLink::~LcmLink() {
 
 // LCM makes its receiving socket with the first subscription: of a channel that carries nothing.
 void LcmLink::begin_receiving() {
-  if (reach_ == Reach::this_machine && !is_routed_to_loopback(url_)) {
-    throw Failure(ExitCode::resources,
-                  fmt::format("{} is not routed to the loopback: hosts of the network could send inputs; nothing was "
-                              "started; {}, or use --insecure-lan",
-                              url_.address, remedy(url_)));
-  }
   if (lcm_subscribe(lcm_, "", drop, nullptr) == nullptr) {
     throw Failure(ExitCode::resources,
                   fmt::format("LCM cannot receive from {}; nothing was started; {}", url_.text(), remedy(url_)));

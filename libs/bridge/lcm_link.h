@@ -33,6 +33,9 @@ struct LcmUrl {
 // Reach::this_machine.
 [[nodiscard]] LcmUrl read_url(const std::string& text, Reach reach);
 
+// The multicast address is routed to the loopback: inputs cannot come from the network. Throws Failure (resources).
+void require_loopback(const LcmUrl& url);
+
 class LcmLink {
  public:
   using Take = std::function<void(std::span<const std::byte> bytes)>;

@@ -44,6 +44,9 @@ observer::Receiver& LogExport::receiver(const observer::SessionView&) {
 std::int64_t LogExport::events() const noexcept {
   return 0;
 }
+std::uint64_t LogExport::incomplete() const noexcept {
+  return 0;
+}
 std::vector<std::string> LogExport::missing_inputs() const {
   return {};
 }

@@ -12,7 +12,6 @@
 namespace slew::client {
 namespace {
 
-using observer::seconds_text;
 using wire::Role;
 using wire::Topic;
 

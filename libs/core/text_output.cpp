@@ -28,7 +28,13 @@ Status replace_file(const std::filesystem::path& path,
   const std::filesystem::file_status there = std::filesystem::status(path, error);
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) return write(path);
   const std::filesystem::path part = path.string() + ".part";
-  Status status = write(part);
+  Status status;
+  try {
+    status = write(part);
+  } catch (...) {
+    std::filesystem::remove(part, error);
+    throw;
+  }
   if (status.is_ok()) {
     std::filesystem::rename(part, path, error);
     if (error) status = failed(path, error.message());

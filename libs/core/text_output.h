@@ -10,8 +10,8 @@
 namespace slew {
 
 // Replaces the file. `write` receives the path of a temporary file beside it, which is renamed after a complete write
-// and removed otherwise. A target that is not a regular file, such as /dev/stdout, is written directly. Returns the
-// result of `write`, with the file's own path; storage if the rename fails.
+// and removed otherwise, also where `write` throws. A target that is not a regular file, such as /dev/stdout, is
+// written directly. Returns the result of `write`, with the file's own path; storage if the rename fails.
 [[nodiscard]] Status replace_file(const std::filesystem::path& path,
                                   const std::function<Status(const std::filesystem::path&)>& write);
 

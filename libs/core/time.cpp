@@ -1,5 +1,7 @@
 #include "core/time.h"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cmath>
 #include <ctime>
@@ -17,6 +19,11 @@ std::int64_t read_clock(clockid_t clock) noexcept {
 
 SimDuration duration_of_seconds(double seconds) noexcept {
   return {std::llround(seconds * 1e9)};
+}
+
+std::string seconds_text(SimDuration duration) {
+  const double seconds = duration.seconds();
+  return seconds < 999.5 ? fmt::format("{:.3g} s", seconds) : fmt::format("{:.0f} s", seconds);
 }
 
 std::int64_t monotonic_ns() noexcept {

@@ -3,6 +3,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <string>
 
 namespace slew {
 
@@ -34,6 +35,9 @@ inline constexpr StepIndex kJoinStep = -1;
 
 // Nearest whole nanosecond: 1.001 s is 1,001,000,000 ns, of which truncation makes one less. |seconds| below 9e9.
 [[nodiscard]] SimDuration duration_of_seconds(double seconds) noexcept;
+
+// "0.35 s", "12.3 s", "3600 s": three digits, all of them from 1000 s on.
+[[nodiscard]] std::string seconds_text(SimDuration duration);
 
 [[nodiscard]] constexpr SimTime start_of(StepIndex step, SimDuration communication_step) noexcept {
   return {step * communication_step.ns};

@@ -113,6 +113,7 @@ struct SensorEvent {
   std::uint8_t kind = 0;          // sensors::EventKind
   double value = 0;               // m, s or m/s, by kind
   std::array<double, 3> place{};  // m, of a hit
+  double before = 0;              // s, by which a hit was before the sample
   bool operator==(const SensorEvent&) const = default;
 };
 

@@ -27,9 +27,9 @@ constexpr Units kUnits[] = {{1, 1, 1},
                             {kInch, kPoundForce / kInch, 1},
                             {kFoot, kPoundForce / kFoot, 1}};
 
-constexpr double kSlowest = 10, kFastest = 15000;    // m/s
-constexpr double kShortest = 1e-3, kLongest = 1e3;   // m
-constexpr double kThinnest = 0.1, kDensest = 25000;  // kg/m3
+constexpr double kSlowest = 10, kFastest = 15000;        // m/s
+constexpr double kShortest = 1e-3, kLongest = 1e3;       // m
+constexpr double kLeastDense = 0.1, kMostDense = 25000;  // kg/m3
 // nodes are on a line when none is farther from it than this share of its length
 constexpr double kStraight = 1e-6;
 
@@ -47,7 +47,7 @@ struct Look {
             density * u.mass / (u.length * u.length * u.length)};
   }
   [[nodiscard]] bool is_solid() const {
-    const bool is_dense = std::isnan(density) || (kThinnest <= density && density <= kDensest);
+    const bool is_dense = std::isnan(density) || (kLeastDense <= density && density <= kMostDense);
     return kSlowest <= wave_speed && wave_speed <= kFastest && kShortest <= length && length <= kLongest && is_dense;
   }
   [[nodiscard]] std::string text() const {
@@ -143,7 +143,7 @@ void judge_units(const FeModel& model, ModelUnits stated) {
   throw InputError(fmt::format(
       "{}: in {} this is no solid: {}; expected {} to {} m/s, {} m to {} m{}; {}", model.name,
       kUnitNames[static_cast<std::size_t>(stated)], look.text(), kSlowest, kFastest, kShortest, kLongest,
-      std::isnan(look.density) ? "" : fmt::format(", {} to {} kg/m3", kThinnest, kDensest),
+      std::isnan(look.density) ? "" : fmt::format(", {} to {} kg/m3", kLeastDense, kMostDense),
       fits.empty() ? "set `units:` of the matrices beside their files, or export them in m, kg, s" : "set " + fits));
 }
 

@@ -7,8 +7,8 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr double kHighestPressure = 4e9;  // Pa; beyond, kappa keeps its last value
-constexpr double kLowestFraction = 1e-3;  // share of the floor: the table's lower end
+constexpr double kHighestTabulated = 4e9;  // Pa; beyond, kappa keeps its last value
+constexpr double kLowestFraction = 1e-3;   // share of the floor: the table's lower end
 
 }  // namespace
 
@@ -23,7 +23,7 @@ OilCompressibility::OilCompressibility(const HydraulicsDef& def)
   const auto start_of = [](std::uint64_t bits) { return std::bit_cast<double>(bits << kPartsShift); };
   first_ = leading_bits(kLowestFraction * def.pressure_floor);
   lowest_ = start_of(first_);
-  const std::uint64_t last = leading_bits(kHighestPressure);
+  const std::uint64_t last = leading_bits(kHighestTabulated);
   for (std::uint64_t bits = first_; bits <= last; ++bits) {
     // cubic with the exact values and slopes at both ends
     const double start = start_of(bits), end = start_of(bits + 1), width = end - start;

@@ -20,6 +20,15 @@ std::string_view to_text(Cause cause) noexcept {
   return kTexts[static_cast<std::size_t>(cause)];
 }
 
+std::string refusals_text(const InputCounts& counts) {
+  std::string text;
+  for (std::size_t i = 0; i < kCauses; ++i) {
+    if (counts.refused[i] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts.refused[i], to_text(static_cast<Cause>(i)));
+  }
+  return text;
+}
+
 InputFilter::InputFilter(std::vector<InputChannel> channels, std::vector<std::string> controllers)
     : channels_(std::move(channels)), controllers_(std::move(controllers)) {}
 

@@ -48,6 +48,9 @@ struct InputCounts {
   bool operator==(const InputCounts&) const = default;
 };
 
+// "3 damaged, 1 old sequence"; empty: none was refused.
+[[nodiscard]] std::string refusals_text(const InputCounts& counts);
+
 struct InputChannel {
   std::string name;
   bool is_digital = false;

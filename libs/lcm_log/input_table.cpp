@@ -16,6 +16,8 @@ namespace {
 
 constexpr SimDuration kHoldAfterSilence = milliseconds(5000);  // as the gate of a session frees a channel
 constexpr std::string_view kInputSuffix = "_INPUT";
+// lcm-logger stamps a message in several datagrams with another one's time than it ends with
+constexpr std::int64_t kLargestFallUs = 100'000;
 constexpr std::int64_t kLongestUs = 1'000'000'000'000;  // 11 days
 
 // Signal of one channel as its changes.
@@ -118,16 +120,6 @@ std::int64_t on_step(std::int64_t time_us, SimDuration step) {
   return std::abs(nearest - time_ns) <= 1000 ? nearest : time_ns;
 }
 
-std::string refusals_text(const InputCounts& counts, std::uint64_t held_by_others) {
-  std::string text;
-  const auto add = [&](std::uint64_t number, std::string_view cause) {
-    if (number > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", number, cause);
-  };
-  for (std::size_t i = 0; i < kCauses; ++i) add(counts.refused[i], to_text(static_cast<Cause>(i)));
-  add(held_by_others, "for a channel of another controller");
-  return text;
-}
-
 }  // namespace
 
 InputTable input_table(std::string_view log, std::span<const TableChannel> channels, SimDuration step,
@@ -140,22 +132,22 @@ InputTable input_table(std::string_view log, std::span<const TableChannel> chann
   EventLogReader reader(log);
   std::uint64_t inputs = 0, held_by_others = 0;
   std::optional<std::int64_t> begin_us;
-  std::int64_t last_us = 0;
+  std::int64_t last_us = 0, largest_fall_us = 0;
   for (Event event; reader.next(event);) {
     Input input;
     const Decoded decoded = decode(event.data, input);
     if (!begin_us) begin_us = event.time_us;
-    // unsigned: a damaged time may be any number
-    const auto since =
-        static_cast<std::int64_t>(static_cast<std::uint64_t>(event.time_us) - static_cast<std::uint64_t>(*begin_us));
-    if (since < last_us || since > kLongestUs) {
-      table.problem = fmt::format("has a time that falls, or is beyond 11 days, at event {}", reader.count());
+    const std::int64_t since = event.time_us < 0 ? -1 - kLargestFallUs : event.time_us - *begin_us;
+    if (since < last_us - kLargestFallUs || since > kLongestUs) {
+      table.problem = fmt::format(
+          "has a time that is negative, falls by more than 100 ms or is beyond 11 days, at event {}", reader.count());
       table.expected = "a log of one session without a reset";
       return table;
     }
-    last_us = since;
+    largest_fall_us = std::max(largest_fall_us, last_us - since);
+    last_us = std::max(last_us, since);
     if (decoded == Decoded::other_type && !event.channel.ends_with(kInputSuffix)) continue;
-    const std::int64_t time_ns = on_step(since, step);
+    const std::int64_t time_ns = on_step(last_us, step);
     const auto accepted = filter.take(event.data, time_ns, std::numeric_limits<std::int64_t>::max());
     if (!accepted) continue;
     builder.take(*accepted, time_ns) ? ++inputs : ++held_by_others;
@@ -165,7 +157,10 @@ InputTable input_table(std::string_view log, std::span<const TableChannel> chann
     table.expected = "a log of lcm-logger or 'slewring export --lcm'";
     return table;
   }
-  const std::string refused = refusals_text(filter.counts(), held_by_others);
+  std::string refused = refusals_text(filter.counts());
+  if (held_by_others > 0) {
+    refused += fmt::format("{}{} for a channel of another controller", refused.empty() ? "" : ", ", held_by_others);
+  }
   if (inputs == 0) {
     table.problem = "has no input_t message for an input of the scene" + (refused.empty() ? "" : ": " + refused);
     table.expected = "inputs of 'slewring bridge lcm' or 'slewring export --lcm'";
@@ -174,6 +169,10 @@ InputTable input_table(std::string_view log, std::span<const TableChannel> chann
   table.csv = builder.csv();
   if (!reader.damage().empty()) table.warnings.push_back("the log " + reader.damage() + "; the inputs before are used");
   if (!refused.empty()) table.warnings.push_back("inputs of the log that are not applied: " + refused);
+  if (largest_fall_us > 0) {
+    table.warnings.push_back(
+        fmt::format("times of the log fall by up to {} us; its events are taken in their order", largest_fall_us));
+  }
   if (filter.counts().lost > 0) {
     table.warnings.push_back(
         fmt::format("{} inputs are missing in {} gaps of the log", filter.counts().lost, filter.counts().gaps));

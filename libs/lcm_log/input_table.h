@@ -1,7 +1,8 @@
 // The inputs of an LCM event log as a time table for the scene's script (scene/csv_table.h), as a session would have
 // applied them: `slewring run --input FILE.lcm`.
 //
-// Time 0 is the log's first event of any channel. A value holds until the next one of its channel, or until the
+// Time 0 is the log's first event of any channel. Events are taken in their order: where times fall, by at most 100 ms,
+// the later event has the time of the earlier one. A value holds until the next one of its channel, or until the
 // session's controller_timeout is over: then the channel is neutral. A channel belongs to the controller whose message
 // was the first, until that has been silent for kHoldAfterSilence.
 #pragma once

@@ -10,8 +10,11 @@ bool is_up(StepFlag flag, const wire::SampleState& state) {
   return (state.flags & static_cast<std::uint32_t>(flag)) != 0;
 }
 
-// The offender of a sample of hydraulics is a volume unless a flag that names something else is up.
-bool names_volume(StepFlag flag, const wire::SampleState& state) {
+// The offender of a sample of sensors is a sensor, that of hydraulics a volume unless a flag that names something else
+// is up.
+bool names_offender(wire::Role role, StepFlag flag, const wire::SampleState& state) {
+  if (role == wire::Role::sensor) return flag == StepFlag::not_converged;
+  if (role != wire::Role::hydraulics) return false;
   for (const StepFlag other : {StepFlag::not_converged, StepFlag::step_budget, StepFlag::non_finite}) {
     if (is_up(other, state)) return false;
   }
@@ -39,8 +42,7 @@ void FlagCounter::take(const wire::Header& header, const wire::SampleState& stat
     if (!is_up(kFlags[i], state)) continue;
     Seen& entry = counts.seen[i];
     if (entry.steps++ == 0) entry.first = header.step;
-    const bool is_named = header.role == wire::Role::hydraulics && names_volume(kFlags[i], state);
-    if (entry.volume < 0 && is_named) entry.volume = state.offender;
+    if (entry.offender < 0 && names_offender(header.role, kFlags[i], state)) entry.offender = state.offender;
   }
 }
 
@@ -56,6 +58,7 @@ void FlagCounter::take_lateness(const wire::Header& header, const wire::SampleSt
 std::uint64_t FlagCounter::missed(StepIndex begin) const {
   std::uint64_t missed = 0;
   for (const auto& [role, counts] : of_) {
+    if (role == wire::Role::sensor) continue;  // every k-th step only
     missed += counts.missed + static_cast<std::uint64_t>(std::max<StepIndex>(0, counts.begin - begin - 1));
   }
   return missed;
@@ -67,7 +70,7 @@ std::string FlagCounter::text() const {
   for (const auto& [role, c] : of_) {
     text << ' ' << static_cast<int>(role) << ' ' << c.steps << ' ' << c.late << ' ' << c.longest << ' ' << c.lost << ' '
          << c.missed << ' ' << c.begin << ' ' << c.step << ' ' << c.epoch;
-    for (const Seen& seen : c.seen) text << ' ' << seen.steps << ' ' << seen.first << ' ' << seen.volume;
+    for (const Seen& seen : c.seen) text << ' ' << seen.steps << ' ' << seen.first << ' ' << seen.offender;
   }
   return text.str();
 }
@@ -81,7 +84,7 @@ std::optional<FlagCounter> FlagCounter::of_text(const std::string& text) {
     int role = -1;
     Counts c;
     words >> role >> c.steps >> c.late >> c.longest >> c.lost >> c.missed >> c.begin >> c.step >> c.epoch;
-    for (Seen& seen : c.seen) words >> seen.steps >> seen.first >> seen.volume;
+    for (Seen& seen : c.seen) words >> seen.steps >> seen.first >> seen.offender;
     if (role < 0 || role >= static_cast<int>(wire::kRoles)) return std::nullopt;
     c.has_sample = true;
     flags.of_.emplace(static_cast<wire::Role>(role), c);

@@ -132,10 +132,6 @@ std::string to_text(const wire::ControlRequest& request) {
   return "request";
 }
 
-std::string seconds_text(SimDuration duration) {
-  return std::to_string((duration.ns + 500'000'000) / 1'000'000'000) + " s";
-}
-
 std::string machine_of(const std::string& host) {
   return host.substr(0, host.find('#'));
 }

@@ -39,9 +39,6 @@ struct Identity {
 // "2026-05-01 10:20:30" in local time.
 [[nodiscard]] std::string time_text(std::int64_t wall_clock_ns);
 
-// "10 s", rounded to whole seconds.
-[[nodiscard]] std::string seconds_text(SimDuration duration);
-
 // The name of the machine in Identity::host.
 [[nodiscard]] std::string machine_of(const std::string& host);
 

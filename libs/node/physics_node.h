@@ -85,6 +85,8 @@ class PhysicsNode final : public Node {
   void request(const Awaited& missing);
   [[nodiscard]] std::optional<Awaited> awaited() const noexcept;
   void look_for_stall(std::int64_t now_ns);
+  // Why the awaited sample does not come: this follower is so slow that its writer no longer keeps it; else empty.
+  [[nodiscard]] std::string outrun_text() const;
   void watch(std::int64_t now_ns);
   void on_peer_event(PeerEvent event, wire::Role about, std::int64_t now_ns);
   void update_health() noexcept;

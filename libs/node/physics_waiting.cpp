@@ -89,6 +89,7 @@ void PhysicsNode::look_for_stall(std::int64_t now_ns) {
     member_.set_state(n_ > 0 ? NodeState::running : NodeState::ready);
   }
   if (stall_.begins(member_, now_ns)) {
+    if (const std::string text = outrun_text(); !text.empty()) return leave(ExitCode::node_lost, text, now_ns);
     const std::string text = stall_.text(member_, requests);
     if (stall_.may_warn()) member_.warn(text);
     if (stage_ == Stage::stepping) member_.hold(text);
@@ -99,6 +100,19 @@ void PhysicsNode::look_for_stall(std::int64_t now_ns) {
         stall_.text(member_, requests) + ", nothing came within " + seconds_text(most) +
             " (session.stall_timeout and session.give_up_after); this node stopped after step " + std::to_string(n_),
         now_ns);
+}
+
+std::string PhysicsNode::outrun_text() const {
+  const Awaited& awaited = stall_.awaited();
+  const Peer& writer = member_.peer(awaited.role);
+  const SimDuration step{member_.session().step_ns};
+  const auto kept = static_cast<StepIndex>(sent_depth(member_.give_up_after(), step));
+  const bool is_behind = writer.step_epoch == member_.epoch() && writer.step - awaited.step > kept;
+  if (!is_follower() || member_.session().pace != Pace::real || !is_behind) return "";
+  return "is " + std::to_string(writer.step - awaited.step) + " steps behind " + std::string(to_text(awaited.role)) +
+         ", which keeps the last " + std::to_string(kept) + "; it stopped after step " + std::to_string(n_) +
+         ": a sample takes longer than its " + std::to_string(samples_.stride()) +
+         " steps; choose a larger recording.every, fewer shapes or triangles, or pace free";
 }
 
 void PhysicsNode::watch(std::int64_t now_ns) {

@@ -18,7 +18,8 @@
 
 namespace slew::node {
 
-// Ticks arrive up to the window (64 at most) ahead, samples one step ahead. A follower lags by kFollowerWindow at most.
+// Ticks arrive up to the window (64 at most) ahead, samples one step ahead. A follower lags by kFollowerWindow at most,
+// but for sensors in pace `real`, which request again what was further ahead.
 inline constexpr std::size_t kRingDepth = 128;
 
 // Steps that a follower may lag: no node waits for its samples, but io's ticks then wait for it.
@@ -37,7 +38,7 @@ class Inbox {
     // a node that took a state over between two exchanges needs the last one
     const StepIndex first = takes_late ? n - static_cast<StepIndex>(kRingDepth) + 1 : n - n % every;
     if (place >= n / every + static_cast<StepIndex>(kRingDepth)) {
-      ++refusals.too_far_ahead;
+      ++(reading.reader == wire::Role::sensor ? refusals.early : refusals.too_far_ahead);
     } else if (step < first || ring_.find(place) != nullptr) {
       ++refusals.duplicate;
     } else if (!transport::decode(bytes, ring_.put(place))) {

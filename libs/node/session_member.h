@@ -48,7 +48,7 @@ struct Refusals {
   std::uint64_t unexpected_writer = 0;
   std::uint64_t too_far_ahead = 0;
   // part of every healthy session
-  std::uint64_t early = 0;        // before this node had the session or the writer; repeated until JOIN is done
+  std::uint64_t early = 0;        // before this node had the session or the writer, or sensors were near: repeated
   std::uint64_t other_epoch = 0;  // in flight while the session was reset
   std::uint64_t duplicate = 0;    // the step is present or done: a message that was resent twice
   [[nodiscard]] std::uint64_t refused() const noexcept {

@@ -25,13 +25,6 @@ constexpr SimDuration kLastReplies = milliseconds(200);
 
 }  // namespace
 
-std::string seconds_text(SimDuration time) {
-  std::string text = std::to_string(time.seconds());
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text + " s";
-}
-
 void Observer::drain() {
   transport::Received message;
   while (transport_->take(message)) {

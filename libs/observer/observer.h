@@ -18,9 +18,6 @@ namespace slew::observer {
 
 inline constexpr SimDuration kAnswerTimeout = milliseconds(3000);  // longest wait for a reply
 
-// "0.5 s"
-[[nodiscard]] std::string seconds_text(SimDuration time);
-
 struct ObserverOptions {
   std::string session;
   Choice choice = Choice::newest;

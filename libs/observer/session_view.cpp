@@ -26,7 +26,8 @@ NodeView* SessionView::node_of(const wire::Header& header) {
 
 void SessionView::take(Topic topic, Bytes bytes, std::optional<double> time, Receiver* receiver) {
   // topics arrive in any order; messages that are not repeated wait for the session they belong to
-  const bool is_repeated = topic == Topic::health || topic == Topic::mechanism || topic == Topic::actuators;
+  const bool is_repeated =
+      topic == Topic::health || topic == Topic::mechanism || topic == Topic::actuators || topic == Topic::sensors;
   if (!session_ && topic != Topic::session && !is_repeated) {
     if (pending_.size() < kMostPending) pending_.push_back({topic, {bytes.begin(), bytes.end()}, time});
     return;
@@ -46,6 +47,8 @@ void SessionView::take(Topic topic, Bytes bytes, std::optional<double> time, Rec
       return take_sample<wire::MechanismMessage>(bytes, receiver);
     case Topic::actuators:
       return take_sample<wire::ActuatorMessage>(bytes, receiver);
+    case Topic::sensors:
+      return take_sample<wire::SensorMessage>(bytes, receiver);
     case Topic::controller_lease:
       return take_lease(bytes, receiver);
     case Topic::state:
@@ -155,6 +158,7 @@ void SessionView::take_health(Bytes bytes) {
   }
   node->times.max = std::max(node->times.max, health.step_time_max);
   node->steps_seen = health.steps_done;
+  ++node->healths;
   if (health.header.role == Role::io) step_ = health.header.step;
   node->health = std::move(health);
 }

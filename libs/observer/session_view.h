@@ -33,6 +33,7 @@ struct NodeView {
   bool is_known = false;
   wire::NodeStatus status;
   wire::Health health;
+  std::uint64_t healths = 0;  // messages so far
   StepTimes times;
   std::uint64_t steps_seen = 0;  // Health::steps_done of the last health message
   // blocks of its variables, and the number of blocks without values: left out under load

@@ -88,8 +88,13 @@ void write_lists(std::string& text, const ElementRef& element) {
   }
 }
 
-void write_elements(std::string& text, const Scene& scene, const std::vector<ElementRef>& all,
-                    std::string_view section) {
+struct Longest {
+  std::string element;
+  std::size_t bytes = 0;
+};
+
+void write_elements(std::string& text, const Scene& scene, const std::vector<ElementRef>& all, std::string_view section,
+                    Longest& longest) {
   bool is_first = true;
   for (const ElementRef& element : all) {
     if (element.section != section) continue;
@@ -100,6 +105,7 @@ void write_elements(std::string& text, const Scene& scene, const std::vector<Ele
     write_fields(fields, scene, element, "    ");
     write_lists(fields, element);
     text += fmt::format("  {}:{}{}", element.name, fields.empty() ? " {}\n" : "\n", fields);
+    if (fields.size() > longest.bytes) longest = {std::string(element.name), fields.size()};
   }
 }
 
@@ -190,7 +196,7 @@ std::string yaml_text(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string canonical_text(Scene& scene) {
+std::string canonical_text(Scene& scene, Problems& problems) {
   std::string text = "scene: " + yaml_text(scene.name) + "\n";
   if (!scene.description.empty()) text += "description: " + yaml_text(scene.description) + "\n";
   if (!scene.assets.empty()) {
@@ -201,18 +207,32 @@ std::string canonical_text(Scene& scene) {
     text += fmt::format("{}:\n", single.section);
     write_fields(text, scene, single, "  ");
   }
-  for (const std::string_view section : element_sections()) write_elements(text, scene, all, section);
+  Longest longest;
+  for (const std::string_view section : element_sections()) write_elements(text, scene, all, section, longest);
   write_script(text, scene);
   if (text.size() > kMaxExpandedBytes) {
-    throw LoadError(
-        {{.file = scene.name,
-          .path = "",
-          .what = fmt::format("the scene with its script has {} bytes when published to the nodes", text.size()),
-          .expected = fmt::format("at most {}; long tables in .csv files are not counted", kMaxExpandedBytes),
-          .suggestion = ""}},
-        0);
+    problems.push_back(
+        {longest.element,
+         fmt::format("the scene with its script has {} bytes when published to the nodes, {} of them in '{}'",
+                     text.size(), longest.bytes, longest.element),
+         fmt::format("at most {}: meshes of fewer triangles; long tables in .csv files are not counted",
+                     kMaxExpandedBytes),
+         ""});
   }
   return text;
+}
+
+std::string canonical_text(Scene& scene) {
+  Problems problems;
+  std::string text = canonical_text(scene, problems);
+  if (problems.empty()) return text;
+  const Problem& problem = problems.front();
+  throw LoadError({{.file = scene.name,
+                    .path = problem.path,
+                    .what = problem.what,
+                    .expected = problem.expected,
+                    .suggestion = problem.suggestion}},
+                  0);
 }
 
 }  // namespace slew::scene

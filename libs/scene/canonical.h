@@ -5,11 +5,14 @@
 #include <string>
 
 #include "core/field.h"
+#include "core/problem.h"
 #include "scene/scene.h"
 
 namespace slew::scene {
 
-// Throws LoadError when the text is longer than kMaxExpandedBytes.
+// Appends a problem with the longest element when the text is longer than kMaxExpandedBytes.
+[[nodiscard]] std::string canonical_text(Scene& scene, Problems& problems);
+// Throws LoadError instead.
 [[nodiscard]] std::string canonical_text(Scene& scene);
 
 // The value of one field as YAML; empty if a scene cannot express it.

@@ -332,6 +332,15 @@ std::string choice_list(std::span<const std::string_view> choices) {
   return all;
 }
 
+// "bodies or shapes"
+std::string plural(std::string_view words) {
+  constexpr std::string_view kOr = " or ";
+  if (const std::size_t other = words.find(kOr); other != std::string_view::npos) {
+    return plural(words.substr(0, other)) + std::string(kOr) + plural(words.substr(other + kOr.size()));
+  }
+  return words == "body" ? "bodies" : std::string(words) + "s";
+}
+
 std::string expected_value(const Field& field) {
   switch (field.type) {
     case FieldType::number:
@@ -352,7 +361,7 @@ std::string expected_value(const Field& field) {
       return "a list of numbers";
     case FieldType::texts:
       if (field.reference.empty()) return "a list of texts";
-      return "a list of names of " + (field.reference == "body" ? "bodies" : std::string(field.reference) + "s");
+      return "a list of names of " + plural(field.reference);
     case FieldType::choice:
       return choice_list(field.choices);
   }

@@ -76,6 +76,9 @@ class SceneReader {
       check_problems([&](Problems&, Problems& warnings) { find_without_effect(scene_, warnings); });
     }
     if (report_.is_clean()) add_assets_of_tables();
+    if (report_.is_clean()) {
+      check_problems([&](Problems& errors, Problems&) { scene_.expanded_text = canonical_text(scene_, errors); });
+    }
     return std::move(scene_);
   }
 
@@ -480,7 +483,6 @@ Scene read_tree(Node root, LoadContext load_context, const std::string& name, co
   apply_overrides(root, overrides, report);
   Scene scene = SceneReader(root, std::move(load_context), report).read(name);
   if (!report.is_clean()) report.fail(kMaxReportedProblems);
-  scene.expanded_text = canonical_text(scene);
   return scene;
 }
 

@@ -98,6 +98,19 @@ std::optional<long double> short_value(std::string_view text, const Extent& exte
   return text[0] == '-' ? -value : value;
 }
 
+// The nearest long double may lie halfway between two doubles where the text does not. It moves by one bit to the
+// text's side, so that a number without a unit becomes the nearest double.
+long double without_false_tie(long double value, std::string_view number) {
+  constexpr int kBits = std::numeric_limits<long double>::digits, kCut = kBits - std::numeric_limits<double>::digits;
+  static_assert(kBits == 64);
+  int exponent = 0;
+  const auto mantissa = static_cast<std::uint64_t>(std::ldexp(std::frexp(std::fabs(value), &exponent), kBits));
+  const bool is_tie = (mantissa & ((std::uint64_t{1} << kCut) - 1)) == std::uint64_t{1} << (kCut - 1);
+  double nearest = 0;
+  if (!is_tie || std::from_chars(number.data(), number.data() + number.size(), nearest).ec != std::errc()) return value;
+  return static_cast<double>(value) == nearest ? value : std::nextafter(value, static_cast<long double>(nearest));
+}
+
 // 0x1F, 0o17, 0b101
 bool find_base_problem(std::string_view text, NumberText& result) {
   const std::size_t sign = !text.empty() && (text[0] == '+' || text[0] == '-') ? 1 : 0;
@@ -177,20 +190,22 @@ NumberText split_number(std::string_view text) {
     result.problem = {quoted(text) + " has a digit separator", "digits only", ""};
     return result;
   }
+  // from_chars takes no plus sign
+  const std::size_t begin = text[0] == '+' ? 1 : 0;
+  const std::string_view number = text.substr(begin, extent.end - begin);
   if (const auto value = short_value(text, extent)) {
-    result.value = *value;
+    result.value = without_false_tie(*value, number);
     result.is_number = true;
     result.rest = trimmed(text.substr(extent.end));
     return result;
   }
-  // from_chars takes no plus sign
-  const std::size_t begin = text[0] == '+' ? 1 : 0;
-  const auto [end, error] = std::from_chars(text.data() + begin, text.data() + extent.end, result.value);
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), result.value);
   const bool is_huge = std::isinf(static_cast<double>(result.value));
   if (error != std::errc() || is_huge || end != text.data() + extent.end) {
     result.problem = {quoted(text.substr(0, extent.end)) + " is beyond what a number can hold", "a finite number", ""};
     return result;
   }
+  result.value = without_false_tie(result.value, number);
   result.is_number = true;
   result.rest = trimmed(text.substr(extent.end));
   return result;

@@ -11,7 +11,8 @@ namespace slew::scene {
 // A text split into its leading number and what follows it (a unit, or nothing).
 struct NumberText {
   bool is_number = false;
-  long double value = 0;  // nearest long double to the decimal text, so that scaling by a unit rounds once
+  // nearest long double to the decimal text, so that scaling by a unit rounds once; its nearest double is the text's
+  long double value = 0;
   std::string_view rest;  // behind the number, without spaces around it
   ValueProblem problem;   // set if the text is not an accepted number
 };

@@ -10,8 +10,8 @@
 
 namespace slew::scene {
 
-// The sensors, the shapes that they name, and these shapes' frames: Ground first, then the moving ones in the order of
-// PoseSample. Pre-condition: the scene's meshes were read.
+// The sensors, the shapes that they name, and these shapes' frames: Ground first, then the bodies in the order of
+// PoseSample, also those that are fixed to Ground. Pre-condition: the scene's meshes were read.
 [[nodiscard]] sensors::SensorsDef sensors_of(const Scene& scene);
 
 // Reports sensors that cannot work, and limits of a session's messages. Pre-condition: all names are resolved.

@@ -8,12 +8,13 @@ using enum Dimension;
 
 constexpr std::string_view kShapes = "body or shape";
 
-constexpr Field kOf = field<&SensorDef::of>(
-    "of",
-    {.presence = Presence::required, .reference = kShapes, .doc = "first group: shapes, or bodies with all of theirs"});
-constexpr Field kTo = field<&SensorDef::to>(
-    "to",
-    {.presence = Presence::required, .reference = kShapes, .doc = "second group; Ground: all shapes on the ground"});
+constexpr Field kOf =
+    field<&SensorDef::of>("of", {.presence = Presence::required,
+                                 .reference = kShapes,
+                                 .doc = "first group: shapes, or bodies with all of theirs but zones"});
+constexpr Field kTo = field<&SensorDef::to>("to", {.presence = Presence::required,
+                                                   .reference = kShapes,
+                                                   .doc = "second group; Ground: all shapes on the ground but zones"});
 
 constexpr ReadBy kReadWithLimit[] = {{"limit", "limit above 0 m", [](const void* def) noexcept {
                                         return static_cast<const SensorDef*>(def)->limit > 0;

@@ -25,13 +25,18 @@ namespace {
 
 constexpr double kReached = 1e-4;  // m, distance at which a continuous search has found a hit
 
-// Indices of the shapes that a list names; in the list's order, each once.
+bool is_zone(const SensorsDef& def, const std::string& shape) {
+  return std::any_of(def.sensors.begin(), def.sensors.end(), [&](const SensorDef& s) { return s.zone == shape; });
+}
+
+// Indices of the shapes that a list names; in the list's order, each once. A zone is no part of its body: it counts
+// under its own name only.
 std::vector<std::size_t> shapes_of(const SensorsDef& def, const std::vector<std::string>& names) {
   std::vector<std::size_t> found;
   for (const std::string& name : names) {
     for (std::size_t i = 0; i < def.shapes.size(); ++i) {
       const ShapeDef& shape = def.shapes[i];
-      if (shape.name != name && shape.frame != name) continue;
+      if (shape.name != name && (shape.frame != name || is_zone(def, shape.name))) continue;
       if (std::find(found.begin(), found.end(), i) == found.end()) found.push_back(i);
     }
   }
@@ -62,7 +67,7 @@ class Validator {
   std::vector<std::size_t> group(const SensorDef& sensor, const char* key, const std::vector<std::string>& names) {
     for (const std::string& name : names) {
       if (shapes_of(def_, {name}).empty()) {
-        add(sensor, key, fmt::format("'{}' has no shape", name), "a shape, or a body with a shape");
+        add(sensor, key, fmt::format("'{}' has no shape", name), "a shape, or a body with a shape that is no zone");
       }
     }
     if (names.empty()) add(sensor, key, "the list is empty", "names of shapes or bodies");
@@ -147,7 +152,7 @@ std::size_t add_shape(fcl_border::Geometries& geometries, const ShapeDef& def, c
   return add_surface(geometries, vertices.data(), geometry.vertices.size(), triangles, geometry.triangles.size());
 }
 
-// Motion of a frame over an interval: a straight line, and a turn about a fixed axis.
+// Motion of a frame over an interval: a straight line, and a turn about a fixed axis by less than half a turn.
 struct Path {
   FrameMotion start;
   Vec3 way;   // m
@@ -162,10 +167,16 @@ struct Path {
     if (sine > 0) turn = v * (angle / sine);
   }
 
-  // tau: share of the interval, which lasts so long [s].
-  [[nodiscard]] FrameMotion at(double tau, double interval) const {
-    return {start.p_W + way * tau, start.R_W * rotation_of(math::turn_by(turn * tau)), way * (1 / interval),
-            start.R_W * turn * (1 / interval)};
+  // Pose at this share of the interval, with the velocities of its start.
+  [[nodiscard]] FrameMotion at(double tau) const {
+    return {start.p_W + way * tau, start.R_W * rotation_of(math::turn_by(turn * tau)), start.v_W, start.w_W};
+  }
+  // The same with the mean velocities of the interval, which lasts so long [s].
+  [[nodiscard]] FrameMotion mean_at(double tau, double interval) const {
+    FrameMotion motion = at(tau);
+    motion.v_W = way * (1 / interval);
+    motion.w_W = start.R_W * turn * (1 / interval);
+    return motion;
   }
 };
 
@@ -210,7 +221,13 @@ struct Sensors::Search {
   struct Nearest {
     double distance = 0;
     Vec3 p_a_W, p_b_W, n_W;
-    double closing_speed = 0;  // m/s, (2)
+    std::size_t frame_a = 0, frame_b = 0;
+
+    // m/s, (2); motion_of: motion of a frame
+    template <typename MotionOf>
+    [[nodiscard]] double closing_speed(const MotionOf& motion_of) const {
+      return -dot(velocity_of(motion_of(frame_a), p_a_W) - velocity_of(motion_of(frame_b), p_b_W), n_W);
+    }
   };
 
   explicit Search(const SensorsDef& def)
@@ -247,15 +264,16 @@ struct Sensors::Search {
     }
   }
 
-  // Nearest points of two placed groups, and how fast they close.
-  template <typename MotionOf>
-  bool find_nearest(std::size_t a, std::size_t b, const MotionOf& motion_of, Nearest& found) {
+  // Nearest points of two placed groups.
+  bool find_nearest(std::size_t a, std::size_t b, Nearest& found) {
     fcl_border::Nearest raw{};
     if (fcl_border::find_nearest(*groups, a, b, raw) != QueryResult::fine) return false;
-    found = {raw.distance, vector(raw.p_a_W), vector(raw.p_b_W), vector(raw.n_W), 0};
-    const FrameMotion frame_a = motion_of(shapes[group_shapes[a][raw.member_a]].frame);
-    const FrameMotion frame_b = motion_of(shapes[group_shapes[b][raw.member_b]].frame);
-    found.closing_speed = -dot(velocity_of(frame_a, found.p_a_W) - velocity_of(frame_b, found.p_b_W), found.n_W);
+    found = {raw.distance,
+             vector(raw.p_a_W),
+             vector(raw.p_b_W),
+             vector(raw.n_W),
+             shapes[group_shapes[a][raw.member_a]].frame,
+             shapes[group_shapes[b][raw.member_b]].frame};
     return true;
   }
 
@@ -340,10 +358,10 @@ bool Sensors::observe_clearance(std::size_t index, std::span<const FrameMotion> 
   const Sensor& sensor = sensors_[index];
   Clearance& clearance = clearances_[sensor.first];
   Search::Nearest nearest;
+  if (!search_->find_nearest(sensor.groups[0], sensor.groups[1], nearest)) return false;
   const auto motion_of = [&](std::size_t frame) { return frames[frame]; };
-  if (!search_->find_nearest(sensor.groups[0], sensor.groups[1], motion_of, nearest)) return false;
   clearance.distance = nearest.distance;
-  clearance.closing_speed = nearest.distance > 0 ? nearest.closing_speed : 0;
+  clearance.closing_speed = nearest.distance > 0 ? nearest.closing_speed(motion_of) : 0;
   clearance.p_of_W = nearest.p_a_W;
   clearance.p_to_W = nearest.p_b_W;
   const double border = sensor.def.limit + (clearance.is_close ? sensor.def.hysteresis : 0);
@@ -366,11 +384,10 @@ bool Sensors::observe_zone(std::size_t index) {
       is_fine = false;
       continue;
     }
-    const double before = time_of(watched.samples);
+    const double before = time_of(watched.samples), now = time_of(watched.samples + 1);
     watched.samples = is_inside && watched.is_inside ? watched.samples + 1 : 0;
-    const double now = time_of(watched.samples);
     if (is_inside != watched.is_inside) {
-      events_.push_back({index, k, is_inside ? EventKind::enter : EventKind::leave, is_inside ? 0 : before, {}});
+      events_.push_back({index, k, is_inside ? EventKind::enter : EventKind::leave, is_inside ? 0 : now, {}});
     } else if (is_inside && sensor.def.stay > 0 && before < sensor.def.stay && now >= sensor.def.stay) {
       events_.push_back({index, k, EventKind::stay, now, {}});
     }
@@ -379,43 +396,56 @@ bool Sensors::observe_zone(std::size_t index) {
   return is_fine;
 }
 
-void Sensors::add_hit(std::size_t index, Collision& collision, double speed, Vec3 place_W) {
+void Sensors::add_hit(std::size_t index, Collision& collision, double speed, Vec3 place_W, double before) {
   ++collision.hits;
+  collision.samples = 0;
+  collision.hit_before = before;
   collision.speed = speed;
   collision.place_W = place_W;
-  events_.push_back({index, 0, EventKind::hit, speed, place_W});
+  events_.push_back({index, 0, EventKind::hit, speed, place_W, before});
 }
 
 bool Sensors::observe_collision(std::size_t index, std::span<const FrameMotion> frames) {
   const Sensor& sensor = sensors_[index];
   Collision& collision = collisions_[sensor.first];
-  const std::size_t a = sensor.groups[0], b = sensor.groups[1];
   Search::Nearest nearest;
-  const auto motion_of = [&](std::size_t frame) { return frames[frame]; };
-  if (!search_->find_nearest(a, b, motion_of, nearest)) return false;
+  if (!search_->find_nearest(sensor.groups[0], sensor.groups[1], nearest)) return false;
   const bool is_touching = nearest.distance <= (sensor.def.is_continuous ? kReached : 0);
-  bool has_hit = false;
-  if (sensor.def.is_continuous && has_last_ && !collision.is_touching) {
-    if (!search_motion(index, frames, has_hit)) return false;
+  // shapes that overlap have many contacts: the first one since the sample before has the speed and the place of a hit
+  bool has_hit = false, is_fine = true;
+  if ((sensor.def.is_continuous || is_touching) && has_last_ && !collision.is_touching) {
+    is_fine = search_motion(index, frames, has_hit);
   }
+  // they overlap at the start, where no motion is known, or the motion could not be searched
   if (is_touching && !collision.is_touching && !has_hit) {
-    add_hit(index, collision, nearest.closing_speed, 0.5 * (nearest.p_a_W + nearest.p_b_W));
+    const auto before = [&](std::size_t frame) { return last_[frame]; };
+    const double speed = has_last_ ? std::max(nearest.closing_speed(before), 0.0) : 0;
+    add_hit(index, collision, speed, 0.5 * (nearest.p_a_W + nearest.p_b_W), 0);
     has_hit = true;
   }
+  if (!has_hit) ++collision.samples;
   if (!is_touching && (collision.is_touching || has_hit)) {
-    events_.push_back({index, 0, EventKind::apart, collision.is_touching ? time_of(collision.samples + 1) : 0, {}});
+    events_.push_back({index, 0, EventKind::apart, collision.hit_before + time_of(collision.samples), {}});
   }
-  collision.samples = is_touching && collision.is_touching ? collision.samples + 1 : 0;
+  if (!is_touching) collision.samples = 0;
   collision.is_touching = is_touching;
-  return true;
+  return is_fine;
 }
 
-// Conservative advancement over the interval before this sample.
+// Conservative advancement over the interval before this sample. False: a search failed, or a body turns by half a turn
+// or more, which poses do not show.
 bool Sensors::search_motion(std::size_t index, std::span<const FrameMotion> frames, bool& has_hit) {
   const Sensor& sensor = sensors_[index];
   const std::size_t a = sensor.groups[0], b = sensor.groups[1];
   std::vector<Path> paths;
   for (std::size_t frame = 0; frame < frames.size(); ++frame) paths.emplace_back(last_[frame], frames[frame]);
+  for (const std::size_t group : {a, b}) {
+    for (const std::size_t i : search_->group_shapes[group]) {
+      const std::size_t frame = search_->shapes[i].frame;
+      const double rate = std::max(norm(last_[frame].w_W), norm(frames[frame].w_W));
+      if (rate * interval_ >= M_PI) return false;
+    }
+  }
   // (3)
   double mu = 0;
   for (const std::size_t i : search_->group_shapes[a]) {
@@ -431,14 +461,17 @@ bool Sensors::search_motion(std::size_t index, std::span<const FrameMotion> fram
   bool is_fine = true;
   double tau = 0;
   while (mu > 0 && tau < 1 && !has_hit) {
-    const auto motion_of = [&](std::size_t frame) { return paths[frame].at(tau, interval_); };
-    search_->place(a, motion_of);
-    search_->place(b, motion_of);
+    const auto at_tau = [&](std::size_t frame) { return paths[frame].at(tau); };
+    search_->place(a, at_tau);
+    search_->place(b, at_tau);
     Search::Nearest nearest;
-    is_fine = search_->find_nearest(a, b, motion_of, nearest);
+    is_fine = search_->find_nearest(a, b, nearest);
     if (!is_fine) break;
     if (nearest.distance <= kReached) {
-      add_hit(index, collisions_[sensor.first], nearest.closing_speed, 0.5 * (nearest.p_a_W + nearest.p_b_W));
+      // (4)
+      const auto mean = [&](std::size_t frame) { return paths[frame].mean_at(tau, interval_); };
+      const double speed = std::max({nearest.closing_speed(at_tau), nearest.closing_speed(mean), 0.0});
+      add_hit(index, collisions_[sensor.first], speed, 0.5 * (nearest.p_a_W + nearest.p_b_W), (1 - tau) * interval_);
       has_hit = true;
     }
     // not to the contact itself, where the shapes have no direction from one to the other
@@ -538,8 +571,8 @@ std::string event_text(const SensorDef& def, const Event& event) {
     case EventKind::stay:
       return fmt::format("{}: {} has stayed for {:.3g} s", def.name, watched(), event.value);
     case EventKind::hit:
-      return fmt::format("{}: hit at {:.3g} m/s, at {:.3f} {:.3f} {:.3f} m", def.name, event.value, event.place_W[0],
-                         event.place_W[1], event.place_W[2]);
+      return fmt::format("{}: hit at {:.3g} m/s, {:.3g} ms before the step, at {:.3f} {:.3f} {:.3f} m", def.name,
+                         event.value, 1000 * event.before, event.place_W[0], event.place_W[1], event.place_W[2]);
     case EventKind::apart:
       return fmt::format("{}: apart after {:.3g} s", def.name, event.value);
   }
@@ -571,6 +604,7 @@ void Sensors::visit(Bytes& bytes, Self& self) {
   for (auto& collision : self.collisions_) {
     bytes.flag(collision.is_touching);
     bytes.count(collision.samples, kLastStep);
+    bytes.number(collision.hit_before);
     bytes.count(collision.hits, kLastStep);
     bytes.number(collision.speed);
     visit_vector(bytes, collision.place_W);

@@ -23,7 +23,7 @@ namespace slew::sensors {
 enum class SensorType : int { clearance, zone, collision };
 
 // One struct for every type; each type's field table lists the members that it has. Names are shapes, or frames: then
-// all shapes of the frame.
+// all shapes of the frame that are no zone of any sensor.
 struct SensorDef {
   std::string name{};
   SensorType type = SensorType::clearance;
@@ -69,11 +69,12 @@ struct Event {
   std::size_t sensor = 0;   // index of SensorsDef::sensors
   std::size_t watched = 0;  // zone: index of `watch`
   EventKind kind = EventKind::close;
-  double value = 0;    // m (close, clear), s (leave, stay, apart), m/s (hit); enter: 0
+  double value = 0;    // m (close, clear), s since enter or hit (leave, stay, apart), m/s (hit); enter: 0
   math::Vec3 place_W;  // m, of a hit
+  double before = 0;   // s, by which a hit was before the sample
 };
 
-// "Boom_Cab: 0.482 m, below the limit of 0.5 m"
+// "Boom_Cab: 0.482 m, below the limit of 0.5 m"; of a hit with its time before the sample
 [[nodiscard]] std::string event_text(const SensorDef& def, const Event& event);
 
 class Sensors {
@@ -84,7 +85,9 @@ class Sensors {
   Sensors(const Sensors&) = delete;
   Sensors& operator=(const Sensors&) = delete;
 
-  // Takes the next sample, by frame. False: a search failed; the values of that sensor stay, and failed() names it.
+  // Takes the next sample, by frame. False: a search failed, and the values of that sensor stay; or the motion before a
+  // sample was not searched, since a body turns by half a turn or more in an interval, and its values are those of the
+  // sample alone. failed() names the sensor.
   bool observe(std::span<const FrameMotion> frames);
   [[nodiscard]] std::size_t failed() const noexcept { return failed_; }
   // Events of the last sample, in the order of the sensors.
@@ -114,7 +117,8 @@ class Sensors {
   };
   struct Collision {
     bool is_touching = false;
-    std::int64_t samples = 0;  // since the hit
+    std::int64_t samples = 0;  // since the one of the hit
+    double hit_before = 0;     // s, of the hit before that sample
     std::int64_t hits = 0;
     double speed = 0;  // m/s, of the last hit
     math::Vec3 place_W;
@@ -131,7 +135,7 @@ class Sensors {
   bool observe_zone(std::size_t index);
   bool observe_collision(std::size_t index, std::span<const FrameMotion> frames);
   bool search_motion(std::size_t index, std::span<const FrameMotion> frames, bool& has_hit);
-  void add_hit(std::size_t index, Collision& collision, double speed, math::Vec3 place_W);
+  void add_hit(std::size_t index, Collision& collision, double speed, math::Vec3 place_W, double before);
   template <typename Bytes, typename Self>
   static void visit(Bytes& bytes, Self& self);
 

@@ -274,7 +274,7 @@ class Supervisor {
     for (Node& node : nodes_) {
       if (node.process->poll_end() || node.is_killed_as_lost || !has_lost_its_place(node)) continue;
       watcher_.report("slewring: the " + node.process->name() + " node (process " +
-                      std::to_string(node.process->pid()) + ") was silent for " + node::seconds_text(give_up_after_) +
+                      std::to_string(node.process->pid()) + ") was silent for " + seconds_text(give_up_after_) +
                       " (session.give_up_after) and has lost its place; it is killed");
       node.is_killed_as_lost = true;
       node.process->send_signal(SIGKILL);
@@ -377,7 +377,7 @@ class Supervisor {
     return fmt::format(
         "; it was started again {} times and will not be started any more; the others hold for {} for another process, "
         "started with 'slewring node {} --session {}', and then end with code 4 and close the recording",
-        kMostRestarts, node::seconds_text(rejoin_), awaited.process->name(), options_.session.session);
+        kMostRestarts, seconds_text(rejoin_), awaited.process->name(), options_.session.session);
   }
 
   void report_kill(const Node& node, const std::string& what_follows) {

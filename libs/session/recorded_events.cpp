@@ -52,8 +52,8 @@ class SensorTexts {
   void add(const wire::SensorMessage& message, std::vector<RecordedEvent>& events) const {
     for (const coupling::SensorEvent& event : message.sample.events) {
       if (event.sensor >= defs_.size()) continue;
-      const sensors::Event named{event.sensor, event.watched, static_cast<sensors::EventKind>(event.kind), event.value,
-                                 math::Vec3(event.place)};
+      const sensors::Event named{event.sensor, event.watched,           static_cast<sensors::EventKind>(event.kind),
+                                 event.value,  math::Vec3(event.place), event.before};
       events.push_back({message.header.step, message.header.epoch, sensors::event_text(defs_[event.sensor], named)});
     }
   }

@@ -131,8 +131,8 @@ constexpr ElementType kShapeTypes[] = {
      append_shape<ShapeType::height_field>},
     {"convex_mesh", "shape", "closed surface of triangles without dents", kMeshFields,
      append_shape<ShapeType::convex_mesh>},
-    {"triangle_mesh", "shape", "surface of triangles, on a body that does not move", kMeshFields,
-     append_shape<ShapeType::triangle_mesh>},
+    {"triangle_mesh", "shape", "surface of triangles; on a body that moves for sensors only, not in contact",
+     kMeshFields, append_shape<ShapeType::triangle_mesh>},
 };
 
 }  // namespace

@@ -172,7 +172,7 @@ void fields(A& a, typename A::template Of<wire::PoseMessage>& m) {
 
 template <typename A>
 void fields(A& a, typename A::template Of<coupling::SensorEvent>& m) {
-  a(m.sensor, m.watched, m.kind, m.value, m.place[0], m.place[1], m.place[2]);
+  a(m.sensor, m.watched, m.kind, m.value, m.place[0], m.place[1], m.place[2], m.before);
 }
 
 template <typename A>

@@ -155,6 +155,18 @@ TEST(StoppedForGood, NodeIsNamedAfter300MillisecondsAndGivenUpAfter2Seconds) {
   EXPECT_EQ(session.node(Role::hydraulics).wait(), 4) << session.errors();
 }
 
+// no tick waits for sensors: each of its samples takes three times as long as the ten steps between two
+TEST(SlowSensor, EndsTheSessionWithTheReasonOnceItsPosesAreGone) {
+  Session session({"--pace", "real", "--duration", "100s"}, SLEWRING_SOURCE_DIR "/scenes/truck_crane_sensors.yaml");
+  session.start_all();
+  session.start(Role::sensor, {"--add-work", "30000"});
+  for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 4) << node::to_text(role) << session.errors();
+  const std::string errors = session.node(Role::sensor).err();
+  EXPECT_NE(errors.find("steps behind mechanics, which keeps the last 2500"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("choose a larger recording.every"), std::string::npos) << errors;
+  EXPECT_NE(session.node(Role::io).err().find("steps behind mechanics"), std::string::npos) << session.errors();
+}
+
 // ---- signals --------------------------------------------------------------------------------------------------
 
 // without the messages of a busy machine

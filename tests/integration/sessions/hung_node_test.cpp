@@ -250,7 +250,7 @@ TEST_P(HungLoop, ThatComesBackInTimeGoesOnWithTheSameBits) {
   EXPECT_EQ(recorded.problem, "");
   if (!is_recorder) expect_undisturbed_bits(GetParam(), recorded);
   expect_named(recorded, GetParam(), node());
-  expect_own_word("has stood still for 1 s at step ");
+  expect_own_word("has stood still for ");
   expect_own_word("goes on; it had stood still for ");
 }
 
@@ -258,7 +258,7 @@ TEST_P(HungLoop, ThatDoesNotGoOnIsNamedAndGivenUp) {
   start_and_hold("20s");
   if (IsSkipped() || HasFailure()) return;
   expect_given_up_by_all(*session_, GetParam());
-  expect_own_word("has stood still for 1 s at step ");
+  expect_own_word("has stood still for ");
   held_->let_go();
   EXPECT_EQ(node().wait(), 4) << session_->errors();
   EXPECT_NE(node().err().find(" stood still for "), std::string::npos) << session_->errors();

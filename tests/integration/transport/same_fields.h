@@ -96,7 +96,7 @@ inline bool same(const slewring_PoseMessage& a, const wire::PoseMessage& b) {
 
 inline bool same(const slewring_SensorEvent& a, const coupling::SensorEvent& b) {
   return a.sensor == b.sensor && a.watched == b.watched && a.kind == b.kind && a.value == b.value &&
-         std::equal(b.place.begin(), b.place.end(), a.place);
+         std::equal(b.place.begin(), b.place.end(), a.place) && a.before == b.before;
 }
 
 inline bool same(const slewring_SensorMessage& a, const wire::SensorMessage& b) {

@@ -11,9 +11,12 @@ namespace flag_counter_test {
 
 using node::FlagCounter;
 
-void take(FlagCounter& flags, StepIndex step, StepFlag flag, std::uint32_t epoch = 1) {
+const OffenderNames kNames = {{"Tank", "Line"}, {"Gap", "Hit"}};
+
+void take(FlagCounter& flags, StepIndex step, StepFlag flag, std::uint32_t epoch = 1,
+          wire::Role role = wire::Role::hydraulics) {
   wire::Header header;
-  header.role = wire::Role::hydraulics;
+  header.role = role;
   header.phase = wire::Phase::running;
   header.epoch = epoch;
   header.step = step;
@@ -28,7 +31,7 @@ TEST(FlagCounter, ARepeatedSampleIsCountedOnce) {
   FlagCounter flags;
   for (const StepIndex step : {0, 1, 2, 2, 1, 3}) take(flags, step, StepFlag::beyond_oil_law);
   EXPECT_EQ(flags.missed(0), 0u);
-  EXPECT_EQ(flag_sentences(flags, milliseconds(1), {"Tank", "Line"}),
+  EXPECT_EQ(flag_sentences(flags, milliseconds(1), kNames),
             std::vector<std::string>{
                 "hydraulics: Line: a pressure was beyond the range of the oil's law (1000 bar) in 4 steps, first at "
                 "0; limit it: a relief valve on the line, a lower load or setting"});
@@ -43,6 +46,18 @@ TEST(FlagCounter, SamplesThatDidNotArriveAreCountedAndANewEpochIsNoGap) {
   EXPECT_TRUE(flag_sentences(flags, milliseconds(1), {}).empty());
 }
 
+// sensors publish at every k-th step
+TEST(FlagCounter, NamesTheSensorWhoseSearchFailed) {
+  FlagCounter flags;
+  take(flags, 20, StepFlag{}, 1, wire::Role::sensor);
+  for (const StepIndex step : {30, 40}) take(flags, step, StepFlag::not_converged, 1, wire::Role::sensor);
+  EXPECT_EQ(flags.missed(0), 0u);
+  EXPECT_EQ(flag_sentences(flags, milliseconds(1), kNames),
+            std::vector<std::string>{
+                "sensor: Hit: no distance was found, or a body turned by half a turn or more between two samples in 2 "
+                "steps, first at 30 ms; lower recording.every, or look for a body that leaves the machine"});
+}
+
 TEST(FlagCounter, ComesBackFromItsLine) {
   FlagCounter flags;
   for (const StepIndex step : {3, 4, 7}) take(flags, step, StepFlag::cavitating);
@@ -50,8 +65,7 @@ TEST(FlagCounter, ComesBackFromItsLine) {
   const std::optional<FlagCounter> read = FlagCounter::of_text(flags.text());
   ASSERT_TRUE(read);
   EXPECT_EQ(read->text(), flags.text());
-  EXPECT_EQ(flag_sentences(*read, milliseconds(1), {"Tank", "Line"}),
-            flag_sentences(flags, milliseconds(1), {"Tank", "Line"}));
+  EXPECT_EQ(flag_sentences(*read, milliseconds(1), kNames), flag_sentences(flags, milliseconds(1), kNames));
   EXPECT_TRUE(flags.is_in_order());
   take(flags, 5, StepFlag::cavitating);
   EXPECT_FALSE(flags.is_in_order());

@@ -27,6 +27,15 @@ std::vector<double> awkward_values(std::size_t n) {
   return values;
 }
 
+TEST(SimDuration, HasThreeDigits) {
+  EXPECT_EQ(seconds_text(milliseconds(10'000)), "10 s");
+  EXPECT_EQ(seconds_text(milliseconds(350)), "0.35 s");
+  EXPECT_EQ(seconds_text(milliseconds(1'003)), "1 s");
+  EXPECT_EQ(seconds_text(milliseconds(3'600'000)), "3600 s");
+  EXPECT_EQ(seconds_text(milliseconds(999'600)), "1000 s");
+  EXPECT_EQ(seconds_text({0}), "0 s");
+}
+
 TEST(Time, EveryWholeMillisecondIsItsNanoseconds) {
   for (std::int64_t ms = 0; ms <= 60'000; ++ms) {
     ASSERT_EQ(duration_of_seconds(static_cast<double>(ms) * 1e-3).ns, ms * 1'000'000);

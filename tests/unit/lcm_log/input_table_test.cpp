@@ -87,10 +87,23 @@ TEST(LcmInputTable, LogsWithoutInputsAreProblems) {
   slewring::input_t wrong = lift(0, 1);
   wrong.channel = "Input_Jib";
   EXPECT_EQ(Log().add(0, wrong).table().problem, "has no input_t message for an input of the scene: 1 no such channel");
-  EXPECT_NE(Log().add(1000, lift(0, 1)).add(0, lift(1, 1)).table().problem.find("a time that falls"),
+  EXPECT_NE(Log()
+                .add(0, lift(0, 1))
+                .add(200'000, lift(1, 1))
+                .add(99'999, lift(2, 1))
+                .table()
+                .problem.find("falls by more than 100 ms"),
             std::string::npos);
   const auto least = std::numeric_limits<std::int64_t>::min(), most = std::numeric_limits<std::int64_t>::max();
   EXPECT_NE(Log().add(least, lift(0, 1)).add(most, lift(1, 1)).table().problem, "");
+}
+
+// as lcm-logger writes them when a long message ends behind a short one
+TEST(LcmInputTable, EventsWhoseTimesFallALittleKeepTheirOrder) {
+  const InputTable table = Log().add(0, lift(0, 0.5)).add(5000, "OTHER", "").add(4000, lift(1, 1)).table();
+  EXPECT_EQ(table.csv, "time,Input_Lift\n0,0\n0,0.5\n0.005,0.5\n0.005,1\n0.205,1\n0.205,0\n");
+  EXPECT_EQ(table.warnings,
+            std::vector<std::string>{"times of the log fall by up to 1000 us; its events are taken in their order"});
 }
 
 TEST(LcmInputTable, ACutLogIsUsedUpToTheCutWithAWarning) {

@@ -273,6 +273,20 @@ TEST_F(Physics, BeginsAnEpochForIoAlone) {
   EXPECT_EQ(node.member().epoch(), 1u);
 }
 
+// no node waits for sensors: poses far ahead of one that catches up are requested again, and are no fault
+TEST(Inbox, PosesFarAheadOfSensorsAreNoFault) {
+  Refusals refusals;
+  Inbox<wire::PoseMessage> poses(reading_of(Topic::poses));
+  poses.need({.sensor_every = 10});
+  poses.keep({}, 1280, 0, refusals);
+  EXPECT_EQ(refusals.early, 1u);
+  EXPECT_EQ(refusals.refused(), 0u);
+  Inbox<wire::MechanismMessage> mechanism(reading_of(Topic::mechanism));
+  mechanism.need({});
+  mechanism.keep({}, 128, 0, refusals);
+  EXPECT_EQ(refusals.refused(), 1u);
+}
+
 TEST_F(Physics, RefusesToPublishMoreVariablesThanTheWireNumbers) {
   const auto build_many = [](const wire::SessionDescription&, BuiltSubsystem& built) {
     built.subsystem = std::make_unique<StillSubsystem>();

@@ -320,9 +320,24 @@ TEST(Load, ATextThatIsTooLongForTheWireIsRefused) {
     (void)load_text(std::move(text), "long");
     FAIL();
   } catch (const LoadError& error) {
-    EXPECT_NE(std::string(error.what()).find("when published to the nodes; expected at most 8388608"),
-              std::string::npos)
-        << error.what();
+    EXPECT_NE(std::string(error.what()).find("when published to the nodes"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("expected at most 8388608"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Load, ATextThatIsTooLongForTheWireNamesTheLongestElementAndItsLine) {
+  std::string numbers = "0, 0, 0, 1, 0, 0, 0, 1, 0";
+  for (int i = 0; i < 720'000; ++i) numbers += ", 0.123456789";
+  const std::string shape =
+      "shapes:\n  Yard: {type: triangle_mesh, vertices: [" + numbers + "], triangles: [0, 1, 2]}\n";
+  try {
+    (void)load_text(shape + kPendulum, "long");
+    FAIL();
+  } catch (const LoadError& error) {
+    ASSERT_EQ(error.diagnostics().size(), 1u);
+    EXPECT_EQ(error.diagnostics()[0].line, 2);
+    EXPECT_NE(error.diagnostics()[0].what.find("of them in 'Yard'"), std::string::npos) << error.diagnostics()[0].what;
+    EXPECT_NE(error.diagnostics()[0].expected.find("meshes of fewer triangles"), std::string::npos);
   }
 }
 

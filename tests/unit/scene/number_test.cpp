@@ -28,18 +28,36 @@ TEST(Number, DecimalNumbersReadToTheNearestDouble) {
   EXPECT_EQ(value_of("0.00036178"), 0.00036178);
 }
 
+// halfway between two doubles after the first of two roundings
+TEST(Number, ADoubleThatIsPrintedIsReadBack) {
+  EXPECT_EQ(value_of("0.4148797890461908"), 0.4148797890461908);
+  std::mt19937_64 random(20'261'127);
+  std::uniform_real_distribution<double> values(-1, 1);
+  for (int i = 0; i < 50'000; ++i) {
+    const double value = values(random) * (i % 3 == 0 ? 1 : i % 3 == 1 ? 1e-9 : 1e9);
+    ASSERT_EQ(value_of(fmt::format("{}", value)), value) << fmt::format("{}", value);
+  }
+}
+
 // the short way to a value and the long one of the C library
 TEST(Number, OfAnyLengthAndPowerIsTheNearestLongDouble) {
+  const auto expect_nearest = [](const std::string& text) {
+    const NumberText number = split_number(text);
+    ASSERT_TRUE(number.is_number) << text;
+    const long double nearest = std::strtold(text.c_str(), nullptr);
+    const double as_double = std::strtod(text.c_str(), nullptr);
+    EXPECT_EQ(static_cast<double>(number.value), as_double) << text;
+    if (static_cast<double>(nearest) == as_double) {
+      EXPECT_EQ(number.value, nearest) << text;
+    }
+  };
   std::mt19937_64 random(20'261'126);
   for (int i = 0; i < 20'000; ++i) {
     const std::uint64_t digits = random() >> (random() % 64);
     const int exponent = static_cast<int>(random() % 64) - 32;
     const std::string text = fmt::format("{}{}.{}e{}", i % 2 == 0 ? "-" : "", digits % 1'000'000'007, digits, exponent);
-    const NumberText number = split_number(text);
-    ASSERT_TRUE(number.is_number) << text;
-    EXPECT_EQ(number.value, std::strtold(text.c_str(), nullptr)) << text;
-    const std::string whole = fmt::format("{}e{}", digits, exponent);
-    EXPECT_EQ(split_number(whole).value, std::strtold(whole.c_str(), nullptr)) << whole;
+    expect_nearest(text);
+    expect_nearest(fmt::format("{}e{}", digits, exponent));
   }
 }
 

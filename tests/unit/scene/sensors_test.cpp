@@ -67,7 +67,39 @@ TEST(SensorSection, RefusesWhatCannotWorkWithItsPlace) {
             std::string::npos);
   EXPECT_NE(problem_of("  S: {type: zone, zone: Sheet, watch: [Ball]}").find("has no inside"), std::string::npos);
   EXPECT_NE(problem_of("  S: {type: zone, zone: Gate, watch: [Ball, Ball]}").find("named twice"), std::string::npos);
+  EXPECT_NE(problem_of("  S: {type: clearance, of: 3, to: [Ball]}").find("a list of names of bodies or shapes"),
+            std::string::npos);
   EXPECT_NE(problem_of("  S: {type: camera}").find("camera"), std::string::npos);
+}
+
+TEST(SensorSection, HasAsManyEventsAsAMessageHolds) {
+  std::string sensors;
+  const auto add = [&](int i) {
+    sensors += "  S" + std::to_string(i) + ": {type: clearance, of: [Ball], to: [Plate]}\n";
+  };
+  for (int i = 0; i < 128; ++i) add(i);
+  EXPECT_EQ(problem_of(sensors), "");
+  add(128);
+  EXPECT_NE(problem_of(sensors).find("S128: up to here the sensors can have more events"), std::string::npos);
+  EXPECT_NE(problem_of(sensors).find("at most 256: two of a clearance or a collision"), std::string::npos);
+}
+
+TEST(SensorSection, TakesAPlaneOnABodyThatIsFixedToGround) {
+  const std::string foot = kYard + R"(
+  Slab: {type: plane, body: Foot, position: [0, 1 m, 0], orientation: [0, -90 deg, 0]}
+sensors:
+  Gap: {type: clearance, of: [Ball], to: [Slab]}
+)";
+  const auto with = [&](const std::string& type) {
+    std::string text = foot;
+    text.insert(text.find("joints:"), "  Foot: {mass: 1 kg, inertia: [0.1, 0.1, 0.1], position: [0, 2 m, 0]}\n");
+    text.insert(text.find("shapes:"), "  Foot_Joint: {type: " + type + ", body2: Foot, point1: [0, 2 m, 0]}\n");
+    return text;
+  };
+  const sensors::SensorsDef def = sensors_of(load_text(with("fixed"), "test"));
+  ASSERT_EQ(def.frames.size(), 3u);
+  EXPECT_TRUE(def.frames[2].is_static);
+  EXPECT_THROW(static_cast<void>(load_text(with("floating"), "test")), LoadError);
 }
 
 // contact needs convex pieces where sensors do not

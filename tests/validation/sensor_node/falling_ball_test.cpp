@@ -43,6 +43,8 @@ double value(const DirectSession& session, const std::string& name) {
   return 0;
 }
 
+const double kSpeed = std::sqrt(2 * kGravity * (kHeight - kRadius));  // m/s, at the floor
+
 // time of the fall by this height [s]
 double time_of(double way) {
   return std::sqrt(2 * way / kGravity);
@@ -73,10 +75,44 @@ TEST(FallingBall, IsSeenAtTheHeightAndSpeedOfItsFall) {
   EXPECT_EQ(events[1].first, step_of(time_of(kHeight - kRadius - 2)));    // close
   EXPECT_EQ(events[2].first, step_of(time_of(kHeight + kRadius - 2.5)));  // its highest one leaves the box
   EXPECT_EQ(events[3].first, step_of(time_of(kHeight - kRadius)));        // the floor
-  const double sample = 1e-3 * static_cast<double>(events[3].first);
-  // the search between two samples runs along a straight line at their mean speed
-  EXPECT_NEAR(events[3].second.value, kGravity * (sample - 0.005), 1e-6);
+  // the speed of the sample before, or of the way since: within what gravity adds in a sample
+  EXPECT_NEAR(events[3].second.value, kSpeed, kGravity * 0.01);
   EXPECT_NEAR(events[3].second.place[1], 0, 1e-4);
+  // the way between two samples differs from a straight line by g h^2 / 8
+  const double time = 1e-3 * static_cast<double>(events[3].first) - events[3].second.before;
+  EXPECT_NEAR(time, time_of(kHeight - kRadius), (1e-4 + kGravity * 1e-4 / 8) / kSpeed);
+}
+
+// half a period of the contact is 2 ms: 1.3 ms after the ball has met the floor, a sample sees it on its way up
+TEST(BouncingBall, HitsAtTheSpeedOfItsFall) {
+  for (const char* const is_continuous : {"false", "true"}) {
+    std::string text(kScene);
+    const auto set = [&](const std::string& from, const std::string& to) {
+      text.replace(text.find(from), from.size(), to);
+    };
+    set("continuous: true", std::string("continuous: ") + is_continuous);
+    set("step: 1 ms", "step: 0.1 ms");
+    set("every: 10", "every: 100");
+    DirectSession session(scene::load_text(
+        text + "contacts: {Touch: {shape_a: Round, shape_b: Floor, spring_constant: 5e6 N/m}}\n", "ball"));
+    ASSERT_TRUE(session.start().is_ok());
+    for (StepIndex n = 0; n < 9500; ++n) session.step(n, {}, {});
+    ASSERT_EQ(value(session, "Hit.touching"), 1);
+    ASSERT_EQ(value(session, "Hit.hits"), 1);
+    EXPECT_NEAR(value(session, "Hit.speed"), kSpeed, kGravity * 0.01);
+    EXPECT_NEAR(value(session, "Hit.place.y"), 0, 1e-4);
+  }
+}
+
+// a plane on a body that is fixed to Ground stands where that body stands
+TEST(FixedPlane, HasTheHeightOfItsBody) {
+  std::string text(kScene);
+  text.insert(text.find("joints:"), "  Foot: {mass: 1 kg, inertia: [0.1, 0.1, 0.1], position: [0, 1 m, 0]}\n");
+  text.insert(text.find("shapes:"), "  Foot_Joint: {type: fixed, body2: Foot, point1: [0, 1 m, 0]}\n");
+  text.insert(text.find("type: plane") + 11, ", body: Foot");
+  DirectSession session(scene::load_text(text, "ball"));
+  ASSERT_TRUE(session.start().is_ok());
+  EXPECT_NEAR(value(session, "Gap.distance"), kHeight - kRadius - 1, 1e-12);
 }
 
 TEST(CraneWithSensors, ComputesTheSamePhysicsAsWithout) {
