@@ -107,7 +107,7 @@ class DeviceRun final : public observer::Receiver {
                   fmt::format("no session '{}' was found within {}; the device was not started; start "
                               "it first, and compare its name, --domain, --interface, --peer and "
                               "--keys",
-                              options_.session.session, observer::seconds_text(longest)));
+                              options_.session.session, seconds_text(longest)));
   }
 
   [[nodiscard]] scene::Scene read_scene() const {

@@ -446,7 +446,7 @@ TEST_F(Member, ThatCouldNotSendNamesItsNetworkAsACause) {
   EXPECT_EQ(watch_sender(4'212 * kMs), PeerEvent::lost);
   EXPECT_EQ(
       sender.end_text(about, "io is gone"),
-      "io is gone; this node itself had stood still for 2 s while it sent, and after 2 s (session.give_up_after) the "
+      "io is gone; this node itself had stood still for 2.2 s while it sent, and after 2 s (session.give_up_after) the "
       "others give a node up; look for what stopped the process (a signal, a debugger, lack of memory or of "
       "processors) or took "
       "nothing from it (a cable that is out, an interface that is down)");
