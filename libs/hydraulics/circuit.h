@@ -68,6 +68,7 @@ class Circuit {
   [[nodiscard]] StateIndex speed(int actuator) const noexcept { return volume_count() + actuator_count() + actuator; }
   [[nodiscard]] StateIndex first_component_state() const noexcept { return volume_count() + 2 * actuator_count(); }
   [[nodiscard]] std::span<const Actuator> actuators() const noexcept { return actuators_; }
+  [[nodiscard]] std::span<const Relief> reliefs() const noexcept { return reliefs_; }
   [[nodiscard]] const std::string& volume_name(int volume) const {
     return volume_name_[static_cast<std::size_t>(volume)];
   }

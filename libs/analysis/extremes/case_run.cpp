@@ -40,26 +40,25 @@ constexpr StepIndex kStepsBetweenLooks = 64;
 class Ceiling {
  public:
   explicit Ceiling(const scene::Scene& scene) {
-    double relief = 0, rise = 0, pump = 0;
     const auto take = [](double& largest, double value) { largest = std::max(largest, value); };
     for (const scene::ParameterInfo& one : scene::parameters(scene)) {
       const std::string_view field = std::string_view(one.path).substr(one.path.rfind('.') + 1);
       if (field == "setting_pressure" || field.starts_with("shock_pressure_")) {
-        take(field == "shock_pressure_rise" ? rise : relief, one.value);
+        take(field == "shock_pressure_rise" ? rise_ : relief_, one.value);
       }
-      if (field == "opening_pressure_rise" || field == "nominal_pressure_drop") take(rise, one.value);
+      if (field == "opening_pressure_rise" || field == "nominal_pressure_drop") take(rise_, one.value);
       if (field == "maximum_ls_pressure" || field == "set_pressure" || field == "standby_pressure")
-        take(pump, one.value);
+        take(pump_, one.value);
     }
-    source_ = relief > 0 ? relief + rise : 2 * pump;
     for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) {
       if (volume.fixed) take(tank_, volume.initial_pressure);
     }
   }
 
-  // Areas of the actuators at the ports, in their order.
-  void set_actuators(std::span<const hydraulics::Actuator> actuators) {
-    for (const hydraulics::Actuator& actuator : actuators) {
+  // Its reliefs, whatever their keys are called, and the areas of the actuators at the ports, in their order.
+  void set_circuit(const hydraulics::Circuit& circuit) {
+    for (const hydraulics::Relief& relief : circuit.reliefs()) relief_ = std::max(relief_, relief.fully_open);
+    for (const hydraulics::Actuator& actuator : circuit.actuators()) {
       const auto [smaller, larger] = std::minmax(actuator.area_a, actuator.area_b);
       ratio_ = std::max(ratio_, larger / smaller);
       area_.push_back(smaller);
@@ -86,7 +85,8 @@ class Ceiling {
     double by_force = 0;
     for (std::size_t i = 0; i < area_.size(); ++i)
       by_force = std::max(by_force, (holding_[i] + stopping_[i]) / area_[i]);
-    return kCeilingMargin * (tank_ + ratio_ * source_ + by_force);
+    const double source = relief_ > 0 ? relief_ + rise_ : 2 * pump_;
+    return kCeilingMargin * (tank_ + ratio_ * source + by_force);
   }
 
  private:
@@ -98,7 +98,8 @@ class Ceiling {
     }
   }
 
-  double source_ = 0, tank_ = 0, ratio_ = 1;
+  double relief_ = 0, rise_ = 0, pump_ = 0, tank_ = 0;  // Pa
+  double ratio_ = 1;
   std::vector<double> area_, holding_, stopping_;  // by port
 };
 
@@ -158,7 +159,7 @@ class Stepper {
     }
     hydraulics_ = dynamic_cast<const hydraulics_node::HydraulicsSubsystem*>(session_.subsystem(Role::hydraulics));
     if (hydraulics_ == nullptr) return;
-    ceiling_.set_actuators(hydraulics_->circuit().actuators());
+    ceiling_.set_circuit(hydraulics_->circuit());
     values_.resize(hydraulics_->variables().size());
     const auto variables = hydraulics_->variables();
     for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) {

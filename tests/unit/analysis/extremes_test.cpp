@@ -1,14 +1,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <set>
+#include <string>
 
 #include "analysis/extremes/case_run.h"
 #include "analysis/extremes/cases.h"
 #include "analysis/extremes/extremes.h"
 #include "analysis/extremes/judge.h"
 #include "build_paths.h"
+#include "tests/support/temporary_folder.h"
 
 namespace slew::analysis {
 namespace extremes_test {
@@ -183,6 +188,26 @@ TEST(ExtremeCases, CylindersOfEveryKindBoundThePressuresByWhatTheyHold) {
     EXPECT_GT(ceiling_with("mechanics.gravity=[0, -20, 0]"), 1.05 * ceiling_with("mechanics.gravity=[0, -5, 0]"))
         << file;
   }
+}
+
+// Whatever a valve's keys are called: where it is open, its pressure is among the bounds.
+TEST(ExtremeCases, ReliefsOfEveryKindBoundThePressures) {
+  std::ifstream file(SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t begin = text.find("    type: relief_valve"), end = text.find("  MainPump:", begin);
+  ASSERT_LT(begin, end);
+  text.replace(begin, end - begin,
+               "    type: direct_relief_valve\n    port_1: Vol_MainPump\n    port_2: Vol_Tank\n"
+               "    seat_diameter: 12 mm\n    crack_pressure: 900 bar\n    spring_constant: 1e4\n");
+  const testing::TemporaryFolder folder("extremes");
+  const std::filesystem::path scene = folder.path() / "scene.yaml";
+  std::ofstream(scene) << text;
+  scene::SceneOptions options;
+  options.file = scene.string();
+  options.overrides = {"hydraulics.start=table13"};
+  const CaseOutcome outcome = run_case(options, "full_range_every_step");
+  ASSERT_TRUE(outcome.measures.ceiling) << outcome.measures.refusal;
+  EXPECT_GT(*outcome.measures.ceiling, 900e5);
 }
 
 TEST(Extremes, UnfinishedAndDivergedRowsAreNotGood) {
