@@ -15,6 +15,7 @@
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/node_names.h"
 #include "core/report_table.h"
 #include "node/identity.h"
 #include "node/open_transport.h"
@@ -59,8 +60,9 @@ Finding check_processor() {
 
 Finding check_programs() {
   std::string missing;
-  for (const char* name : {"io_node", "mechanics_node", "hydraulics_node", "recorder_node"}) {
-    if (access(sibling_program(name).c_str(), X_OK) != 0) missing += std::string(missing.empty() ? "" : ", ") + name;
+  for (const std::string_view role : kNodeNames) {
+    const std::string name = std::string(role) + "_node";
+    if (access(sibling_program(name).c_str(), X_OK) != 0) missing += (missing.empty() ? "" : ", ") + name;
   }
   if (missing.empty()) return {"programs", Verdict::good, "all nodes are beside this program"};
   return {"programs", Verdict::bad, missing + " not beside this program; build or install all of them together"};

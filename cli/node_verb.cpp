@@ -1,4 +1,5 @@
 // `slewring node ROLE`: one node of a session, in the place of this process.
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,15 +15,14 @@
 #include "core/suggestion.h"
 
 namespace slew::cli {
-namespace {}  // namespace
 
 int become_node(int argc, char** argv) {
   const std::string role = argv[2];
   if (std::find(std::begin(kNodeNames), std::end(kNodeNames), role) == std::end(kNodeNames)) {
     const std::string meant = closest(role, {std::begin(kNodeNames), std::end(kNodeNames)});
-    std::fprintf(
-        stderr, "slewring: there is no role '%s'; nothing was started; %s\n", role.c_str(),
-        meant.empty() ? "roles: io, mechanics, hydraulics, flex, recorder" : ("did you mean '" + meant + "'?").c_str());
+    fmt::print(stderr, "slewring: there is no role '{}'; nothing was started; {}\n", role,
+               meant.empty() ? fmt::format("roles: {}", fmt::join(kNodeNames, ", "))
+                             : fmt::format("did you mean '{}'?", meant));
     return static_cast<int>(ExitCode::bad_input);
   }
   const std::string program = sibling_program(role + "_node");
@@ -38,10 +38,11 @@ int become_node(int argc, char** argv) {
 void add_node(options::Command& program) {
   options::Command verb = program.command("node", "run one node of a session, here or on this machine's part of it");
   verb.footer(
-      "Roles: io SCENE (owner of the session), mechanics, hydraulics, flex (flexible bodies), recorder.\n"
-      "'slewring node ROLE --help' lists the options of a role.\n\n"
-      "Example:\n  slewring node hydraulics --session truck_crane --interface eth0 --peer 192.168.1.10 "
-      "--keys for_crane2");
+      fmt::format("Roles: {}. io owns the session and takes its SCENE.\n"
+                  "'slewring node ROLE --help' lists the options of a role.\n\n"
+                  "Example:\n  slewring node hydraulics --session truck_crane --interface eth0 --peer 192.168.1.10 "
+                  "--keys for_crane2",
+                  fmt::join(kNodeNames, ", ")));
   verb.action([]() -> ExitCode {
     std::fprintf(stderr, "slewring: a role is missing; nothing was started; see 'slewring node --help'\n");
     return ExitCode::bad_input;

@@ -15,7 +15,7 @@ cd "$source"
 
 sources=$(mktemp)
 trap 'rm "$sources"' EXIT
-find benchmarks cli device_node examples flex_node hydraulics_node io_node libs mechanics_node recorder_node tests \
+find benchmarks cli examples libs tests ./*_node \
   '(' -name '*.cpp' -o -name '*.h' ')' -print0 > "$sources"
 count=$(tr -cd '\0' < "$sources" | wc -c)
 [ "$count" -ge 100 ] || { echo "only $count sources were found in $source"; exit 1; }

@@ -56,7 +56,7 @@ struct BodyDef {
   std::int64_t segments = 20;                // connectors of a segmented body
 };
 
-// Types after cylindrical have no coordinates of their own (topology.h): their rows are in constraint.h.
+// Types from in_plane on have no coordinates of their own (topology.h): their rows are in constraint.h.
 enum class JointType : int {
   revolute,
   prismatic,

@@ -204,7 +204,7 @@ bool merges(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
 }
 
 bool has_coordinates(JointType type) noexcept {
-  return type <= JointType::cylindrical;
+  return type < JointType::in_plane;
 }
 
 namespace {

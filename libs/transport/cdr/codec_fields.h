@@ -91,7 +91,7 @@ template <typename S>
 template <typename E>
 inline constexpr std::uint32_t kEnumerators = 0;
 template <>
-inline constexpr std::uint32_t kEnumerators<wire::Role> = 8;
+inline constexpr std::uint32_t kEnumerators<wire::Role> = wire::kRoles;
 template <>
 inline constexpr std::uint32_t kEnumerators<wire::Phase> = 4;
 template <>

@@ -46,7 +46,8 @@ TEST_F(Keys, StoreHasKeysForEveryRoleThatOthersCannotRead) {
   ASSERT_EQ(made.code, 0) << made.err;
   const CommandResult checked = keys({"check", "plant"});
   EXPECT_EQ(checked.code, 0) << checked.out << checked.err;
-  for (const char* role : {"io", "mechanics", "hydraulics", "flex", "recorder", "observer", "controller", "viewer"}) {
+  for (const char* role :
+       {"io", "mechanics", "hydraulics", "flex", "recorder", "sensor", "observer", "controller", "viewer"}) {
     EXPECT_NE(checked.out.find(std::string("ok  ") + role), std::string::npos) << checked.out;
     const fs::perms mode = fs::status(folder() / "plant" / role / "private_key.pem").permissions();
     EXPECT_EQ(mode & (fs::perms::group_all | fs::perms::others_all), fs::perms::none) << role;

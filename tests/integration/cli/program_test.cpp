@@ -1,6 +1,7 @@
 // The command line of every program: help, versions, exit codes, texts of errors.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -8,6 +9,7 @@
 
 #include "build_paths.h"
 #include "command.h"
+#include "core/node_names.h"
 #include "recording/writer.h"
 
 namespace slew::testing {
@@ -32,40 +34,22 @@ void expect_keys_beyond_this_machine(const std::string& help) {
   }
 }
 
+// Names below "Subcommands:" of a help text; a line that continues a description begins further right.
+std::vector<std::string> verbs_below(const std::string& help) {
+  std::vector<std::string> names;
+  std::istringstream lines(help.substr(std::min(help.find("Subcommands:"), help.size())));
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line) && !line.empty()) {
+    if (line.size() > 2 && line[2] != ' ') names.push_back(line.substr(2, line.find(' ', 2) - 2));
+  }
+  return names;
+}
+
 TEST_F(Program, EveryVerbExplainsItselfWithAnExample) {
-  const std::vector<std::vector<std::string>> verbs = {{},
-                                                       {"run"},
-                                                       {"check"},
-                                                       {"describe"},
-                                                       {"import"},
-                                                       {"import", "urdf"},
-                                                       {"flex"},
-                                                       {"flex", "build"},
-                                                       {"flex", "report"},
-                                                       {"variables"},
-                                                       {"schema"},
-                                                       {"sessions"},
-                                                       {"watch"},
-                                                       {"param"},
-                                                       {"param", "list"},
-                                                       {"param", "get"},
-                                                       {"param", "set"},
-                                                       {"control"},
-                                                       {"control", "pause"},
-                                                       {"control", "resume"},
-                                                       {"control", "step"},
-                                                       {"control", "reset"},
-                                                       {"control", "stop"},
-                                                       {"info"},
-                                                       {"plot"},
-                                                       {"export"},
-                                                       {"recover"},
-                                                       {"replay"},
-                                                       {"compare"},
-                                                       {"stress"},
-                                                       {"node"},
-                                                       {"doctor"}};
-  for (std::vector<std::string> arguments : verbs) {
+  std::vector<std::vector<std::string>> verbs = {{}};
+  for (std::size_t i = 0; i < verbs.size(); ++i) {
+    std::vector<std::string> arguments = verbs[i];
     std::string verb = "slewring";
     for (const std::string& word : arguments) verb += ' ' + word;
     arguments.emplace_back("--help");
@@ -75,7 +59,12 @@ TEST_F(Program, EveryVerbExplainsItselfWithAnExample) {
     EXPECT_TRUE(contains(result.out, "slewring ")) << verb;
     EXPECT_TRUE(result.err.empty()) << verb << ": " << result.err;
     expect_keys_beyond_this_machine(result.out);
+    for (const std::string& name : verbs_below(result.out)) {
+      arguments.back() = name;
+      verbs.push_back(arguments);
+    }
   }
+  EXPECT_GE(verbs.size(), 40u);
 }
 
 TEST(Howto, HasNoExampleBeyondThisMachineThatIsRefused) {
@@ -88,13 +77,14 @@ TEST(Howto, HasNoExampleBeyondThisMachineThatIsRefused) {
 }
 
 TEST_F(Program, EveryNodeExplainsItselfWithAnExample) {
-  for (const char* role : {"io", "mechanics", "hydraulics", "flex", "recorder"}) {
+  for (const std::string_view name : kNodeNames) {
+    const std::string role(name);
     const CommandResult through = slewring({"node", role, "--help"});
     EXPECT_EQ(through.code, 0) << role;
-    EXPECT_TRUE(contains(through.out, std::string(role) + "_node")) << role;
+    EXPECT_TRUE(contains(through.out, role + "_node")) << role;
     EXPECT_TRUE(contains(through.out, "Example")) << role;
     expect_keys_beyond_this_machine(through.out);
-    EXPECT_EQ(run(std::string(role) + "_node", {"--help"}, work_.path()).out, through.out) << role;
+    EXPECT_EQ(run(role + "_node", {"--help"}, work_.path()).out, through.out) << role;
   }
 }
 
@@ -115,7 +105,8 @@ TEST_F(Program, TheClockGoesBeforeThePhysicsAndThePhysicsBeforeTheRecorder) {
 TEST_F(Program, EveryProgramPrintsTheSameBuild) {
   const std::string own = slewring({"--version"}).out;
   ASSERT_TRUE(own.starts_with("slewring 0.")) << own;
-  for (const char* node : {"io_node", "mechanics_node", "hydraulics_node", "flex_node", "recorder_node"}) {
+  for (const std::string_view role : kNodeNames) {
+    const std::string node = std::string(role) + "_node";
     const CommandResult result = run(node, {"--version"}, work_.path());
     EXPECT_EQ(result.code, 0);
     EXPECT_EQ(result.out, node + own.substr(std::string("slewring").size()));
