@@ -84,8 +84,9 @@ class Crane:
         self.rig, self.dash = free_port(), free_port()
         self.process = None
         # a machine under load may stop a process for longer than the scene allows
-        self.arguments = [SLEWRING, "run", SCENE, "--set", "session.give_up_after=60", "--domain", str(domain), "--out", f"{folder}/runs", "--quiet", "--json",
-                          "--set", "Rig.timeout=5s", "--set", f"Rig.listen=127.0.0.1:{self.rig}", "--set", f"Dash.send=127.0.0.1:{self.dash}", *more]
+        self.arguments = [SLEWRING, "run", SCENE, "--set", "session.give_up_after=60", "--domain", str(domain),
+                          "--out", f"{folder}/runs", "--quiet", "--json", "--set", "Rig.timeout=5s",
+                          "--set", f"Rig.listen=127.0.0.1:{self.rig}", "--set", f"Dash.send=127.0.0.1:{self.dash}", *more]
 
     def start(self):
         with open(f"{self.folder}/run.out", "w") as out, open(f"{self.folder}/run.err", "w") as err:
