@@ -16,36 +16,14 @@ import sys
 import tempfile
 import time
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../support"))
+from waiting import DEADLINE, require, skip, text_of, wait_for  # noqa: E402
+
 SOURCES, SLEWRING, CASE = sys.argv[1:4]
 SCENE = f"{SOURCES}/scenes/truck_crane_devices.yaml"
-DEADLINE = 100  # s, of each wait
 EV_SYN, EV_KEY, EV_ABS = 0, 1, 3
 ABS_X, ABS_Y, BTN_TRIGGER = 0, 1, 288
-
-
-def require(condition, text):
-    if not condition:
-        sys.exit(f"FAILED: {text}")
-
-
-def skip(reason):
-    print(f"SKIPPED: {reason}")
-    sys.exit(0)
-
-
-def wait_for(what, condition):
-    end = time.monotonic() + DEADLINE
-    while time.monotonic() < end:
-        result = condition()
-        if result:
-            return result
-        time.sleep(0.05)
-    sys.exit(f"FAILED: {what} did not happen within {DEADLINE} s")
-
-
-def text_of(path):
-    with open(path, encoding="utf-8") as file:
-        return file.read()
 
 
 def take_domain():
@@ -113,6 +91,15 @@ class Crane:
             if parent == self.process.pid and words[1:3] == [b"--device", name.encode()]:
                 return int(entry)
         return None
+
+    def wait_for_value(self, name, expected):
+        """Until the session has published it; the recording then has it too."""
+        def is_published():
+            done = subprocess.run([SLEWRING, "watch", name, "--session", "truck_crane_devices", "--domain",
+                                   str(self.domain), "--count", "1", "--json"], capture_output=True, text=True)
+            return done.returncode == 0 and json.loads(done.stdout)["values"].get(name) == expected
+
+        wait_for(f"{name} = {expected}", is_published)
 
     def stop(self, code):
         if self.process.poll() is None:
@@ -241,7 +228,7 @@ def case_dead_or_hanging(folder, domain):
         crane.wait_for_line("device Rig: answers again")
         os.kill(hanging, signal.SIGKILL)
         crane.wait_for_line(f"device Rig (process {hanging}) was killed by signal 9 (Killed); its inputs go to neutral")
-        time.sleep(1.5)  # longer than session.controller_timeout, for the recording to have it
+        crane.wait_for_value("Input_Lift.raw", 0)
         result = crane.stop(3)
     finally:
         crane.kill()
@@ -372,7 +359,7 @@ def case_recorded_can(folder, domain):
                                    "--json"], stdout=open(f"{folder}/panel.out", "w"), stderr=subprocess.STDOUT, cwd=folder)
         wait_for("the end of the frames", lambda: "the recorded frames are over" in text_of(f"{folder}/panel.out"))
         wait_for("neutral", lambda: "no values: its inputs go to neutral" in text_of(f"{folder}/panel.out"))
-        time.sleep(0.5)  # for the recording to have it
+        crane.wait_for_value("Input_Lift.raw", 0)
         result = crane.stop(0)
         device.wait(DEADLINE)
     finally:
@@ -414,7 +401,7 @@ def case_can_utils(folder, domain):
 
         wait_for("the panel's dead-man signal", push)
         push()
-        time.sleep(1)
+        crane.wait_for_value("Input_Lift.raw", 0.5)
         result = crane.stop(0)
     finally:
         crane.kill()

@@ -21,39 +21,17 @@ import tempfile
 import threading
 import time
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../support"))
+from waiting import DEADLINE, require, skip, text_of, wait_for  # noqa: E402
+
 GROUP = "239.255.76.67"
 PORT = 7667
 SESSION = "lcm_test"
 PREFIX = f"SLEWRING_{SESSION}"
 SIGNALS = "crane=Cyl_Lift.stroke,Cyl_Lift.force"
-DEADLINE = 120  # s, of each wait
 STEP = 0.004  # s; a machine that is busy keeps up with it
 EVERY = 2  # steps between two messages of the bridge
-
-
-def require(condition, text):
-    if not condition:
-        sys.exit(f"FAILED: {text}")
-
-
-def skip(reason):
-    print(f"SKIPPED: {reason}")
-    sys.exit(0)
-
-
-def wait_for(what, condition, deadline=DEADLINE):
-    end = time.monotonic() + deadline
-    while time.monotonic() < end:
-        result = condition()
-        if result:
-            return result
-        time.sleep(0.05)
-    sys.exit(f"FAILED: {what} did not happen within {deadline} s")
-
-
-def text_of(path):
-    with open(path, encoding="utf-8") as file:
-        return file.read()
 
 
 class Processes:
