@@ -147,7 +147,7 @@ def case_closed_loop(folder, domain):
         crane.start()
         crane.wait_for_line("device Rig: listens on")
         crane.wait_for_line("device Dash: sends to")
-        for target in ("0.80", "0.90"):
+        for target in ("0.82", "0.84"):
             peer = subprocess.run([sys.executable, f"{SOURCES}/examples/udp/position_loop.py", "--target", target,
                                    "--listen", str(crane.dash), "--send", str(crane.rig), "--seconds", str(DEADLINE)],
                                   capture_output=True, text=True, timeout=DEADLINE + 20)

@@ -53,11 +53,14 @@ class Control : public ::testing::Test {
     session_->start_all();
     ASSERT_TRUE(observer_->wait_for_step(step)) << session_->errors();
   }
-  // no tick while io sends this number of health messages, ten a second
+  // no tick of a further step while io sends this number of health messages, ten a second; ticks that a node has missed
+  // are sent again meanwhile
   void expect_stands_still(std::uint64_t healths) {
-    const std::uint64_t ticks = observer_->ticks();
+    const std::uint32_t epoch = observer_->epoch();
+    const StepIndex step = observer_->step();
     ASSERT_TRUE(observer_->wait_for_healths(Role::io, healths)) << session_->errors();
-    EXPECT_EQ(observer_->ticks(), ticks);
+    EXPECT_EQ(observer_->epoch(), epoch);
+    EXPECT_EQ(observer_->step(), step);
   }
   void expect_ends_well() { EXPECT_EQ(session_->wait_all(), all_ok()) << session_->errors(); }
 

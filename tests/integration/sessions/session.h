@@ -60,7 +60,7 @@ class Observer {
   [[nodiscard]] const std::optional<wire::NodeStatus>& status(wire::Role role) const {
     return status_[static_cast<std::size_t>(role)];
   }
-  // Ticks of steps that have come, and messages of any kind.
+  // Ticks of steps that have come, with those that were sent again, and messages of any kind.
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
   [[nodiscard]] std::uint64_t messages() const noexcept { return messages_; }
   // Health messages of this role, and those it sent after its own end.
