@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kMostFrames = 2000;  // limit of a page, also in the help
 constexpr int kMostInstants = 50;
 
-struct Options {
+struct AnimateOptions {
   std::string recording, output;
   std::string from, to;
   int instants = 7;
@@ -85,7 +85,7 @@ std::string page_text(const analysis::MachineDrawing& machine, const analysis::M
   return analysis::animation_html(machine, thin);
 }
 
-ExitCode animate(const Options& options) {
+ExitCode animate(const AnimateOptions& options) {
   const std::string path = options.output.empty() ? "animation.html" : options.output;
   const std::string kind = std::filesystem::path(path).extension().string();
   if (kind != ".html" && kind != ".svg") {
@@ -117,7 +117,7 @@ ExitCode animate(const Options& options) {
 
 void add_animate(options::Command& program) {
   options::Command verb = program.command("animate", "show the machine of a recording as it moves");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<AnimateOptions>();  // lives as long as the command line's callbacks
   verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
   verb.option("-o,--output", options->output,
               "file to write: .html, a page with a time slider, or .svg, some instants over each other; without it "

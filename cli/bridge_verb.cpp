@@ -16,19 +16,19 @@
 namespace slew::cli {
 namespace {
 
-struct Options {
+struct BridgeOptions {
   node::SessionOptions session;
   bridge::Settings lcm;
   std::string types;
   bool is_json = false;
 };
 
-ExitCode write_types(const Options& options, bridge::Bridge& bridge, observer::Observer& observer) {
+ExitCode write_types(const BridgeOptions& options, bridge::Bridge& bridge, observer::Observer& observer) {
   write_text(options.types, bridge.types(observer));
   return ExitCode::ok;
 }
 
-ExitCode run(Options options) {
+ExitCode run(BridgeOptions options) {
   bridge::require_lcm();
   node::install_signal_handlers();
   options.lcm.is_insecure_lan = options.session.is_insecure_lan;
@@ -82,7 +82,7 @@ void add_bridge(options::Command& program) {
   verb.require_command();
   options::Command lcm =
       verb.command("lcm", "variables, health and signal lists to LCM; inputs and parameters from it");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<BridgeOptions>();  // lives as long as the command line's callbacks
   node::add_session_options(lcm, options->session, false);
   add_lcm_options(lcm, options->lcm);
   lcm.option("--url", options->lcm.url, "LCM's address; a ttl above 0 needs --insecure-lan")

@@ -21,7 +21,7 @@ namespace {
 
 using wire::Role;
 
-struct Options {
+struct CheckOptions {
   std::string scene;
   std::vector<std::string> overrides;
   bool is_json = false;
@@ -72,7 +72,7 @@ void check_payload(scene::Scene& scene) {
       load.payload, load.mass, analysis::limit_text(load), scene.name));
 }
 
-ExitCode check(const Options& options) {
+ExitCode check(const CheckOptions& options) {
   try {
     scene::Scene scene = scene::load_file(options.scene, options.overrides);
     session::DirectSession session(scene);
@@ -104,7 +104,7 @@ ExitCode check(const Options& options) {
 
 void add_check(options::Command& program) {
   options::Command verb = program.command("check", "check a scene: file, models, start state");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<CheckOptions>();  // lives as long as the command line's callbacks
   verb.option("scene", options->scene, "scene file").required().value_name("SCENE");
   verb.option("--set", options->overrides, "change a value of the scene; repeat for more")
       .value_name("PATH=VALUE")

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
 
 #include "analysis/comparison/comparison_report.h"
 #include "cli/progress_line.h"
@@ -10,28 +9,19 @@
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"
+#include "core/text_output.h"
 #include "session/interrupts.h"
 
 namespace slew::cli {
 namespace {
 
-constexpr int kMostRepeats = 1000;
-
-struct Options {
+struct CompareOptions {
   analysis::ComparisonOptions settings;
   std::string picture;  // empty: in the working folder, named after the scene
   std::string csv;
   bool is_json = false;
   bool is_quiet = false;
 };
-
-void write_file(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  if (!file.flush()) {
-    throw Failure(ExitCode::storage, "cannot write " + path + "; the table above is complete; name another file");
-  }
-}
 
 bool is_html(const std::string& path) {
   return path.ends_with(".html") || path.ends_with(".htm");
@@ -44,7 +34,7 @@ void check_picture(const std::string& path) {
                 "-o " + path + ": the picture is .svg or .html; nothing was run; give the file one of these endings");
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const CompareOptions& options) {
   check_picture(options.picture);
   if (options.settings.scene.input == "keyboard") {
     throw Failure(ExitCode::bad_input,
@@ -64,9 +54,9 @@ ExitCode run(const Options& options) {
                                    : analysis::report_text(comparison, output_width()));
   std::fflush(stdout);
   if (!comparison.rows.empty()) {
-    if (!options.csv.empty()) write_file(options.csv, analysis::report_csv(comparison));
+    if (!options.csv.empty()) write_text(options.csv, analysis::report_csv(comparison));
     const std::string path = options.picture.empty() ? comparison.scene + "_compare.svg" : options.picture;
-    write_file(path, is_html(path) ? analysis::report_html(comparison) : analysis::report_svg(comparison));
+    write_text(path, is_html(path) ? analysis::report_html(comparison) : analysis::report_svg(comparison));
     if (!options.is_json) {
       if (!options.csv.empty()) fmt::print("{}\n", options.csv);
       fmt::print("{}\n", path);
@@ -75,7 +65,7 @@ ExitCode run(const Options& options) {
   return session::interrupts() > 0 ? static_cast<ExitCode>(session::interrupt_code()) : ExitCode::ok;
 }
 
-void add_what(options::Command& verb, Options& options) {
+void add_what(options::Command& verb, CompareOptions& options) {
   analysis::ComparisonOptions& settings = options.settings;
   verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
   const auto list = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
@@ -99,7 +89,7 @@ void add_what(options::Command& verb, Options& options) {
               "sub-step of the reference; without it an eighth of the smallest of the steps")
       .value_name("TIME");
   verb.option("--repeats", settings.repeats, "timed runs of every row")
-      .between(1, kMostRepeats)
+      .between(1, analysis::kMostTimedRuns)
       .value_name("N")
       .show_default();
 }
@@ -108,7 +98,7 @@ void add_what(options::Command& verb, Options& options) {
 
 void add_compare(options::Command& program) {
   options::Command verb = program.command("compare", "accuracy against cost of formulations, integrators and steps");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<CompareOptions>();  // lives as long as the command line's callbacks
   add_what(verb, *options);
   verb.option("--set", options->settings.scene.overrides, "change a value of the scene; repeat for more")
       .value_name("PATH=VALUE")

@@ -24,7 +24,7 @@ namespace {
 
 using wire::ControlAction;
 
-struct Options {
+struct ControlOptions {
   node::SessionOptions session;
   std::int64_t steps = 1;
   std::string file;
@@ -47,7 +47,7 @@ constexpr Command kCommands[] = {
 };
 
 // Prints io_node's reply to a command on standard output.
-void report(const Options& options, const std::string& command, const observer::Observer& observer,
+void report(const ControlOptions& options, const std::string& command, const observer::Observer& observer,
             const wire::ControlReply& reply, const std::string& more = "") {
   if (options.is_json) {
     fmt::print("{}\n", Json({{"session", observer.session_name()},
@@ -67,7 +67,7 @@ void report(const Options& options, const std::string& command, const observer::
   }
 }
 
-ExitCode send(const Options& options, const Command& command) {
+ExitCode send(const ControlOptions& options, const Command& command) {
   node::install_signal_handlers();
   const auto observer = session::find_session(options.session, session::Access::steer);
   wire::ControlRequest request;
@@ -107,7 +107,7 @@ std::vector<wire::Role> roles_with_state(const wire::SessionDescription& session
   return roles;
 }
 
-ExitCode save(const Options& options) {
+ExitCode save(const ControlOptions& options) {
   node::install_signal_handlers();
   std::error_code ignored;
   if (!options.may_replace && std::filesystem::exists(options.file, ignored)) {
@@ -196,7 +196,7 @@ std::string difference_of(const io_node::SavedSession& saved, const wire::Sessio
   return element + " it has " + trimmed(line_a) + ", the session " + trimmed(line_b);
 }
 
-ExitCode load(const Options& options) {
+ExitCode load(const ControlOptions& options) {
   node::install_signal_handlers();
   io_node::SavedSession saved;
   require(io_node::read_saved(options.file, saved));
@@ -237,7 +237,7 @@ ExitCode load(const Options& options) {
   return ExitCode::ok;
 }
 
-void add_save_and_load(options::Command& verb, const std::shared_ptr<Options>& options) {
+void add_save_and_load(options::Command& verb, const std::shared_ptr<ControlOptions>& options) {
   options::Command saving = verb.command("save", "write the session's whole state at the next step into a file");
   saving.option("file", options->file, "file to write").required().value_name("FILE");
   saving.flag("--force", options->may_replace, "replace a file that exists");
@@ -264,7 +264,7 @@ void add_control(options::Command& program) {
       program.command("control", "pause, resume, step, reset, stop, save or load a running session");
   verb.require_command();
   verb.footer("Example:\n  slewring control pause --session truck_crane");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<ControlOptions>();  // lives as long as the command line's callbacks
   add_save_and_load(verb, options);
   for (const Command& command : kCommands) {
     options::Command part = verb.command(command.name, command.doc);

@@ -27,7 +27,7 @@ namespace {
 // s, default length of the run whose cost is measured: some manoeuvre, some seconds of waiting
 constexpr double kCostTime = 8;
 
-struct Options {
+struct DescribeOptions {
   std::string scene;
   std::vector<std::string> overrides;
   bool is_json = false;
@@ -289,7 +289,7 @@ void print(const Description& d) {
 }
 
 // Prints only the requested parts, in the order of the options.
-ExitCode show_parts(const Options& options) {
+ExitCode show_parts(const DescribeOptions& options) {
   // the same physics, in the parts that are described
   scene::Overrides overrides = options.overrides;
   overrides.emplace_back("session.solution=split");
@@ -326,7 +326,7 @@ ExitCode show_parts(const Options& options) {
   return ExitCode::ok;
 }
 
-ExitCode show(const Options& options) {
+ExitCode show(const DescribeOptions& options) {
   if (options.has_part()) return show_parts(options);
   const scene::Scene scene = scene::load_file(options.scene, options.overrides);
   const Description description = describe(scene);
@@ -342,7 +342,7 @@ ExitCode show(const Options& options) {
 
 void add_describe(options::Command& program) {
   options::Command verb = program.command("describe", "parts of a scene and the nodes it needs, with reasons");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<DescribeOptions>();  // lives as long as the command line's callbacks
   verb.option("scene", options->scene, "scene file").required().value_name("SCENE");
   verb.option("--set", options->overrides, "change a value of the scene; repeat for more")
       .value_name("PATH=VALUE")

@@ -30,7 +30,7 @@ using device_node::InputDevice;
 
 constexpr int kRoundMs = 5;
 
-struct Options {
+struct DeviceOptions {
   std::string scene, device;
   std::string output = "-";
   double duration = 0;  // s; 0: until Ctrl-C
@@ -72,7 +72,7 @@ std::vector<Row> devices_of(const scene::Scene& scene) {
   return rows;
 }
 
-ExitCode list(const Options& options) {
+ExitCode list(const DeviceOptions& options) {
   std::vector<Row> rows;
   if (!options.scene.empty()) rows = devices_of(scene::load_file(options.scene));
   if (options.scene.empty()) {
@@ -167,7 +167,7 @@ const Def* find_device(const std::vector<Def>& defs, const std::string& name) {
                                                            : fmt::format("did you mean '{}'?", meant)));
 }
 
-std::unique_ptr<InputDevice> open_of_scene(const Options& options) {
+std::unique_ptr<InputDevice> open_of_scene(const DeviceOptions& options) {
   const scene::Scene scene = scene::load_file(options.scene);
   if (const auto* stick = find_device(scene.devices.joysticks, options.device))
     return device_node::open_joystick(*stick, scene.inputs);
@@ -178,7 +178,7 @@ std::unique_ptr<InputDevice> open_of_scene(const Options& options) {
   refuse_device(scene, options.device, "joystick, udp_in or can_in");
 }
 
-ExitCode monitor(const Options& options) {
+ExitCode monitor(const DeviceOptions& options) {
   node::install_signal_handlers();
   const auto device = options.scene.empty() ? open_path(options.device) : open_of_scene(options);
   const std::int64_t end_ns =
@@ -225,7 +225,7 @@ void print_problems(const Problems& problems) {
   }
 }
 
-ExitCode calibrate(const Options& options) {
+ExitCode calibrate(const DeviceOptions& options) {
   node::install_signal_handlers();
   const auto source = open_now(options.device);
   const devices::Stick stick = build_stick(whole_stick(*source));
@@ -291,7 +291,7 @@ ExitCode calibrate(const Options& options) {
 
 // ---- layout and run -------------------------------------------------------------------------------------------
 
-ExitCode write_layout(const Options& options) {
+ExitCode write_layout(const DeviceOptions& options) {
   const scene::Scene scene = scene::load_file(options.scene);
   const devices::LayoutDef* def = nullptr;
   if (const auto* rig = find_device(scene.devices.udp_ins, options.device)) def = &rig->layout;
@@ -302,7 +302,7 @@ ExitCode write_layout(const Options& options) {
   return ExitCode::ok;
 }
 
-ExitCode run_one(Options options) {
+ExitCode run_one(DeviceOptions options) {
   node::install_signal_handlers();
   if (options.run.session.session.empty()) {
     options.run.session.session = session::find_session(options.run.session, session::Access::look)->session_name();
@@ -322,7 +322,7 @@ ExitCode run_one(Options options) {
 void add_device(options::Command& program) {
   options::Command verb = program.command("device", "joysticks and UDP packets of a scene, with and without a session");
   verb.require_command();
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<DeviceOptions>();  // lives as long as the command line's callbacks
 
   options::Command listing = verb.command("list", "input devices of this machine, or the devices of a scene");
   listing.option("scene", options->scene, "scene file").value_name("SCENE");

@@ -32,7 +32,7 @@ struct Finding {
   std::string text;  // finding and remedy
 };
 
-struct Options {
+struct DoctorOptions {
   node::SessionOptions network;
   bool is_json = false;
 };
@@ -131,7 +131,7 @@ Finding check_disk() {
   return {"disk", Verdict::warning, text + "; name another place for the recordings with --out"};
 }
 
-ExitCode examine(const Options& options) {
+ExitCode examine(const DoctorOptions& options) {
   const std::vector<Finding> findings = {
       check_processor(),      check_programs(),  check_pidfd(),    check_network(options.network),
       check_receive_buffer(), check_real_time(), check_governor(), check_disk()};
@@ -158,7 +158,7 @@ ExitCode examine(const Options& options) {
 
 void add_doctor(options::Command& program) {
   options::Command verb = program.command("doctor", "is this machine fit for a session?");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<DoctorOptions>();  // lives as long as the command line's callbacks
   node::add_network_options(verb, options->network);
   verb.flag("--json", options->is_json, "for machines");
   verb.footer("Exit code 7 when a session cannot run here.\n\nExample:\n  slewring doctor --interface eth0");

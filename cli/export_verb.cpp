@@ -22,7 +22,7 @@
 namespace slew::cli {
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::string recording;
   std::vector<std::string> variables;
   std::vector<std::string> only;
@@ -47,7 +47,7 @@ void check_values(const recording::Reader& reader, const std::vector<plotting::S
 }
 
 // Replaces a file only on request, and never leaves a part of one.
-ExitCode write_file(const Options& options, const std::function<Status(const std::filesystem::path&)>& write) {
+ExitCode write_file(const ExportOptions& options, const std::function<Status(const std::filesystem::path&)>& write) {
   std::error_code error;
   const std::filesystem::file_status there = std::filesystem::status(options.output, error);
   const bool is_device = std::filesystem::exists(there) && !std::filesystem::is_regular_file(there);
@@ -56,7 +56,7 @@ ExitCode write_file(const Options& options, const std::function<Status(const std
   return ExitCode::ok;
 }
 
-void check_output(const Options& options) {
+void check_output(const ExportOptions& options) {
   const bool is_standard_output = options.output.empty() || options.output == "-";
   if (is_standard_output) {
     if (!options.is_mat) return;
@@ -107,7 +107,7 @@ std::string input_text(const recording::Reader& reader, const session::TimeRange
   return text + "\n";
 }
 
-ExitCode export_input(const Options& options, const std::vector<std::string>& patterns) {
+ExitCode export_input(const ExportOptions& options, const std::vector<std::string>& patterns) {
   if (!patterns.empty()) {
     throw Failure(ExitCode::bad_input, "--input writes every input; nothing was written; leave the variables out");
   }
@@ -121,7 +121,7 @@ ExitCode export_input(const Options& options, const std::vector<std::string>& pa
 }
 
 // The session as its observers saw it.
-void write_log(const Options& options, const recording::Reader& reader, const scene::Scene& scene,
+void write_log(const ExportOptions& options, const recording::Reader& reader, const scene::Scene& scene,
                std::ofstream& file) {
   bridge::LogExport log(
       options.for_lcm, reader.identity().session_name, lcm_scene(scene),
@@ -143,7 +143,7 @@ void write_log(const Options& options, const recording::Reader& reader, const sc
   }
 }
 
-ExitCode export_lcm(Options options) {
+ExitCode export_lcm(ExportOptions options) {
   bridge::require_lcm();
   if (!options.variables.empty() || !options.only.empty()) {
     throw Failure(ExitCode::bad_input,
@@ -168,7 +168,7 @@ ExitCode export_lcm(Options options) {
   });
 }
 
-ExitCode export_variables(Options options) {
+ExitCode export_variables(ExportOptions options) {
   if (!options.lcm.empty()) return export_lcm(std::move(options));
   const bool is_named_mat = std::filesystem::path(options.output).extension() == ".mat";
   options.is_mat = options.is_mat || (is_named_mat && !options.is_csv && !options.is_input);
@@ -200,7 +200,7 @@ ExitCode export_variables(Options options) {
 
 void add_export(options::Command& program) {
   options::Command verb = program.command("export", "write variables of a recording as a table or for MATLAB");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<ExportOptions>();  // lives as long as the command line's callbacks
   verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
   verb.option("variables", options->variables, "names, or patterns with * and ?; without them all").value_name("VAR");
   verb.option("--only", options->only, "the same, one at a time; repeat for more").value_name("VAR").repeatable();

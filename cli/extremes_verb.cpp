@@ -17,9 +17,7 @@
 namespace slew::cli {
 namespace {
 
-constexpr int kMostWorkers = 64;
-
-struct Options {
+struct ExtremesOptions {
   analysis::ExtremesOptions settings;
   std::string scene, scenes = "scenes";
   bool is_suite = false, is_json = false, is_quiet = false;
@@ -30,7 +28,7 @@ struct CaseOptions {
   std::string name, result;
 };
 
-ExitCode run(Options options) {
+ExitCode run(ExtremesOptions options) {
   if (options.is_suite == !options.scene.empty()) {
     throw Failure(ExitCode::bad_input, "a scene file or --suite is needed, one of both; nothing was run");
   }
@@ -57,7 +55,7 @@ ExitCode run(Options options) {
 void add_extremes(options::Command& program) {
   options::Command verb =
       program.command("extremes", "hard cases of a scene: within their bounds, and how near the edge");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<ExtremesOptions>();  // lives as long as the command line's callbacks
   analysis::ExtremesOptions& settings = options->settings;
   verb.option("scene", options->scene, "scene file").value_name("SCENE");
   verb.flag("--suite", options->is_suite, "the repository's own machines instead of a scene");
@@ -70,7 +68,7 @@ void add_extremes(options::Command& program) {
   verb.option("--folder", settings.folder, "where results are kept").value_name("DIR").show_default();
   verb.flag("--anew", settings.is_fresh, "compute also what the folder has already");
   verb.option("--workers", settings.workers, "processes at once")
-      .between(1, kMostWorkers)
+      .between(1, analysis::kMostWorkers)
       .value_name("N")
       .show_default();
   verb.flag("--json", options->is_json, "print the table as JSON and nothing else");

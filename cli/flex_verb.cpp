@@ -54,12 +54,12 @@ auto with_exit_codes(const std::string& where, const Call& call) {
 }
 
 // Number and size of the existing files of the set.
-struct Present {
+struct PresentFiles {
   std::uint64_t files = 0, bytes = 0;
 };
 
-Present present(const flex::FlexibleFileSet& set) {
-  Present out;
+PresentFiles present(const flex::FlexibleFileSet& set) {
+  PresentFiles out;
   for (const std::string& matrix : flex::flexible_matrices()) {
     std::error_code missing;
     const std::uintmax_t bytes = fs::file_size(flex::flexible_file(set, matrix), missing);
@@ -103,7 +103,7 @@ ExitCode build(const BuildOptions& options) {
     fmt::print("{}\n", built_json(set, replaced, all, tip).dump(2));
     return ExitCode::ok;
   }
-  const Present now = present(set);
+  const PresentFiles now = present(set);
   fmt::print("{}: {}, {:.1f} kB{}\n", flex::flexible_file(set, "*").string(), counted(now.files, "file", "files"),
              static_cast<double>(now.bytes) / 1e3,
              replaced > 0 ? fmt::format("; {} of an older set replaced", counted(replaced, "file", "files")) : "");

@@ -14,7 +14,7 @@
 namespace slew::cli {
 namespace {
 
-struct Options {
+struct ImportOptions {
   std::string file;
   std::string output;  // empty: standard output
   bool is_floating = false;
@@ -35,7 +35,7 @@ void write(const std::string& path, const std::string& text, bool is_overwriting
   if (!out) throw Failure(ExitCode::storage, "'" + path + "' cannot be written; name another file");
 }
 
-Json to_json(const Options& options, const urdf::Import& made) {
+Json to_json(const ImportOptions& options, const urdf::Import& made) {
   const auto listed = [](const std::vector<urdf::Note>& notes) {
     Json list = Json::array();
     for (const urdf::Note& note : notes) list.push_back({{"line", note.line}, {"text", note.text}});
@@ -54,7 +54,7 @@ Json to_json(const Options& options, const urdf::Import& made) {
   return json;
 }
 
-ExitCode import_urdf(const Options& options) {
+ExitCode import_urdf(const ImportOptions& options) {
   const auto mount = options.is_floating ? urdf::RootMount::floating : urdf::RootMount::fixed;
   const urdf::Import made = urdf::import_file(options.file, mount, options.output, options.repairs);
   if (!options.output.empty()) write(options.output, made.text, options.is_overwriting);
@@ -80,7 +80,7 @@ void add_import(options::Command& program) {
   verb.require_command();
   verb.footer("Example:\n  slewring import urdf robot.urdf -o robot.yaml");
   options::Command part = verb.command("urdf", "a robot's tree of links and joints");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<ImportOptions>();  // lives as long as the command line's callbacks
   part.option("file", options->file, "URDF file, macros expanded").required().value_name("FILE");
   part.option("-o,--output", options->output, "the scene's file; without it the scene is printed").value_name("SCENE");
   part.flag("--floating", options->is_floating, "the root link is free, not fixed to Ground");

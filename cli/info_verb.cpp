@@ -16,7 +16,7 @@
 namespace slew::cli {
 namespace {
 
-struct Options {
+struct InfoOptions {
   std::string recording;
   bool is_verifying = false;
   bool has_all_events = false;
@@ -161,7 +161,7 @@ void print(const recording::Reader& reader, double simulated, bool has_all_event
   print_table(rows);
 }
 
-ExitCode show(const Options& options) {
+ExitCode show(const InfoOptions& options) {
   const auto reader = session::open_recording(options.recording);
   if (options.is_verifying) require(reader->verify());
   const double simulated = static_cast<double>(reader->statistics().end_time) * 1e-9;
@@ -178,7 +178,7 @@ ExitCode show(const Options& options) {
 
 void add_info(options::Command& program) {
   options::Command verb = program.command("info", "what a recording holds");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<InfoOptions>();  // lives as long as the command line's callbacks
   verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
   verb.flag("--verify", options->is_verifying, "read every byte and compare every checksum");
   verb.flag("--events", options->has_all_events,

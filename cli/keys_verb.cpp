@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kUsualDays = 730, kMostDays = 3650;
 
-struct Options {
+struct KeysOptions {
   std::string store, name, role = "controller", session = "*", to;
   std::vector<std::string> names;
   int days = kUsualDays;
   bool is_json = false;
 };
 
-ExitCode create(const Options& options) {
+ExitCode create(const KeysOptions& options) {
   const keys::KeyStore store = keys::KeyStore::create(options.store, options.session, options.days);
   fmt::print("{}: authorities, and keys for {} roles, valid for {} days\n", options.store, store.identities().size(),
              options.days);
@@ -30,7 +30,7 @@ ExitCode create(const Options& options) {
   return ExitCode::ok;
 }
 
-ExitCode add(const Options& options) {
+ExitCode add(const KeysOptions& options) {
   keys::KeyIdentity identity{options.name.empty() ? options.role : options.name, options.role, options.session,
                              options.days};
   keys::KeyStore store = keys::KeyStore::open(options.store);
@@ -40,7 +40,7 @@ ExitCode add(const Options& options) {
   return ExitCode::ok;
 }
 
-ExitCode revoke(const Options& options) {
+ExitCode revoke(const KeysOptions& options) {
   keys::KeyStore store = keys::KeyStore::open(options.store);
   store.revoke(options.name);
   fmt::print(
@@ -50,7 +50,7 @@ ExitCode revoke(const Options& options) {
   return ExitCode::ok;
 }
 
-ExitCode check(const Options& options) {
+ExitCode check(const KeysOptions& options) {
   const std::vector<keys::KeyFinding> findings = keys::check_keys(options.store);
   constexpr std::size_t kNaming = 2;  // verdict, owner
   ReportTable table(
@@ -70,7 +70,7 @@ ExitCode check(const Options& options) {
   return is_good ? ExitCode::ok : ExitCode::failed;
 }
 
-ExitCode export_keys(const Options& options) {
+ExitCode export_keys(const KeysOptions& options) {
   keys::KeyStore::open(options.store).export_to(options.to, options.names);
   fmt::print("{}: {} for --keys there; the authorities' own keys stay in {}\n", options.to,
              fmt::join(options.names, ", "), options.store);
@@ -82,8 +82,8 @@ ExitCode export_keys(const Options& options) {
 void add_keys(options::Command& program) {
   options::Command verb = program.command("keys", "keys for sessions over a network");
   verb.require_command();
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  const auto sub = [&](const char* name, const char* text, ExitCode (*act)(const Options&), const char* example) {
+  const auto options = std::make_shared<KeysOptions>();  // lives as long as the command line's callbacks
+  const auto sub = [&](const char* name, const char* text, ExitCode (*act)(const KeysOptions&), const char* example) {
     options::Command one = verb.command(name, text);
     one.footer(fmt::format("Example:\n  slewring keys {} {}", name, example));
     one.option("store", options->store, "folder of the key store").required().value_name("STORE");

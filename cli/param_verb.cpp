@@ -23,7 +23,7 @@
 namespace slew::cli {
 namespace {
 
-struct Options {
+struct ParamOptions {
   node::SessionOptions session;
   std::string scene;
   std::vector<std::string> words;  // patterns, a path, or path and value
@@ -43,7 +43,7 @@ struct Present {
 // The parameters of a scene file, or of a session with its replies.
 class Source {
  public:
-  explicit Source(const Options& options)
+  explicit Source(const ParamOptions& options)
       : observer_(options.scene.empty() ? session::find_session(options.session, session::Access::steer) : nullptr),
         directory_(
             observer_ ? scene::load_text(observer_->view().session().scene_text, observer_->view().session().scene_name)
@@ -104,7 +104,7 @@ Json to_json(const Present& present, bool is_of_session) {
   return json;
 }
 
-bool is_wanted(const scene::ParameterInfo& parameter, const Options& options) {
+bool is_wanted(const scene::ParameterInfo& parameter, const ParamOptions& options) {
   if (options.only_live && parameter.change != Change::live) return false;
   return options.words.empty() ||
          std::any_of(options.words.begin(), options.words.end(),
@@ -127,7 +127,7 @@ ReportTable table_of(const std::vector<Present>& all) {
   return table;
 }
 
-ExitCode list(const Options& options) {
+ExitCode list(const ParamOptions& options) {
   node::install_signal_handlers();
   const Source source(options);
   std::vector<Present> all;
@@ -159,7 +159,7 @@ std::string circumstances(const Present& present, bool is_of_session) {
   return text + (is_live ? "; can be changed while the session runs" : "; fixed while the session runs");
 }
 
-ExitCode get(const Options& options) {
+ExitCode get(const ParamOptions& options) {
   node::install_signal_handlers();
   const Source source(options);
   const std::string& path = options.words.front();
@@ -192,7 +192,7 @@ std::int64_t spread_ns(const std::string& text) {
   return duration_of_seconds(*time.value).ns;
 }
 
-ExitCode set(const Options& options) {
+ExitCode set(const ParamOptions& options) {
   const std::string text = options.words.size() == 1 ? options.words[0] : options.words[0] + "=" + options.words[1];
   const std::optional<SimDuration> spread =
       options.over.empty() ? std::nullopt : std::optional(SimDuration{spread_ns(options.over)});
@@ -232,10 +232,10 @@ ExitCode set(const Options& options) {
   return ExitCode::ok;
 }
 
-using Do = ExitCode (*)(const Options&);
+using Do = ExitCode (*)(const ParamOptions&);
 
 options::Command add_part(options::Command& verb, const char* name, const char* doc, Do what,
-                          const std::shared_ptr<Options>& options) {
+                          const std::shared_ptr<ParamOptions>& options) {
   options::Command part = verb.command(name, doc);
   node::add_session_options(part, options->session, false);
   part.flag("--json", options->is_json, "for machines, values in SI");
@@ -249,7 +249,7 @@ void add_param(options::Command& program) {
   options::Command verb = program.command("param", "list, read and change parameters");
   verb.require_command();
   verb.footer("Example:\n  slewring param set Bag.mass=1500kg --session truck_crane");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<ParamOptions>();  // lives as long as the command line's callbacks
 
   options::Command list_part = add_part(verb, "list", "all parameters with value, range and meaning", list, options);
   list_part.option("patterns", options->words, "only these paths, with * and ?").value_name("PATH");

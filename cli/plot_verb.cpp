@@ -19,7 +19,7 @@
 namespace slew::cli {
 namespace {
 
-struct Options {
+struct PlotOptions {
   std::string recording;
   std::vector<std::string> variables;
   std::vector<std::string> others;  // recordings to compare with
@@ -73,7 +73,7 @@ ExitCode draw(std::span<const plotting::Plot> plots, const plotting::PlotOptions
   return ExitCode::ok;
 }
 
-ExitCode plot_beside(const Options& options) {
+ExitCode plot_beside(const PlotOptions& options) {
   if (options.variables.empty()) {
     throw Failure(ExitCode::bad_input, "--with compares variables; nothing was written; name the variables to plot");
   }
@@ -89,7 +89,7 @@ ExitCode plot_beside(const Options& options) {
   return draw({&plot, 1}, look, options.output);
 }
 
-ExitCode plot(const Options& options) {
+ExitCode plot(const PlotOptions& options) {
   if (!options.others.empty()) return plot_beside(options);
   const auto reader = session::open_recording(options.recording);
   plotting::PlotOptions look = analysis::plot_heading(*reader);
@@ -121,7 +121,7 @@ ExitCode plot(const Options& options) {
 void add_plot(options::Command& program) {
   options::Command verb =
       program.command("plot", "draw variables of a recording: a picture, or a page to look around in");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<PlotOptions>();  // lives as long as the command line's callbacks
   verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
   verb.option("variables", options->variables, "names, or patterns with * and ?; without them the scene's plots")
       .value_name("VAR");

@@ -18,13 +18,13 @@
 namespace slew::cli {
 namespace {
 
-struct Options {
+struct RecoverOptions {
   std::string recording;
   std::string output;
   bool is_json = false;
 };
 
-std::filesystem::path target_of(const Options& options, const std::filesystem::path& damaged) {
+std::filesystem::path target_of(const RecoverOptions& options, const std::filesystem::path& damaged) {
   if (!options.output.empty()) return options.output;
   std::filesystem::path target = damaged;
   return target.replace_filename(damaged.stem().string() + ".recovered" + damaged.extension().string());
@@ -88,7 +88,7 @@ void print(const recording::Recovery& recovery, const std::filesystem::path& tar
   print_table(rows);
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const RecoverOptions& options) {
   std::filesystem::path damaged = options.recording;
   std::error_code error;
   if (std::filesystem::is_directory(damaged, error)) damaged /= recording::kRecordingFileName;
@@ -117,7 +117,7 @@ ExitCode run(const Options& options) {
 
 void add_recover(options::Command& program) {
   options::Command verb = program.command("recover", "make a whole recording from the sound parts of a damaged one");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<RecoverOptions>();  // lives as long as the command line's callbacks
   verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
   verb.option("-o,--output", options->output,
               "file to write, a new one; without it <name>.recovered.mcap beside the recording")

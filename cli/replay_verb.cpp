@@ -19,7 +19,7 @@
 namespace slew::cli {
 namespace {
 
-struct Options {
+struct ReplayOptions {
   std::string recording;
   std::string assets;
   bool is_verifying = false;
@@ -79,7 +79,7 @@ void print_gaps(const session::ReplayResult& result) {
   for (const std::string& gap : result.gaps) std::fprintf(stderr, "slewring: %s\n", printable_lines(gap).c_str());
 }
 
-ExitCode run_until(const Options& options) {
+ExitCode run_until(const ReplayOptions& options) {
   node::install_signal_handlers();
   const auto reader = session::open_recording(options.recording);
   const std::string assets = options.assets.empty() ? session::recorded_assets(options.recording) : options.assets;
@@ -115,7 +115,7 @@ ExitCode run_until(const Options& options) {
   return run_session(std::move(run), session);
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const ReplayOptions& options) {
   if (options.until.empty() && (options.goes_on || !options.saved.empty())) {
     throw Failure(ExitCode::bad_input, "--then-live and --save need a time; nothing was done; set it with --until");
   }
@@ -169,7 +169,7 @@ ExitCode run(const Options& options) {
 
 void add_replay(options::Command& program) {
   options::Command verb = program.command("replay", "compute a recorded session again from its ticks");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<ReplayOptions>();  // lives as long as the command line's callbacks
   verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
   verb.flag(
       "--verify", options->is_verifying,

@@ -15,7 +15,7 @@ namespace {
 
 using wire::Role;
 
-struct Options {
+struct SessionsOptions {
   node::SessionOptions network;
   double seconds = 1;
   bool is_json = false;
@@ -62,7 +62,7 @@ Json to_json(const session::FoundSession& session) {
           {"nodes", nodes}};
 }
 
-ExitCode show(const Options& options) {
+ExitCode show(const SessionsOptions& options) {
   const SimDuration listening{static_cast<std::int64_t>(options.seconds * 1e9)};
   const std::vector<session::FoundSession> sessions = session::find_sessions(options.network, listening, listening);
   if (options.is_json) {
@@ -92,7 +92,7 @@ ExitCode show(const Options& options) {
 
 void add_sessions(options::Command& program) {
   options::Command verb = program.command("sessions", "list the sessions that run on a domain");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<SessionsOptions>();  // lives as long as the command line's callbacks
   node::add_network_options(verb, options->network);
   verb.option("--time", options->seconds, "seconds to listen").between(0.1, 60.0).value_name("S").show_default();
   verb.flag("--json", options->is_json, "for machines");

@@ -17,9 +17,7 @@
 namespace slew::cli {
 namespace {
 
-constexpr int kMostRepeats = 100;
-
-struct Options {
+struct SimplifyOptions {
   analysis::SimplifyOptions settings;
   std::string overlay;
   bool is_json = false, is_quiet = false;
@@ -33,7 +31,7 @@ std::string remark(const analysis::Simplification& result) {
   return fmt::format("{} {:.3g} instead of {:.3g} us per simulated ms", text, result.combined.cost, result.base_cost);
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const SimplifyOptions& options) {
   if (options.settings.scene.input == "keyboard") {
     throw Failure(ExitCode::bad_input,
                   "--input keyboard: every run needs the same input; nothing was run; write it into a "
@@ -70,7 +68,7 @@ ExitCode run(const Options& options) {
 void add_simplify(options::Command& program) {
   options::Command verb =
       program.command("simplify", "parts of a scene that may be left out while chosen variables stay as they are");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<SimplifyOptions>();  // lives as long as the command line's callbacks
   analysis::SimplifyOptions& settings = options->settings;
   verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
   verb.option("--error", settings.errors,
@@ -89,7 +87,7 @@ void add_simplify(options::Command& program) {
   verb.option("-o,--overlay", options->overlay, "file to write, beside the scene; without it SCENE_simplified.yaml")
       .value_name("FILE");
   verb.option("--repeats", settings.repeats, "timed runs of everything tried")
-      .between(1, kMostRepeats)
+      .between(1, 100)
       .value_name("N")
       .show_default();
   verb.flag("--json", options->is_json, "print the result as JSON and nothing else");

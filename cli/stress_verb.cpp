@@ -18,7 +18,7 @@
 namespace slew::cli {
 namespace {
 
-struct Options {
+struct StressOptions {
   analysis::StressOptions settings;
   analysis::StressBounds bounds;
   std::optional<double> max_miss_percent, p99_us;
@@ -41,7 +41,7 @@ void leave_out_repeats(std::vector<T>& values) {
   values = std::move(kept);
 }
 
-void complete(Options& options) {
+void complete(StressOptions& options) {
   analysis::StressOptions& settings = options.settings;
   const bool all = options.is_matrix;
   if (options.schedulings.empty()) {
@@ -72,7 +72,7 @@ void complete(Options& options) {
   settings.scene.duration = fmt::format("{} s", settings.seconds);
 }
 
-ExitCode run(Options options) {
+ExitCode run(StressOptions options) {
   complete(options);
   if (!options.page.empty()) require_writable(options.page);
   session::count_interrupts();
@@ -102,7 +102,7 @@ ExitCode run(Options options) {
   return analysis::exit_code_of(stress);
 }
 
-void add_what(options::Command& verb, Options& options) {
+void add_what(options::Command& verb, StressOptions& options) {
   analysis::StressOptions& settings = options.settings;
   verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
   verb.option("--set", settings.scene.overrides, "change a value of the scene; repeat for more")
@@ -120,7 +120,7 @@ void add_what(options::Command& verb, Options& options) {
       .show_default();
 }
 
-void add_cells(options::Command& verb, Options& options) {
+void add_cells(options::Command& verb, StressOptions& options) {
   options::Option matrix =
       verb.flag("--matrix", options.is_matrix,
                 "all cells: normal and fifo, no, cpu and mixed load, 0 and 200 us added; without it one of them")
@@ -152,7 +152,7 @@ void add_cells(options::Command& verb, Options& options) {
       .group("Cells");
 }
 
-void add_verdict(options::Command& verb, Options& options) {
+void add_verdict(options::Command& verb, StressOptions& options) {
   verb.option("--max-miss", options.max_miss_percent, "most steps that may be longer than the communication step")
       .between(0.0, 100.0)
       .value_name("PERCENT")
@@ -167,7 +167,7 @@ void add_verdict(options::Command& verb, Options& options) {
 
 void add_stress(options::Command& program) {
   options::Command verb = program.command("stress", "how well this machine keeps a scene's deadlines, and a bare loop");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<StressOptions>();  // lives as long as the command line's callbacks
   add_what(verb, *options);
   add_cells(verb, *options);
   add_verdict(verb, *options);

@@ -12,15 +12,13 @@
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/text_output.h"
 #include "session/interrupts.h"
 
 namespace slew::cli {
 namespace {
 
-constexpr int kMostWorkers = 64;
-constexpr int kMostRepeats = 1000;
-
-struct Options {
+struct TradeoffOptions {
   analysis::TradeoffOptions settings;
   std::string budget;
   std::vector<std::string> errors;
@@ -34,22 +32,14 @@ struct RowOptions {
   std::string job, result;
 };
 
-void write_file(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  if (!file.flush()) {
-    throw Failure(ExitCode::storage, "cannot write " + path + "; the table above is complete; name another file");
-  }
-}
-
 // the answer's settings beside the user's own changes
-scene::Overrides overlay_settings(const Options& options, const analysis::TradeoffRow& row) {
+scene::Overrides overlay_settings(const TradeoffOptions& options, const analysis::TradeoffRow& row) {
   scene::Overrides overrides = options.settings.scene.overrides;
   for (std::string& one : analysis::overrides_of(row.settings)) overrides.push_back(std::move(one));
   return overrides;
 }
 
-std::optional<analysis::Answer> answer(const Options& options, const analysis::Tradeoff& tradeoff) {
+std::optional<analysis::Answer> answer(const TradeoffOptions& options, const analysis::Tradeoff& tradeoff) {
   analysis::Answer answer;
   if (!options.budget.empty()) answer.question.budget = analysis::parse_budget(options.budget);
   for (const std::string& text : options.errors)
@@ -64,7 +54,7 @@ std::optional<analysis::Answer> answer(const Options& options, const analysis::T
   return answer;
 }
 
-ExitCode run(Options options) {
+ExitCode run(TradeoffOptions options) {
   if (options.settings.scene.input == "keyboard") {
     throw Failure(ExitCode::bad_input,
                   "--input keyboard: every run needs the same input; nothing was run; write it "
@@ -89,8 +79,8 @@ ExitCode run(Options options) {
                                    : analysis::report_text(tradeoff, found, output_width()));
   std::fflush(stdout);
   const std::string page = options.page.empty() ? tradeoff.folder + "/tradeoff.html" : options.page;
-  write_file(page, analysis::report_html(tradeoff, found));
-  if (!options.csv.empty()) write_file(options.csv, analysis::report_csv(tradeoff));
+  write_text(page, analysis::report_html(tradeoff, found));
+  if (!options.csv.empty()) write_text(options.csv, analysis::report_csv(tradeoff));
   if (!options.is_json) {
     if (found && !found->overlay.empty()) fmt::print("{}\n", found->overlay);
     if (!options.csv.empty()) fmt::print("{}\n", options.csv);
@@ -108,7 +98,7 @@ ExitCode run_row(const RowOptions& options) {
   return ExitCode::ok;
 }
 
-void add_what(options::Command& verb, Options& options) {
+void add_what(options::Command& verb, TradeoffOptions& options) {
   analysis::TradeoffOptions& settings = options.settings;
   verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
   const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
@@ -134,7 +124,7 @@ void add_what(options::Command& verb, Options& options) {
       .show_default();
 }
 
-void add_answers(options::Command& verb, Options& options) {
+void add_answers(options::Command& verb, TradeoffOptions& options) {
   verb.option("--budget", options.budget, "answer: least error at no more than this cost, such as '20 us/ms'")
       .value_name("COST")
       .group("Answer");
@@ -150,16 +140,16 @@ void add_answers(options::Command& verb, Options& options) {
       .group("Answer");
 }
 
-void add_how(options::Command& verb, Options& options) {
+void add_how(options::Command& verb, TradeoffOptions& options) {
   analysis::TradeoffOptions& settings = options.settings;
   verb.option("--folder", settings.folder, "where results are kept; without it runs/tradeoff-SCENE").value_name("DIR");
   verb.flag("--anew", settings.is_fresh, "compute also what the folder has already");
   verb.option("--workers", settings.workers, "processes at once")
-      .between(1, kMostWorkers)
+      .between(1, analysis::kMostWorkers)
       .value_name("N")
       .show_default();
   verb.option("--repeats", settings.repeats, "timed runs of every row")
-      .between(1, kMostRepeats)
+      .between(1, analysis::kMostTimedRuns)
       .value_name("N")
       .show_default();
   verb.option("-o,--output", options.page, "the page; without it tradeoff.html in the folder").value_name("FILE");
@@ -172,7 +162,7 @@ void add_how(options::Command& verb, Options& options) {
 
 void add_tradeoff(options::Command& program) {
   options::Command verb = program.command("tradeoff", "error against cost of a scene's settings, and the best of them");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<TradeoffOptions>();  // lives as long as the command line's callbacks
   add_what(verb, *options);
   add_answers(verb, *options);
   add_how(verb, *options);

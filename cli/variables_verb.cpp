@@ -18,7 +18,7 @@ namespace {
 
 using wire::Role;
 
-struct Options {
+struct VariablesOptions {
   node::SessionOptions session;
   std::string scene;
   std::vector<std::string> patterns;
@@ -62,7 +62,7 @@ std::vector<Named> of_session(const node::SessionOptions& options) {
   return all;
 }
 
-ExitCode list(const Options& options) {
+ExitCode list(const VariablesOptions& options) {
   std::vector<Named> all = options.scene.empty() ? of_session(options.session) : of_scene(options.scene);
   std::erase_if(all, [&](const Named& variable) {
     return !options.patterns.empty() &&
@@ -88,7 +88,7 @@ ExitCode list(const Options& options) {
 
 void add_variables(options::Command& program) {
   options::Command verb = program.command("variables", "list the variables of a scene or of a running session");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<VariablesOptions>();  // lives as long as the command line's callbacks
   verb.option("scene", options->scene, "scene file; without it a running session").value_name("SCENE");
   verb.option("--only", options->patterns, "only these names, with * and ?; repeat for more")
       .value_name("PATTERN")

@@ -16,7 +16,7 @@
 namespace slew::cli {
 namespace {
 
-struct Options {
+struct WatchOptions {
   node::SessionOptions session;
   std::vector<std::string> variables;
   double interval = 0.2;  // s
@@ -70,7 +70,7 @@ void print_line(const observer::SessionView& view, const std::vector<std::string
   std::fflush(stdout);
 }
 
-ExitCode watch(const Options& options) {
+ExitCode watch(const WatchOptions& options) {
   node::install_signal_handlers();
   const auto observer = session::find_session(options.session, session::Access::look);
   const std::vector<std::string> names = chosen_names(*observer, options.variables);
@@ -87,7 +87,7 @@ ExitCode watch(const Options& options) {
 
 void add_watch(options::Command& program) {
   options::Command verb = program.command("watch", "print variables of a running session as they change");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  const auto options = std::make_shared<WatchOptions>();  // lives as long as the command line's callbacks
   verb.option("variables", options->variables, "names, or patterns with * and ?").required().value_name("VAR");
   node::add_session_options(verb, options->session, false);
   verb.option("--every", options->interval, "seconds between two lines")

@@ -51,6 +51,8 @@ struct Cost {
   bool is_interrupted = false;
 };
 
+constexpr int kMostTimedRuns = 1000;
+
 // Repeats the same scene and reads only the clock between the steps.
 [[nodiscard]] Cost time_runs(const scene::Scene& scene, StepIndex steps, int repeats, const StateHashes& state_hashes,
                              const GoesOn& goes_on);

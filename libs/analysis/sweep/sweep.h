@@ -24,6 +24,8 @@ struct SweepTask {
   double weight = 1;                   // expected work relative to the others'
 };
 
+constexpr int kMostWorkers = 64;
+
 struct SweepOptions {
   std::string folder;     // made when it is missing
   int workers = 2;        // processes at once
