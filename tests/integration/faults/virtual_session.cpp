@@ -4,15 +4,18 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <stdexcept>
 
 #include "build_paths.h"
 #include "core/arithmetic_self_test.h"
+#include "flex_node/flex_subsystem.h"
+#include "hydraulics_node/hydraulics_subsystem.h"
 #include "io_node/io_node.h"
 #include "io_node/scene_config.h"
+#include "mechanics_node/mechanics_subsystem.h"
 #include "node/identity.h"
 #include "node/open_transport.h"
 #include "node/subsystem_factory.h"
-#include "session/monolithic_session.h"
 
 namespace slew::testing {
 namespace {
@@ -22,6 +25,14 @@ using wire::Topic;
 
 constexpr std::int64_t kRound = kMs / 4;
 constexpr int kMostPolls = 10'000;  // at one instant: a node that never comes to rest is a failure of its own
+
+// Those of the programs, without the libraries of whole sessions: the gate compiles this in Debug too.
+std::unique_ptr<coupling::Subsystem> make_subsystem(Role role, const scene::Scene& scene) {
+  if (role == Role::mechanics) return mechanics_node::make_mechanics_subsystem(scene);
+  if (role == Role::hydraulics) return hydraulics_node::make_hydraulics_subsystem(scene);
+  if (role == Role::flex) return flex_node::make_flex_subsystem(scene);
+  throw std::logic_error("no faults are played around this role");
+}
 
 }  // namespace
 
@@ -139,7 +150,7 @@ void VirtualSession::add_physics(Role role) {
 }
 
 std::unique_ptr<node::Node> VirtualSession::make_physics(const Place& place) {
-  const auto make = [role = place.role](const scene::Scene& s) { return session::SubsystemFamily().make(role, s); };
+  const auto make = [role = place.role](const scene::Scene& s) { return make_subsystem(role, s); };
   return std::make_unique<node::PhysicsNode>(place.role, *place.transport,
                                              node::subsystem_factory(make, SLEWRING_SOURCE_DIR "/scenes"));
 }
