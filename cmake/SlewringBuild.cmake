@@ -117,21 +117,28 @@ function(slewring_compile_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# slewring_library(NAME [COMPUTES | TEXTS] SOURCES ... DEPENDS lib ... LINK target ... PRECOMPILE <header> ...)
+# slewring_library(NAME [COMPUTES | TEXTS | TESTS] SOURCES ... DEPENDS lib ... LINK target ... PRECOMPILE <header> ...)
 # DEPENDS names libraries of ours; tests/architecture/edges.txt must allow each of them. COMPUTES: with numbers alone, in
-# every step. TEXTS: options, reports and what is done once. PRECOMPILE: heavy headers of most of its units, beside the
-# standard ones.
+# every step. TEXTS: options, reports and what is done once. TESTS: what test programs share. PRECOMPILE: heavy headers
+# of most of its units, beside the standard ones.
 function(slewring_library name)
-  cmake_parse_arguments(ARG "COMPUTES;TEXTS" "" "SOURCES;DEPENDS;LINK;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "COMPUTES;TEXTS;TESTS" "" "SOURCES;DEPENDS;LINK;PRECOMPILE" ${ARGN})
   add_library(slewring_${name} STATIC ${ARG_SOURCES})
   slewring_compile_together(slewring_${name})
   if(ARG_TEXTS)
     target_compile_options(slewring_${name} PRIVATE ${SLEWRING_QUICK_TO_COMPILE})
+  elseif(ARG_TESTS)
+    # as the test programs, whose precompiled headers it takes
+    set_target_properties(slewring_${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+    target_compile_options(slewring_${name} PRIVATE ${SLEWRING_QUICKEST_TO_COMPILE} -fPIE)
   endif()
   if(ARG_PRECOMPILE)
     target_precompile_headers(slewring_${name} PRIVATE ${SLEWRING_STANDARD_HEADERS} ${ARG_PRECOMPILE})
   elseif(ARG_TEXTS)
     slewring_precompile(slewring_${name} texts)
+  elseif(ARG_TESTS)
+    target_link_libraries(slewring_${name} PUBLIC GTest::gtest)
+    slewring_precompile(slewring_${name} tests)
   elseif(ARG_COMPUTES)
     slewring_precompile(slewring_${name} computes)
   else()
