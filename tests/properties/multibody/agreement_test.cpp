@@ -19,7 +19,7 @@ constexpr double kTolerance = 1e-9;
 const std::initializer_list<SeedRange> kRanges = {{1, 24}, {kFirstWithModes, 40}, {kFirstWithNodeDummies, 60}};
 const std::vector<std::uint32_t> kSeeds = seeds(kRanges);
 // half a second a seed for the rows: every row's derivatives by differences in long double
-constexpr std::uint32_t kGateSeedsOfRows = 3;
+constexpr std::uint32_t kGateSeedsOfRows = 2;
 
 TreeOptions options_of(std::uint32_t seed) {
   return with_modes_of(seed, {.bodies = 1 + static_cast<int>(seed) % 9, .two_coordinates = true});

@@ -4,6 +4,7 @@
 // A03: Bari IVP test set; angles within 1e-4 at a fixed step of 1e-5 s, loops within 1e-9 m.
 // A08: Haug, IFToMM; slider within 2e-4 m, crank within 1e-2 rad at 5 s.
 // Figures: docs/validation/A02_four_bars.md, A03_squeezer.md, A08_slider_crank.md.
+#include "tests/support/nightly.h"
 #include "tests/validation/multibody/csv_table.h"
 #include "tests/validation/multibody/every_formulation.h"
 #include "tests/validation/multibody/loop_defs.h"
@@ -90,7 +91,7 @@ TEST(PenaltyFourBars, OfFortyLoopsFollowTheirBranch) {
 }
 
 TEST(PenaltyFourBars, NeverGetWorseWithALargerFactor) {
-  for (const int n : {1, 2, 5}) {
+  for (const int n : slew::testing::is_nightly() ? std::vector{1, 2, 5} : std::vector{2}) {
     double before = 1;
     for (const double factor : {1e4, 1e5, 1e6, 1e7, 1e8, 1e9}) {
       MechanicsDef def = four_bars(n);
