@@ -328,10 +328,7 @@ bool IoNode::advance_join(std::int64_t now_ns) {
     return true;
   }
   if (now_ns > deadline_ns_) {
-    begin_ending(
-        ExitCode::failed,
-        "JOIN did not come about within " + seconds_text(config_.join_timeout) + ": " + member_.missing_join_text(),
-        now_ns);
+    begin_ending(ExitCode::failed, member_.join_failure_text(config_.join_timeout), now_ns);
     return true;
   }
   if (member_.probe_is_due(now_ns)) {

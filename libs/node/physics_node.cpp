@@ -119,9 +119,7 @@ bool PhysicsNode::advance_join(std::int64_t now_ns) {
     return true;
   }
   if (now_ns > deadline_ns_) {
-    leave(ExitCode::failed,
-          "JOIN did not come about within " + seconds_text(join_.join_timeout) + ": " + member_.missing_join_text(),
-          now_ns);
+    leave(ExitCode::failed, member_.join_failure_text(join_.join_timeout), now_ns);
     return true;
   }
   if (member_.probe_is_due(now_ns)) {

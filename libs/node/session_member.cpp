@@ -547,7 +547,7 @@ std::string SessionMember::found_writers(Topic topic) {
   return text + ")";
 }
 
-std::string SessionMember::missing_join_text() {
+std::string SessionMember::join_failure_text(SimDuration within) {
   std::string text;
   for (const Role role : wire::kNodeRoles) {
     if (role != role_ && requires_role(role) && !peer(role).is_known) {
@@ -562,7 +562,8 @@ std::string SessionMember::missing_join_text() {
               std::string(to_text(topic)) + "' from " + std::string(to_text(role_));
     }
   }
-  return text;
+  return "JOIN did not come about within " + seconds_text(within) + ": " + text +
+         "; start what is missing or find what holds it up; --join-timeout waits longer";
 }
 
 void SessionMember::send(Topic topic, std::span<const std::byte> bytes) noexcept {

@@ -198,7 +198,8 @@ class SessionMember {
   [[nodiscard]] bool is_acknowledged_by_all() const noexcept;
   [[nodiscard]] bool is_acknowledged_on(wire::Topic topic) const noexcept;
   [[nodiscard]] bool probe_is_due(std::int64_t now_ns) noexcept;
-  [[nodiscard]] std::string missing_join_text();
+  // Why JOIN did not come about within a time, and what to do.
+  [[nodiscard]] std::string join_failure_text(SimDuration within);
 
   // ---- sending
   // Pre-condition: texts and lists of the message are within their caps.

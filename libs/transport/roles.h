@@ -38,7 +38,7 @@ struct RoleTraits {
   TopicSet reads_on_request;  // additional topics that a program may subscribe to; keys allow it
 };
 
-// All roles in the order of wire::Role: first the five nodes, then the roles that take part from outside.
+// All roles in the order of wire::Role.
 [[nodiscard]] std::span<const RoleTraits> roles() noexcept;
 [[nodiscard]] const RoleTraits& traits(wire::Role role) noexcept;
 [[nodiscard]] std::optional<wire::Role> role_of(std::string_view name) noexcept;

@@ -5,9 +5,11 @@
 // applied.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -50,7 +52,7 @@ inline constexpr Role kStateRoles[] = {Role::io, Role::mechanics, Role::hydrauli
 inline constexpr Role kPhysicsRoles[] = {Role::mechanics, Role::hydraulics, Role::flex, Role::sensor};  // subsystems
 
 [[nodiscard]] constexpr bool is_physics(Role role) noexcept {
-  return (role >= Role::mechanics && role <= Role::flex) || role == Role::sensor;
+  return std::find(std::begin(kPhysicsRoles), std::end(kPhysicsRoles), role) != std::end(kPhysicsRoles);
 }
 
 [[nodiscard]] constexpr std::uint32_t bit(Role role) noexcept {

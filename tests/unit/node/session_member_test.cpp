@@ -514,7 +514,7 @@ TEST_F(Member, IsAcknowledgedOnlyByEveryRequiredReader) {
 TEST_F(Member, NamesWhatJoinIsMissing) {
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
   ASSERT_TRUE(receive(status_of(Role::recorder, 5, NodeState::ready)).is_ok());
-  const std::string text = member.missing_join_text();
+  const std::string text = member.join_failure_text(milliseconds(10'000));
   EXPECT_NE(text.find("no hydraulics node has joined session 's' (expected topic slewring/actuators, type "
                       "slewring::ActuatorMessage; found no writer of it)"),
             std::string::npos)
@@ -522,6 +522,8 @@ TEST_F(Member, NamesWhatJoinIsMissing) {
   EXPECT_NE(text.find("recorder (process 1005 on elsewhere) has not received topic 'mechanism' from mechanics"),
             std::string::npos)
       << text;
+  EXPECT_TRUE(text.starts_with("JOIN did not come about within 10 s: ")) << text;
+  EXPECT_TRUE(text.ends_with("; --join-timeout waits longer")) << text;
 }
 
 TEST_F(Member, DoesNotWaitForTheEndOfANodeThatNeverJoined) {
