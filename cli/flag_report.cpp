@@ -97,7 +97,7 @@ std::vector<std::string> explain_flags(const FlagCounter& flags, const scene::Sc
   return flag_sentences(flags, scene.session.step_duration(), names_of(scene));
 }
 
-std::vector<std::string> explain_flags(const recording::Reader& reader) {
+FlagCounter recorded_flags(const recording::Reader& reader) {
   FlagCounter flags;
   recording::MessageFilter filter;
   for (const wire::Topic topic : {wire::Topic::mechanism, wire::Topic::actuators, wire::Topic::sensors}) {
@@ -114,6 +114,10 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
     return recording::Reader::Visit::go_on;
   });
   if (status.code == ExitCode::storage) throw Failure(status.code, status.text);
+  return flags;
+}
+
+std::vector<std::string> explain_flags(const FlagCounter& flags, const recording::Reader& reader) {
   const SimDuration step = reader.identity().communication_step;
   // the scene is read for the names in the sentences alone
   if (flag_sentences(flags, step, {}).empty()) return {};

@@ -20,8 +20,11 @@ struct OffenderNames {
 // Flags of the samples of mechanics, hydraulics and sensors: not converged, sub-step budget, clamp, energy from the
 // coupling, cavitation and pressures beyond the oil's law with the volume's name, deflections that are not small. Flags
 // that occur in sound runs too, end stops and open relief valves, are left out. For a free-running session the
-// sentences also count steps without a sample. Throws Failure when the recording cannot be read.
-[[nodiscard]] std::vector<std::string> explain_flags(const recording::Reader& reader);
+// sentences also count steps without a sample. With the names of the recorded scene. Throws Failure when it cannot be
+// read.
+[[nodiscard]] std::vector<std::string> explain_flags(const node::FlagCounter& flags, const recording::Reader& reader);
+// Counts the flags of every recorded sample. Throws Failure when the recording cannot be read.
+[[nodiscard]] node::FlagCounter recorded_flags(const recording::Reader& reader);
 // A sentence for each flag that was counted.
 [[nodiscard]] std::vector<std::string> flag_sentences(const node::FlagCounter& flags, SimDuration step,
                                                       const OffenderNames& names);

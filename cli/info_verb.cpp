@@ -107,7 +107,20 @@ void add_events(const recording::Reader& reader, bool has_all, ReportTable& rows
   if (shown < events.size()) rows.add({"event", fmt::format("{} more: --events", events.size() - shown)});
 }
 
-Json to_json(const recording::Reader& reader, double simulated) {
+// Steps and flags: from the counts of the recorder where it has closed the file.
+struct StepCounts {
+  session::TickSpan ticks;
+  node::FlagCounter flags;
+};
+
+StepCounts step_counts(const recording::Reader& reader, bool is_verifying) {
+  if (!is_verifying) {
+    if (auto closing = session::closing_counts(reader)) return {closing->ticks, std::move(closing->flags)};
+  }
+  return {session::tick_span(reader), recorded_flags(reader)};
+}
+
+Json to_json(const recording::Reader& reader, const StepCounts& counts, double simulated) {
   const recording::SessionIdentity& identity = reader.identity();
   Json topics = Json::object();
   for (const auto& [topic, count] : counts_of(reader)) {
@@ -125,16 +138,16 @@ Json to_json(const recording::Reader& reader, double simulated) {
           {"complete", reader.has_all_messages()},
           {"damage", reader.damage_text()},
           {"end", end_of(reader)},
-          {"ticks_behind_end", session::tick_span(reader).behind_end},
+          {"ticks_behind_end", counts.ticks.behind_end},
           {"gaps", gaps_of(reader)},
-          {"notes", explain_flags(reader)},
+          {"notes", explain_flags(counts.flags, reader)},
           {"events", events_json(reader)},
           {"topics", topics}};
 }
 
-void print(const recording::Reader& reader, double simulated, bool has_all_events) {
+void print(const recording::Reader& reader, const StepCounts& counts, double simulated, bool has_all_events) {
   const recording::SessionIdentity& identity = reader.identity();
-  const session::TickSpan span = session::tick_span(reader);
+  const session::TickSpan& span = counts.ticks;
   ReportTable rows({"", ""});
   rows.add(
       {"file", fmt::format("{} ({:.2f} MB)", reader.path().string(), static_cast<double>(reader.file_bytes()) * 1e-6)});
@@ -153,7 +166,7 @@ void print(const recording::Reader& reader, double simulated, bool has_all_event
         {"topic", fmt::format("{}: {}, {} lost", topic, counted(count.recorded, "message", "messages"), count.lost)});
   }
   for (std::string& gap : gaps_of(reader)) rows.add({"gap", std::move(gap)});
-  for (std::string& flagged : explain_flags(reader)) rows.add({"note", std::move(flagged)});
+  for (std::string& flagged : explain_flags(counts.flags, reader)) rows.add({"note", std::move(flagged)});
   add_events(reader, has_all_events, rows);
   for (const recording::AttachmentIndexRecord& attachment : reader.attachments()) {
     rows.add({"attached", fmt::format("{} ({})", attachment.name, counted(attachment.size, "byte", "bytes"))});
@@ -164,11 +177,12 @@ void print(const recording::Reader& reader, double simulated, bool has_all_event
 ExitCode show(const InfoOptions& options) {
   const auto reader = session::open_recording(options.recording);
   if (options.is_verifying) require(reader->verify());
+  const StepCounts counts = step_counts(*reader, options.is_verifying);
   const double simulated = static_cast<double>(reader->statistics().end_time) * 1e-9;
   if (options.is_json) {
-    fmt::print("{}\n", to_json(*reader, simulated).dump(2));
+    fmt::print("{}\n", to_json(*reader, counts, simulated).dump(2));
   } else {
-    print(*reader, simulated, options.has_all_events);
+    print(*reader, counts, simulated, options.has_all_events);
     if (options.is_verifying) fmt::print("every byte was read and every checksum fits\n");
   }
   return ExitCode::ok;
@@ -180,7 +194,7 @@ void add_info(options::Command& program) {
   options::Command verb = program.command("info", "what a recording holds");
   const auto options = std::make_shared<InfoOptions>();  // lives as long as the command line's callbacks
   verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
-  verb.flag("--verify", options->is_verifying, "read every byte and compare every checksum");
+  verb.flag("--verify", options->is_verifying, "read every byte and compare every checksum; count every message again");
   verb.flag("--events", options->has_all_events,
             "all requests, overruns, changes of shedding and of controllers, not the first ten alone");
   verb.flag("--json", options->is_json, "for machines");

@@ -214,7 +214,7 @@ void explain(const recording::Reader& reader, const observer::SessionView& view,
   const bool are_seen = flags.has_samples() && flags.missed(outcome.begin) == 0;
   for (std::string& flagged : are_seen  ? explain_flags(outcome, scene)
                               : closing ? explain_flags(closing->flags, scene)
-                                        : explain_flags(reader)) {
+                                        : explain_flags(recorded_flags(reader), scene)) {
     report.notes.push_back(std::move(flagged));
   }
   session::keep_assets(scene, assets, report.recording);

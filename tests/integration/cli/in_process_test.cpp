@@ -202,6 +202,9 @@ TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
   EXPECT_TRUE(info.at("complete").get<bool>());
   EXPECT_EQ(info.at("topics").at("tick").at("recorded"), 1001);  // the last one has the END flag
   EXPECT_EQ(info.at("topics").at("mechanism").at("lost"), "0");
+  // the recorder's counts, without reading the messages, are those of the messages
+  EXPECT_EQ(slewring({"info", recording}).out + "every byte was read and every checksum fits\n",
+            slewring({"info", recording, "--verify"}).out);
 
   const CommandResult plotted = slewring({"plot", recording, "Cyl_*.force", "Bag.position.y", "-o", "out.svg"});
   ASSERT_EQ(plotted.code, 0) << plotted.err;
