@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <string_view>
 
@@ -37,15 +39,57 @@ const CLI::App& used_command(const CLI::App& root, std::string& name) {
   return *used;
 }
 
-// A wrong word in the place of a verb is more likely than a missing verb.
+std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
+  const std::string meant = closest(word, {names.begin(), names.end()});
+  return meant.empty() ? "" : "; did you mean '" + meant + "'?";
+}
+
+std::vector<std::string> verb_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (!verb->get_group().empty()) names.push_back(verb->get_name());
+  }
+  return names;
+}
+
+// As typed, with their dashes; without hidden ones.
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options([](const CLI::Option* one) { return !one->get_group().empty(); })) {
+    for (const std::string& name : option->get_snames()) names.push_back('-' + name);
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+bool was_typed(const CLI::App& app, const CLI::Option* option) {
+  const std::vector<CLI::Option*>& typed = app.parse_order();
+  return std::find(typed.begin(), typed.end(), option) != typed.end();
+}
+
+// " (from the environment variable X)" where that gave the value of the error.
+std::string origin_of_value(const CLI::App& used, const std::string& error) {
+  for (const CLI::Option* option : used.get_options()) {
+    const bool is_meant = option->count() > 0 && !option->get_envname().empty() && !was_typed(used, option);
+    if (is_meant && error.starts_with(option->get_name() + ":")) {
+      return " (from the environment variable " + option->get_envname() + ")";
+    }
+  }
+  return "";
+}
+
+// A wrong word in the place of a verb is more likely than a missing verb, a misspelt option than a missing value.
 std::string what_is_wrong(const CLI::App& used, const CLI::ParseError& error) {
-  const std::vector<const CLI::App*> verbs = used.get_subcommands([](const CLI::App*) { return true; });
   const std::vector<std::string> rest = used.remaining();
-  if (verbs.empty() || rest.empty()) return error.what();
-  std::vector<std::string_view> names;
-  for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
-  const std::string meant = closest(rest.front(), names);
-  return "there is no '" + rest.front() + "' here" + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
+  const auto unknown = std::find_if(rest.begin(), rest.end(),
+                                    [](const std::string& word) { return word.size() > 1 && word.front() == '-'; });
+  if (unknown != rest.end()) {
+    const std::string name = unknown->substr(0, unknown->find('='));
+    return "there is no option '" + name + "' here" + suggestion(name, option_names(used));
+  }
+  const std::vector<std::string> verbs = verb_names(used);
+  if (verbs.empty() || rest.empty()) return error.what() + origin_of_value(used, error.what());
+  return "there is no '" + rest.front() + "' here" + suggestion(rest.front(), verbs);
 }
 
 // One line that names the command whose --help lists the options.
@@ -53,6 +97,66 @@ std::string problem_text(const CLI::App& root, const CLI::ParseError& error) {
   std::string command;
   const CLI::App& used = used_command(root, command);
   return fmt::format("{}; nothing was done; see '{} --help'", what_is_wrong(used, error), command);
+}
+
+// CLI11 takes variables for every verb: a wrong value would end verbs too that have no use for it. Those of verbs that
+// are not among the words are forgotten.
+void forget_environment(CLI::App& app, const std::vector<std::string>& words, bool is_used) {
+  if (!is_used) {
+    for (CLI::Option* option : app.get_options()) option->envname("");
+  }
+  for (CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    const bool is_named = std::find(words.begin(), words.end(), verb->get_name()) != words.end();
+    forget_environment(*verb, words, is_used && is_named);
+  }
+}
+
+constexpr const char* kChoices = "choices";
+
+// of one_of(): the set as CLI11 writes it, "{real,free}"
+std::vector<std::string> choices_of(CLI::Option& option) {
+  try {
+    const std::string set = option.get_validator(kChoices)->get_description();
+    return CLI::detail::split(set.substr(1, set.size() - 2), ',');
+  } catch (const CLI::OptionNotFound&) {
+    return {};
+  }
+}
+
+OptionText text_of(CLI::Option& option) {
+  OptionText text;
+  text.is_positional = option.get_positional();
+  if (text.is_positional) {
+    text.names = {option.get_name(true, false)};
+  } else {
+    for (const std::string& name : option.get_snames()) text.names.push_back('-' + name);
+    for (const std::string& name : option.get_lnames()) text.names.push_back("--" + name);
+  }
+  // "VALUE:range"
+  const std::string type = option.get_items_expected_max() == 0 ? "" : option.get_type_name();
+  const std::size_t colon = type.find(':');
+  text.value_name = type.substr(0, colon);
+  text.choices = choices_of(option);
+  if (colon != std::string::npos && text.choices.empty()) text.range = type.substr(colon + 1);
+  text.description = option.get_description();
+  text.group = option.get_group();
+  text.default_text = option.get_default_str();
+  text.environment = option.get_envname();
+  text.is_required = option.get_required();
+  text.takes_many = text.is_positional && option.get_items_expected_max() > 1;
+  text.takes_a_list = option.get_delimiter() != '\0';
+  return text;
+}
+
+CommandText text_of(CLI::App& app) {
+  CommandText text{app.get_name(), app.get_description(), app.get_footer(), {}, {}};
+  for (CLI::Option* option : app.get_options()) {
+    if (!option->get_group().empty()) text.options.push_back(text_of(*option));
+  }
+  for (CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (!verb->get_group().empty()) text.commands.push_back(text_of(*verb));
+  }
+  return text;
 }
 
 }  // namespace
@@ -105,12 +209,22 @@ Option& Option::not_negative() {
 }
 
 Option& Option::one_of(std::vector<std::string> choices) {
-  option_->check(CLI::IsMember(std::move(choices)));
+  option_->check(CLI::IsMember(std::move(choices)), kChoices);
   return *this;
 }
 
 Option& Option::check(const Check& problem_of, const std::string& what) {
   option_->check(CLI::Validator([problem_of](const std::string& text) { return problem_of(text); }, "", what));
+  return *this;
+}
+
+Option& Option::replaced_by(std::function<std::string(const std::string&)> value_of) {
+  option_->transform([value_of = std::move(value_of)](const std::string& text) { return value_of(text); });
+  return *this;
+}
+
+Option& Option::environment(const std::string& variable) {
+  option_->envname(variable);
   return *this;
 }
 
@@ -182,7 +296,7 @@ Option Command::find(const std::string& name) {
 }
 
 bool Command::has(const std::string& name) const {
-  return app_->count(name) > 0;
+  return was_typed(*app_, app_->get_option(name));
 }
 
 Command Command::command(const std::string& name, const std::string& description) {
@@ -205,6 +319,18 @@ void Command::action(Action action) {
   app_->callback([chosen = chosen_, action = std::move(action)] { *chosen = action; });
 }
 
+std::string Command::help() const {
+  std::string name;
+  for (const CLI::App* app = app_->get_parent(); app != nullptr; app = app->get_parent()) {
+    name = app->get_name() + (name.empty() ? "" : " " + name);
+  }
+  return app_->help(name);
+}
+
+CommandText Command::text() const {
+  return text_of(*app_);
+}
+
 // ---- Program --------------------------------------------------------------------------------------------------------
 
 Program::Program(const std::string& name, const std::string& description)
@@ -214,11 +340,31 @@ Program::Program(const std::string& name, const std::string& description)
 
 Program::~Program() = default;
 
-void Program::version(const std::string& text) {
-  app_->set_version_flag("--version", text, "print version and build");
+void Program::version(const std::string& text, const std::string& as_json) {
+  CLI::Option* const json = app_->add_flag("--json")->description("with --version: as JSON");
+  CLI::Option* const version = app_->set_version_flag(
+      "--version", [text, as_json, json] { return json->count() > 0 ? as_json : text; }, "print version and build");
+  json->needs(version);
+}
+
+Command Program::find_command(const std::vector<std::string>& verbs) const {
+  CLI::App* app = app_;
+  for (const std::string& verb : verbs) {
+    CLI::App* next = nullptr;
+    for (CLI::App* one : app->get_subcommands([](const CLI::App*) { return true; })) {
+      if (one->get_name() == verb) next = one;
+    }
+    if (next == nullptr) {
+      throw Failure(ExitCode::bad_input, "there is no '" + verb + "' here" + suggestion(verb, verb_names(*app)) +
+                                             "; nothing was done; see '" + name_ + " --help'");
+    }
+    app = next;
+  }
+  return {app, chosen_};
 }
 
 bool Program::parse(int argc, const char* const* argv, int& exit_code) {
+  forget_environment(*app_, {argv + std::min(argc, 1), argv + argc}, true);
   try {
     app_->parse(argc, argv);
     return true;
@@ -234,6 +380,7 @@ bool Program::parse(int argc, const char* const* argv, int& exit_code) {
 }
 
 void Program::parse(const std::vector<std::string>& arguments) {
+  forget_environment(*app_, arguments, true);
   try {
     app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 wants the last one first
   } catch (const CLI::ParseError& error) {

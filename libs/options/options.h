@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/status.h"
+#include "options/command_text.h"
 
 // types of CLI11, which only this library includes
 namespace CLI {
@@ -51,6 +52,11 @@ class Option {
   Option& one_of(std::vector<std::string> choices);
   Option& check(const Check& problem_of, const std::string& what);
 
+  // ---- origin of the value
+  Option& replaced_by(std::function<std::string(const std::string&)> value_of);  // text given -> text that is taken
+  // Variable that gives the value where the option is not given. An empty variable counts as none.
+  Option& environment(const std::string& variable);
+
   // ---- repetition and combination
   Option& required();
   Option& values(int least, int most);  // words behind one occurrence
@@ -77,14 +83,16 @@ class Command {
   // Exactly one of the two must be given.
   void require_one_of(const Option& a, const Option& b);
   [[nodiscard]] Option find(const std::string& name);
-  // True when the option was given.
+  // True when the option was given on the command line; a value of the environment does not count.
   [[nodiscard]] bool has(const std::string& name) const;
 
   Command command(const std::string& name, const std::string& description);
   void require_command();
-  void hide();                           // removes it from the list of commands in --help
-  void footer(const std::string& text);  // text below the options in --help
-  void action(Action action);            // action of the program if the user gives this command
+  void hide();                             // removes it from the list of commands in --help
+  void footer(const std::string& text);    // text below the options in --help
+  void action(Action action);              // action of the program if the user gives this command
+  [[nodiscard]] std::string help() const;  // the text of --help
+  [[nodiscard]] CommandText text() const;
 
  private:
   friend class Program;
@@ -102,7 +110,10 @@ class Program : public Command {
   ~Program();
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  void version(const std::string& text);  // --version
+  // --version; as_json for --version --json.
+  void version(const std::string& text, const std::string& as_json);
+  // The command that is reached by these verbs, {"control", "pause"}. Throws Failure (bad_input) where there is none.
+  [[nodiscard]] Command find_command(const std::vector<std::string>& verbs) const;
 
   // True if the program is to continue. Otherwise the exit code is 0 (help, version) or bad_input, with one line on
   // standard error.

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <memory>
 #include <optional>
 
 #include "core/failure.h"
@@ -96,6 +98,77 @@ TEST_F(Verbs, OneOfTwoMustBeGiven) {
   EXPECT_EQ(problem_of(program_, {"run", "--from", "a"}), "");
   EXPECT_EQ(problem_of(program_, {"run", "x", "--from", "a"}),
             "--from excludes scene; nothing was done; see 'test run --help'");
+}
+
+TEST_F(Verbs, AWordThatIsNoOptionGetsTheNearest) {
+  EXPECT_EQ(problem_of(program_, {"run", "x", "--form", "5"}),
+            "there is no option '--form' here; did you mean '--from'?; nothing was done; see 'test run --help'");
+  EXPECT_EQ(problem_of(program_, {"run", "x", "--form=5"}),
+            "there is no option '--form' here; did you mean '--from'?; nothing was done; see 'test run --help'");
+  EXPECT_EQ(problem_of(program_, {"run", "x", "--quite-different"}),
+            "there is no option '--quite-different' here; nothing was done; see 'test run --help'");
+}
+
+TEST_F(Verbs, AHiddenVerbIsNotSuggested) {
+  Command hidden = program_.command("runner", "not for users");
+  hidden.hide();
+  EXPECT_EQ(problem_of(program_, {"runne"}).find("runner"), std::string::npos);
+}
+
+class Environment : public ::testing::Test {
+ protected:
+  Environment() {
+    Command run = program_.command("run", "runs");
+    run.option("--domain", domain_, "a domain").between(0, 230).environment("SLEWRING_TEST_DOMAIN");
+    run.flag("--fast", is_fast_, "a flag");
+    run_ = std::make_unique<Command>(run);
+    program_.command("check", "checks").action([] { return ExitCode::ok; });
+  }
+  ~Environment() override { unsetenv("SLEWRING_TEST_DOMAIN"); }
+
+  Program program_{"test", "a test"};
+  std::unique_ptr<Command> run_;
+  int domain_ = 3;
+  bool is_fast_ = false;
+};
+
+TEST_F(Environment, GivesAValueThatTheCommandLineDoesNot) {
+  setenv("SLEWRING_TEST_DOMAIN", "7", 1);
+  EXPECT_EQ(problem_of(program_, {"run", "--fast"}), "");
+  EXPECT_EQ(domain_, 7);
+  EXPECT_FALSE(run_->has("--domain"));
+  EXPECT_TRUE(run_->has("--fast"));
+  EXPECT_EQ(problem_of(program_, {"run", "--domain", "9"}), "");
+  EXPECT_EQ(domain_, 9);
+  EXPECT_TRUE(run_->has("--domain"));
+}
+
+TEST_F(Environment, AnEmptyVariableIsNone) {
+  setenv("SLEWRING_TEST_DOMAIN", "", 1);
+  EXPECT_EQ(problem_of(program_, {"run"}), "");
+  EXPECT_EQ(domain_, 3);
+}
+
+TEST_F(Environment, AWrongValueNamesItsVariable) {
+  setenv("SLEWRING_TEST_DOMAIN", "500", 1);
+  EXPECT_EQ(problem_of(program_, {"run"}),
+            "--domain: Value 500 not in range 0 to 230 (from the environment variable SLEWRING_TEST_DOMAIN); nothing "
+            "was done; see 'test run --help'");
+  EXPECT_EQ(problem_of(program_, {"run", "--domain", "501"}),
+            "--domain: Value 501 not in range 0 to 230; nothing was done; see 'test run --help'");
+}
+
+TEST_F(Environment, DoesNotEndAVerbThatHasNoUseForIt) {
+  setenv("SLEWRING_TEST_DOMAIN", "500", 1);
+  EXPECT_EQ(problem_of(program_, {"check"}), "");
+}
+
+TEST(Value, MayBeReplacedByAnother) {
+  Program program("test", "a test");
+  std::string file;
+  program.option("file", file, "a file").replaced_by([](const std::string& text) { return "folder/" + text; });
+  EXPECT_EQ(problem_of(program, {"a.yaml"}), "");
+  EXPECT_EQ(file, "folder/a.yaml");
 }
 
 }  // namespace options_test
