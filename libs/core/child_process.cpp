@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 
 #include "core/failure.h"
 
@@ -114,12 +113,6 @@ std::vector<std::string> ChildProcess::take_lines() {
   read_output();
   if (end_ && !unfinished_.empty()) lines_.push_back(std::exchange(unfinished_, {}));
   return std::exchange(lines_, {});
-}
-
-std::string sibling_program(const std::string& name) {
-  std::error_code error;
-  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
-  return (own.parent_path() / name).string();
 }
 
 }  // namespace slew

@@ -48,7 +48,4 @@ class ChildProcess {
   std::optional<ProcessEnd> end_;
 };
 
-// Path of a program of ours beside this one.
-[[nodiscard]] std::string sibling_program(const std::string& name);
-
 }  // namespace slew

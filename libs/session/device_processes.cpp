@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 
+#include "core/installation.h"
 #include "core/time.h"
 #include "device_node/device_run.h"
 

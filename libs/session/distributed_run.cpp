@@ -13,6 +13,7 @@
 
 #include "core/child_process.h"
 #include "core/failure.h"
+#include "core/installation.h"
 #include "core/real_time_thread.h"
 #include "io_node/scene_config.h"
 #include "node/identity.h"

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <utility>
 
-#include "core/child_process.h"
+#include "core/installation.h"
 #include "transport/cyclone/cyclone_transport.h"
 #include "transport/fastdds/open_fastdds.h"
 

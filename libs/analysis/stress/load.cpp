@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "core/failure.h"
+#include "core/installation.h"
 #include "core/real_time_thread.h"
 
 namespace slew::analysis {

@@ -12,6 +12,7 @@
 
 #include "core/child_process.h"
 #include "core/failure.h"
+#include "core/installation.h"
 #include "core/json.h"
 #include "core/state_hash.h"
 
