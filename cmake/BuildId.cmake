@@ -5,5 +5,5 @@ execute_process(COMMAND git -C ${SOURCE_DIR} describe --always --dirty --abbrev=
 if(NOT revision)
   set(revision "unversioned")
 endif()
-set(SLEWRING_BUILD_ID "${VERSION}-${revision} ${COMPILER}")
+set(SLEWRING_BUILD_ID "${VERSION}-${revision} ${COMPILER} ${INSTRUCTION_SET}")
 configure_file(${TEMPLATE} ${HEADER} @ONLY)

@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
       "Owner of a Slewring session: publishes the scene, gives the clock, takes operator input and commands.");
   program.footer(
       "Example; the other nodes of the session find it by its name:\n"
-      "  io_node scenes/truck_crane.yaml --session truck_crane --interface eth0 --peer 192.168.1.10 "
+      "  slewring node io scenes/truck_crane.yaml --session truck_crane --interface eth0 --peer 192.168.1.10 "
       "--keys plant");
   IoOptions options;
   options.node.priority = transport::traits(wire::Role::io).priority;

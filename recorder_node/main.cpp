@@ -33,7 +33,7 @@ std::optional<ExitCode> run(const node::NodeOptions& options, const std::string&
 
 int main(int argc, char** argv) {
   options::Program program("recorder_node", "Recorder of a Slewring session: one .mcap file in a new folder of --out.");
-  program.footer("Example:\n  recorder_node --session truck_crane --out /data/runs");
+  program.footer("Example:\n  slewring node recorder --session truck_crane --out /data/runs");
   node::NodeOptions options;
   options.priority = transport::traits(wire::Role::recorder).priority;
   std::string runs = "runs";

@@ -12,11 +12,14 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <iterator>
 #include <utility>
 
 #include "core/arithmetic_self_test.h"
+#include "core/json.h"
 #include "core/time.h"
 #include "node/build_id.h"
+#include "transport/network.h"
 #include "transport/roles.h"
 #include "transport/topics.h"
 
@@ -42,6 +45,21 @@ Identity this_process() {
 
 std::string build_id() {
   return kBuildId;
+}
+
+std::string version() {
+  return kVersion;
+}
+
+std::string version_json(const std::string& program) {
+  Json middlewares = Json::array();
+  for (std::size_t i = 0; i < std::size(transport::kMiddlewares); ++i) {
+    if (transport::is_built(static_cast<transport::Middleware>(i))) middlewares.push_back(transport::kMiddlewares[i]);
+  }
+  const Json json = {{"program", program},        {"version", kVersion},      {"build", kBuildId},
+                     {"compiler", kCompiler},     {"march", kInstructionSet}, {"protocol", wire::kProtocolVersion},
+                     {"middlewares", middlewares}};
+  return json.dump(2);
 }
 
 wire::SessionId random_session_id() {

@@ -22,6 +22,11 @@ struct Identity {
 
 // Build id of this program: version, source revision when it was built, compiler and processor family.
 [[nodiscard]] std::string build_id();
+// "0.2.0": the release.
+[[nodiscard]] std::string version();
+// What --version --json prints: program, version, build, compiler, instruction set, and the middlewares that can be
+// used.
+[[nodiscard]] std::string version_json(const std::string& program);
 
 // 128 random bits from the operating system.
 [[nodiscard]] wire::SessionId random_session_id();

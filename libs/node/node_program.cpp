@@ -1,17 +1,24 @@
 #include "node/node_program.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <system_error>
+#include <vector>
 
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 #include "core/file_size_limit.h"
 #include "core/printable.h"
 #include "core/real_time_thread.h"
+#include "core/text_output.h"
 #include "node/driver.h"
 #include "node/identity.h"
 #include "node/metered_transport.h"
+#include "options/completion.h"
+#include "options/manual.h"
 #include "scene/diagnostic.h"
 
 namespace slew::node {
@@ -70,12 +77,35 @@ int guarded(const std::string& program, const std::function<ExitCode()>& body) n
   }
 }
 
+// --complete and --write-manual.
+std::optional<std::function<ExitCode()>> service_of(const options::Program& program, int argc,
+                                                    const char* const* argv) {
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty()) return std::nullopt;
+  if (words[0] == "--complete") {
+    return [&program, rest = std::vector(words.begin() + 1, words.end())] {
+      fmt::print("{}", to_lines(options::complete(program.text(), rest)));
+      return ExitCode::ok;
+    };
+  }
+  if (words[0] == "--write-manual" && words.size() == 2) {
+    return [&program, folder = words[1]] {
+      for (const options::ManualPage& page : options::manual_pages(program.text(), node::version())) {
+        write_text(folder + "/" + page.name + ".1", page.text);
+      }
+      return ExitCode::ok;
+    };
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 int run_program(options::Program& program, int argc, const char* const* argv) noexcept {
   const std::string& name = program.name();
   if (!check_processor(name)) return static_cast<int>(ExitCode::resources);
-  program.version(name + " " + node::build_id());
+  program.version(name + " " + node::build_id(), node::version_json(name));
+  if (const auto service = service_of(program, argc, argv)) return guarded(name, *service);
   int exit_code = 0;
   if (!program.parse(argc, argv, exit_code)) return exit_code;
   return guarded(name, [&program] { return program.run(); });

@@ -16,6 +16,9 @@ namespace slew::node {
 // the action becomes one line on standard error and an exit code. Failure: its own code; a scene's LoadError:
 // bad_input; no memory, or a processor that this build is not for: resources; anything else: failed. A write to a file
 // at its size limit fails in the action instead of raising a signal (core/file_size_limit.h).
+//
+// Two first words are for installations and not in --help: --complete WORD... prints the words that may stand in the
+// place of the last one (options/completion.h), --write-manual DIR writes the manual pages into that folder.
 [[nodiscard]] int run_program(options::Program& program, int argc, const char* const* argv) noexcept;
 
 // Sets processor and real-time scheduling of the options. Without the permission: a warning with the remedy on standard

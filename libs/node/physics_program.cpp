@@ -25,7 +25,8 @@ std::optional<ExitCode> run(const PhysicsProgram& program, const NodeOptions& op
 int run_physics_program(const PhysicsProgram& program, int argc, const char* const* argv) noexcept {
   const std::string name = name_of(program.role);
   options::Program frame(name, program.description + " Takes the scene from the session.");
-  frame.footer("Example, on the machine that runs this node:\n  " + name + " " + program.example);
+  frame.footer("Example, on the machine that runs this node:\n  slewring node " +
+               std::string(transport::traits(program.role).name) + " " + program.example);
   NodeOptions options;
   add_physics_node_options(frame, options);
   frame.action([&] { return run_until_in_session([&] { return run(program, options); }); });

@@ -38,10 +38,12 @@ void add_network_options(options::Command& app, SessionOptions& options) {
       .between(0u, transport::kMaxDomain)
       .value_name("N")
       .show_default()
+      .environment("SLEWRING_DOMAIN")
       .group("Network");
   app.option("--interface", options.interface, "network interface to send on; 'lo' keeps everything on this machine")
       .value_name("IF")
       .show_default()
+      .environment("SLEWRING_INTERFACE")
       .group("Network");
   app.option("--peer", options.peers, "address of another machine of the session; repeat or separate by commas")
       .value_name("ADDR")
@@ -52,6 +54,7 @@ void add_network_options(options::Command& app, SessionOptions& options) {
       app.option("--keys", options.keys,
                  "key store (slewring keys): only processes with its keys take part and can read the messages")
           .value_name("DIR")
+          .environment("SLEWRING_KEYS")
           .group("Network");
   app.option("--identity", options.identity, "name of the keys in the store; without it those of the role")
       .value_name("NAME")
@@ -66,6 +69,7 @@ void add_network_options(options::Command& app, SessionOptions& options) {
       .one_of({std::begin(transport::kMiddlewares), std::end(transport::kMiddlewares)})
       .value_name("DDS")
       .show_default()
+      .environment("SLEWRING_MIDDLEWARE")
       .group("Network");
 }
 
@@ -132,7 +136,9 @@ node::JoinOptions NodeOptions::join() const {
 }
 
 std::vector<std::string> network_arguments(const SessionOptions& options) {
-  std::vector<std::string> arguments = {"--domain", std::to_string(options.domain), "--interface", options.interface};
+  // those that the environment would give otherwise too
+  std::vector<std::string> arguments = {
+      "--domain", std::to_string(options.domain), "--interface", options.interface, "--middleware", options.middleware};
   for (const std::string& peer : options.peers) {
     arguments.push_back("--peer");
     arguments.push_back(peer);
@@ -140,9 +146,6 @@ std::vector<std::string> network_arguments(const SessionOptions& options) {
   if (!options.keys.empty()) arguments.insert(arguments.end(), {"--keys", options.keys});
   if (!options.identity.empty()) arguments.insert(arguments.end(), {"--identity", options.identity});
   if (options.is_insecure_lan) arguments.emplace_back("--insecure-lan");
-  if (options.middleware != transport::kMiddlewares[0]) {
-    arguments.insert(arguments.end(), {"--middleware", options.middleware});
-  }
   return arguments;
 }
 
