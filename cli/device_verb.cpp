@@ -20,6 +20,7 @@
 #include "devices/layout_header.h"
 #include "node/driver.h"
 #include "scene/scene.h"
+#include "scene/scene_options.h"
 #include "session/survey.h"
 
 namespace slew::cli {
@@ -325,7 +326,7 @@ void add_device(options::Command& program) {
   const auto options = std::make_shared<DeviceOptions>();  // lives as long as the command line's callbacks
 
   options::Command listing = verb.command("list", "input devices of this machine, or the devices of a scene");
-  listing.option("scene", options->scene, "scene file").value_name("SCENE");
+  scene::add_scene_file(listing, "scene", options->scene);
   listing.flag("--json", options->is_json, "print JSON and nothing else");
   listing.action([options] { return list(*options); });
 
@@ -333,7 +334,7 @@ void add_device(options::Command& program) {
   monitoring.option("device", options->device, "path of an input device or of recorded events; with --scene a name")
       .value_name("DEVICE")
       .required();
-  monitoring.option("--scene", options->scene, "scene file with the device").value_name("SCENE");
+  scene::add_scene_file(monitoring, "--scene", options->scene, "scene file with the device");
   monitoring.option("--duration", options->duration, "seconds; 0: until Ctrl-C").between(0.0, 1e9).value_name("S");
   monitoring.option("--every", options->every, "shortest time between two lines")
       .between(0.0, 60.0)
@@ -353,7 +354,7 @@ void add_device(options::Command& program) {
   calibrating.action([options] { return calibrate(*options); });
 
   options::Command layout = verb.command("layout", "write the C header of a device's packets, or a note for Simulink");
-  layout.option("scene", options->scene, "scene file").value_name("SCENE").required();
+  scene::add_scene_file(layout, "scene", options->scene).required();
   layout.option("device", options->device, "name of a udp_in or udp_out device").value_name("DEVICE").required();
   layout.flag("--simulink", options->is_simulink, "the parameters of Simulink's blocks in place of a C header");
   layout.option("-o,--output", options->output, "file; - is standard output").value_name("FILE").show_default();

@@ -12,6 +12,8 @@
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"
+#include "core/installation.h"
+#include "scene/scene_options.h"
 #include "session/interrupts.h"
 
 namespace slew::cli {
@@ -19,7 +21,7 @@ namespace {
 
 struct ExtremesOptions {
   analysis::ExtremesOptions settings;
-  std::string scene, scenes = "scenes";
+  std::string scene, scenes = installed_scenes().empty() ? "scenes" : installed_scenes();
   bool is_suite = false, is_json = false, is_quiet = false;
 };
 
@@ -57,7 +59,7 @@ void add_extremes(options::Command& program) {
       program.command("extremes", "hard cases of a scene: within their bounds, and how near the edge");
   const auto options = std::make_shared<ExtremesOptions>();  // lives as long as the command line's callbacks
   analysis::ExtremesOptions& settings = options->settings;
-  verb.option("scene", options->scene, "scene file").value_name("SCENE");
+  scene::add_scene_file(verb, "scene", options->scene);
   verb.flag("--suite", options->is_suite, "the repository's own machines instead of a scene");
   verb.option("--scenes", options->scenes, "folder of the suite's scenes").value_name("DIR").show_default();
   const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {

@@ -1,14 +1,24 @@
 // The program `slewring`.
 #include "cli/verbs.h"
 
-#include <string_view>
+#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "node/node_program.h"
 
 int main(int argc, char** argv) {
   using namespace slew;
-  // the node's program has its own options and help
-  if (argc > 2 && std::string_view(argv[1]) == "node" && argv[2][0] != '-') return cli::become_node(argc, argv);
+  // the node's program has its own options, help and completion
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words.size() > 1 && words[0] == "node" && !words[1].starts_with("-")) {
+    return cli::become_node({words.begin() + 1, words.end()});
+  }
+  if (words.size() > 3 && words[0] == "--complete" && words[1] == "node") {
+    std::vector<std::string> of_node = {words[2], words[0]};
+    of_node.insert(of_node.end(), words.begin() + 3, words.end());
+    return cli::become_node(of_node);
+  }
 
   options::Program program("slewring",
                            "Slewring: hydraulically driven working machines as a distributed real-time co-simulation.");
@@ -16,7 +26,11 @@ int main(int argc, char** argv) {
       "Example:\n"
       "  slewring run scenes/truck_crane.yaml --set Bag.mass=1000kg --duration 10\n\n"
       "Exit codes: 0 ok, 1 failed, 2 usage or bad input or refused, 3 losses, 4 node lost, 5 diverged, 6 storage,\n"
-      "7 resources or packages, 130 and 143 ended by a signal.");
+      "7 resources or packages, 130 and 143 ended by a signal.\n\n"
+      "Environment: SLEWRING_DOMAIN, SLEWRING_INTERFACE, SLEWRING_KEYS and SLEWRING_MIDDLEWARE stand for the options\n"
+      "--domain, --interface, --keys and --middleware where these are not given. Controllers that use the client "
+      "library\ntake SLEWRING_KEYS, SLEWRING_IDENTITY and SLEWRING_INSECURE_LAN=1. With NO_COLOR a\nterminal shows no "
+      "colours.");
   program.require_command();
   for (const auto add :
        {cli::add_run,      cli::add_check,    cli::add_describe,      cli::add_import,   cli::add_variables,
@@ -27,5 +41,6 @@ int main(int argc, char** argv) {
         cli::add_node,     cli::add_keys,     cli::add_doctor,        cli::add_bridge,   cli::add_device}) {
     add(program);
   }
+  cli::add_help(program);
   return node::run_program(program, argc, argv);
 }

@@ -18,6 +18,7 @@
 #include "scene/field_reader.h"
 #include "scene/names.h"
 #include "scene/parameters.h"
+#include "scene/scene_options.h"
 #include "session/survey.h"
 
 namespace slew::cli {
@@ -253,7 +254,7 @@ void add_param(options::Command& program) {
 
   options::Command list_part = add_part(verb, "list", "all parameters with value, range and meaning", list, options);
   list_part.option("patterns", options->words, "only these paths, with * and ?").value_name("PATH");
-  list_part.option("--scene", options->scene, "of a scene file, without a session").value_name("SCENE");
+  scene::add_scene_file(list_part, "--scene", options->scene, "of a scene file, without a session");
   list_part.flag("--live", options->only_live, "only those that can be changed while the session runs");
   list_part.footer(
       "Of a running session: the present values.\n\nExample:\n  slewring param list 'Bag.*' --scene "
@@ -261,7 +262,7 @@ void add_param(options::Command& program) {
 
   options::Command get_part = add_part(verb, "get", "one parameter: its present value", get, options);
   get_part.option("path", options->words, "Element.key").required().values(1, 1).value_name("PATH");
-  get_part.option("--scene", options->scene, "of a scene file, without a session").value_name("SCENE");
+  scene::add_scene_file(get_part, "--scene", options->scene, "of a scene file, without a session");
   get_part.footer(
       "Of a running session: the present value.\n\nExample:\n  slewring param get Bag.mass --session truck_crane");
 

@@ -12,6 +12,7 @@
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "scene/scene_options.h"
 #include "session/interrupts.h"
 
 namespace slew::cli {
@@ -70,7 +71,7 @@ void add_simplify(options::Command& program) {
       program.command("simplify", "parts of a scene that may be left out while chosen variables stay as they are");
   const auto options = std::make_shared<SimplifyOptions>();  // lives as long as the command line's callbacks
   analysis::SimplifyOptions& settings = options->settings;
-  verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
+  scene::add_scene_file(verb, "scene", settings.scene.file).required();
   verb.option("--error", settings.errors,
               "a variable and by how much it may change: a quantity, or a part of its range in %; repeat for more")
       .required()

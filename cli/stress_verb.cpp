@@ -13,6 +13,7 @@
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/text_output.h"
+#include "scene/scene_options.h"
 #include "session/interrupts.h"
 
 namespace slew::cli {
@@ -104,7 +105,7 @@ ExitCode run(StressOptions options) {
 
 void add_what(options::Command& verb, StressOptions& options) {
   analysis::StressOptions& settings = options.settings;
-  verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
+  scene::add_scene_file(verb, "scene", settings.scene.file).required();
   verb.option("--set", settings.scene.overrides, "change a value of the scene; repeat for more")
       .one_value_each()
       .value_name("PATH=VALUE");

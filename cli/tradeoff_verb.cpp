@@ -13,6 +13,7 @@
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/text_output.h"
+#include "scene/scene_options.h"
 #include "session/interrupts.h"
 
 namespace slew::cli {
@@ -100,7 +101,7 @@ ExitCode run_row(const RowOptions& options) {
 
 void add_what(options::Command& verb, TradeoffOptions& options) {
   analysis::TradeoffOptions& settings = options.settings;
-  verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
+  scene::add_scene_file(verb, "scene", settings.scene.file).required();
   const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
     verb.option(name, to, text).one_value_each().value_name(type);
   };

@@ -10,6 +10,7 @@
 #include "core/report_table.h"
 #include "io_node/input_gate.h"
 #include "scene/names.h"
+#include "scene/scene_options.h"
 #include "session/monolithic_session.h"
 #include "session/survey.h"
 
@@ -89,7 +90,7 @@ ExitCode list(const VariablesOptions& options) {
 void add_variables(options::Command& program) {
   options::Command verb = program.command("variables", "list the variables of a scene or of a running session");
   const auto options = std::make_shared<VariablesOptions>();  // lives as long as the command line's callbacks
-  verb.option("scene", options->scene, "scene file; without it a running session").value_name("SCENE");
+  scene::add_scene_file(verb, "scene", options->scene, "scene file; without it a running session");
   verb.option("--only", options->patterns, "only these names, with * and ?; repeat for more")
       .value_name("PATTERN")
       .one_value_each();

@@ -1,6 +1,9 @@
 // The verbs of the program `slewring`: each adds its command line and its action.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "options/options.h"
 
 namespace slew::cli {
@@ -35,8 +38,10 @@ void add_stress(options::Command& program);
 void add_stress_load(options::Command& program);
 void add_keys(options::Command& program);
 void add_doctor(options::Command& program);
+void add_help(options::Program& program);  // the last one: its text names the others
 
-// `slewring node ROLE ...` in the place of this program; gives a code only when that fails.
-[[nodiscard]] int become_node(int argc, char** argv);
+// `slewring node WORDS...`, the first word being the role, in the place of this program; gives a code only when that
+// fails.
+[[nodiscard]] int become_node(const std::vector<std::string>& words);
 
 }  // namespace slew::cli

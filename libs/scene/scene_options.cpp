@@ -1,11 +1,13 @@
 #include "scene/scene_options.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <string_view>
 #include <utility>
 
 #include "core/failure.h"
+#include "core/installation.h"
 #include "scene/canonical.h"
 #include "scene/script_reader.h"
 
@@ -57,8 +59,23 @@ void replace_script(scene::Scene& scene, const std::string& file) {
 
 }  // namespace
 
+std::string find_scene(const std::string& file) {
+  constexpr std::string_view kFolder = "scenes/";
+  std::error_code error;
+  const std::string installed = installed_scenes();
+  if (installed.empty() || file.starts_with('/') || std::filesystem::exists(file, error)) return file;
+  const std::string name = file.starts_with(kFolder) ? file.substr(kFolder.size()) : file;
+  const std::filesystem::path found = std::filesystem::path(installed) / name;
+  return std::filesystem::is_regular_file(found, error) ? found.string() : file;
+}
+
+options::Option add_scene_file(options::Command& app, const std::string& name, std::string& file,
+                               const std::string& description) {
+  return app.option(name, file, description).value_name("SCENE").replaced_by(find_scene);
+}
+
 void add_scene_options(options::Command& app, SceneOptions& options) {
-  const options::Option file = app.option("scene", options.file, "scene file").value_name("SCENE");
+  const options::Option file = add_scene_file(app, "scene", options.file);
   const options::Option from =
       app.option("--from", options.from,
                  "continue a saved session ('slewring control save') instead of a scene; --set then changes "

@@ -24,6 +24,14 @@ struct SceneOptions {
   [[nodiscard]] bool has_script() const noexcept { return input != "none" && input != "keyboard"; }
 };
 
+// A scene file as it was given, or, where there is no such file, that of the installation: "truck_crane.yaml" and
+// "scenes/truck_crane.yaml" are found from any folder once Slewring is installed.
+[[nodiscard]] std::string find_scene(const std::string& file);
+
+// An option or argument whose value is a scene file, looked up by find_scene().
+options::Option add_scene_file(options::Command& app, const std::string& name, std::string& file,
+                               const std::string& description = "scene file");
+
 // SCENE or --from FILE and --assets, --set, --step, --duration, --pace, --input, --record, --no-record.
 void add_scene_options(options::Command& app, SceneOptions& options);
 
