@@ -5,6 +5,7 @@
 
 #include "analysis/coupling_check.h"
 #include "analysis/description/liftable_load.h"
+#include "cli/problems_json.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"
@@ -13,6 +14,7 @@
 #include "io_node/scene_config.h"
 #include "io_node/session_variables.h"
 #include "scene/name_pattern.h"
+#include "scene/scene_options.h"
 #include "session/direct_session.h"
 #include "session/unrecorded.h"
 
@@ -26,20 +28,6 @@ struct CheckOptions {
   std::vector<std::string> overrides;
   bool is_json = false;
 };
-
-Json to_json(const scene::LoadError& error) {
-  Json problems = Json::array();
-  for (const scene::Diagnostic& diagnostic : error.diagnostics()) {
-    problems.push_back({{"file", diagnostic.file},
-                        {"line", diagnostic.line},
-                        {"column", diagnostic.column},
-                        {"path", diagnostic.path},
-                        {"what", diagnostic.what},
-                        {"expected", diagnostic.expected},
-                        {"suggestion", diagnostic.suggestion}});
-  }
-  return {{"ok", false}, {"problems", problems}, {"omitted", error.omitted()}};
-}
 
 // Checks names that only the built models have: plotted and recorded variables must exist.
 void check_variables(const scene::Scene& scene, const session::DirectSession& session) {
@@ -95,7 +83,7 @@ ExitCode check(const CheckOptions& options) {
     return ExitCode::ok;
   } catch (const scene::LoadError& error) {
     if (!options.is_json) throw;
-    fmt::print("{}\n", to_json(error).dump(2));
+    fmt::print("{}\n", problems_json(error).dump(2));
     return ExitCode::bad_input;
   }
 }
@@ -105,7 +93,7 @@ ExitCode check(const CheckOptions& options) {
 void add_check(options::Command& program) {
   options::Command verb = program.command("check", "check a scene: file, models, start state");
   const auto options = std::make_shared<CheckOptions>();  // lives as long as the command line's callbacks
-  verb.option("scene", options->scene, "scene file").required().value_name("SCENE");
+  scene::add_scene_file(verb, "scene", options->scene).required();
   verb.option("--set", options->overrides, "change a value of the scene; repeat for more")
       .value_name("PATH=VALUE")
       .one_value_each();

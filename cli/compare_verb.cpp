@@ -4,12 +4,14 @@
 #include <cstdio>
 
 #include "analysis/comparison/comparison_report.h"
+#include "cli/picture_name.h"
 #include "cli/progress_line.h"
 #include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/text_output.h"
+#include "scene/scene_options.h"
 #include "session/interrupts.h"
 
 namespace slew::cli {
@@ -67,7 +69,7 @@ ExitCode run(const CompareOptions& options) {
 
 void add_what(options::Command& verb, CompareOptions& options) {
   analysis::ComparisonOptions& settings = options.settings;
-  verb.option("scene", settings.scene.file, "scene file").required().value_name("SCENE");
+  scene::add_scene_file(verb, "scene", settings.scene.file).required();
   const auto list = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
     verb.option(name, to, text).comma_separated().one_value_each().value_name(type);
   };
@@ -107,7 +109,8 @@ void add_compare(options::Command& program) {
       .value_name("SOURCE")
       .show_default();
   verb.option("-o,--output", options->picture, "picture, .svg or .html; without it SCENE_compare.svg")
-      .value_name("FILE");
+      .value_name("FILE")
+      .check(problem_of_picture_name, "");
   verb.option("--csv", options->csv, "write the table as comma-separated values too").value_name("FILE");
   verb.flag("--json", options->is_json, "print the table as JSON and nothing else");
   verb.flag("--quiet", options->is_quiet, "no progress");

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "analysis/scene_plots.h"
+#include "cli/picture_name.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/printable.h"
@@ -25,6 +26,10 @@ struct PlotOptions {
   std::vector<std::string> others;  // recordings to compare with
   std::string output;
   std::string title;
+  std::string from, to;
+
+  [[nodiscard]] bool is_part() const noexcept { return !from.empty() || !to.empty(); }
+  [[nodiscard]] session::TimeRange range() const { return session::recorded_range(from, to); }
 };
 
 using Readers = std::vector<std::unique_ptr<recording::Reader>>;
@@ -41,12 +46,13 @@ std::vector<std::string> labels_of(const Readers& readers) {
 }
 
 // The variables of all recordings, those of one beside each other.
-std::vector<plotting::Series> read_beside(const Readers& readers, const std::vector<std::string>& variables) {
+std::vector<plotting::Series> read_beside(const Readers& readers, const PlotOptions& options) {
   const std::vector<std::string> labels = labels_of(readers);
   std::vector<std::vector<plotting::Series>> by_recording;
   for (std::size_t i = 0; i < readers.size(); ++i) {
     try {
-      by_recording.push_back(session::read_series(*readers[i], variables, session::Units::display));
+      by_recording.push_back(
+          session::read_series(*readers[i], options.variables, session::Units::display, options.range()));
     } catch (const Failure& failure) {
       throw Failure(failure.code(), readers[i]->path().string() + ": " + failure.what());
     }
@@ -62,6 +68,32 @@ std::vector<plotting::Series> read_beside(const Readers& readers, const std::vec
     }
   }
   return curves;
+}
+
+// Of curves that were read whole: their part in the time range, as times in seconds.
+void cut(std::vector<plotting::Plot>& plots, const session::TimeRange& range) {
+  const double from = static_cast<double>(range.from_ns) * 1e-9, to = static_cast<double>(range.to_ns) * 1e-9;
+  for (plotting::Plot& plot : plots) {
+    for (plotting::Series& curve : plot.series) {
+      plotting::Series part{curve.name, curve.unit, {}, {}, curve.spacing};
+      for (std::size_t i = 0; i < curve.time.size(); ++i) {
+        if (!(curve.time[i] >= from && curve.time[i] <= to)) continue;
+        part.time.push_back(curve.time[i]);
+        part.values.push_back(curve.values[i]);
+      }
+      curve = std::move(part);
+    }
+  }
+}
+
+void require_values(std::span<const plotting::Plot> plots) {
+  for (const plotting::Plot& plot : plots) {
+    for (const plotting::Series& curve : plot.series) {
+      if (!curve.time.empty()) return;
+    }
+  }
+  throw Failure(ExitCode::bad_input,
+                "the recording has no value of these variables in this time; nothing was written; choose other times");
 }
 
 // The format follows the file's name: a page for .html, a picture otherwise.
@@ -85,7 +117,8 @@ ExitCode plot_beside(const PlotOptions& options) {
   for (const std::string& label : labels_of(readers)) {
     if (options.title.empty()) look.title += (look.title.empty() ? "" : ", ") + label;
   }
-  const plotting::Plot plot{.title = "", .series = read_beside(readers, options.variables)};
+  const plotting::Plot plot{.title = "", .series = read_beside(readers, options)};
+  if (options.is_part()) require_values({&plot, 1});
   return draw({&plot, 1}, look, options.output);
 }
 
@@ -95,9 +128,11 @@ ExitCode plot(const PlotOptions& options) {
   plotting::PlotOptions look = analysis::plot_heading(*reader);
   if (!options.title.empty()) look.title = options.title;
   if (!options.variables.empty()) {
-    plotting::Plot plot{.title = "",
-                        .series = session::read_series(*reader, options.variables, session::Units::display)};
+    plotting::Plot plot{
+        .title = "",
+        .series = session::read_series(*reader, options.variables, session::Units::display, options.range())};
     plotting::part_at_gaps(plot.series);
+    if (options.is_part()) require_values({&plot, 1});
     return draw({&plot, 1}, look, options.output);
   }
   const scene::Scene scene = scene::load_text(session::recorded_scene_text(*reader), reader->identity().scene);
@@ -105,13 +140,18 @@ ExitCode plot(const PlotOptions& options) {
     throw Failure(ExitCode::bad_input,
                   "the scene of this recording has no plots; nothing was written; name the variables to plot");
   }
-  const analysis::ScenePlots read = analysis::read_plots(scene, *reader);
+  analysis::ScenePlots read = analysis::read_plots(scene, *reader);
   if (read.plots.empty()) {
     throw Failure(ExitCode::bad_input, fmt::format("{}; nothing was written", fmt::join(read.left_out, "; ")));
   }
   for (const std::string& left_out : read.left_out)
     std::fprintf(stderr, "warning: %s\n", printable_lines(left_out).c_str());
-  if (!options.output.empty()) return draw(read.plots, look, options.output);
+  if (options.is_part()) {
+    cut(read.plots, options.range());
+    require_values(read.plots);
+  }
+  // the picture beside the recording is that of the whole
+  if (options.is_part() || !options.output.empty()) return draw(read.plots, look, options.output);
   fmt::print("{}\n", analysis::write_plots(read.plots, *reader));
   return ExitCode::ok;
 }
@@ -128,7 +168,10 @@ void add_plot(options::Command& program) {
   verb.option("-o,--output", options->output,
               "file to write: .svg, .html, or - for standard output; without it plot.svg, or for the scene's plots "
               "<scene>.svg beside the recording")
-      .value_name("FILE");
+      .value_name("FILE")
+      .check(problem_of_picture_name, "");
+  verb.option("--from", options->from, "leave out what lies before, such as '2.5 s'").value_name("TIME");
+  verb.option("--to", options->to, "leave out what lies behind").value_name("TIME");
   verb.option("--title", options->title, "heading; without it the scene's name").value_name("TEXT");
   verb.option("--with", options->others, "another recording whose variables are drawn beside; repeat for more")
       .value_name("REC")
@@ -136,7 +179,7 @@ void add_plot(options::Command& program) {
   verb.footer(
       "Examples:\n"
       "  slewring plot runs/truck_crane-20260501-102030 'Cyl_*.force' Bag.position.y -o lift.svg\n"
-      "  slewring plot runs/truck_crane-20260501-102030 -o run.html\n"
+      "  slewring plot runs/truck_crane-20260501-102030 -o run.html --from 2s --to 5s\n"
       "  slewring plot runs/truck_crane-20260501-102030 Bag.position.y --with "
       "runs/truck_crane_flexible-20260501-103000");
   verb.action([options] { return plot(*options); });

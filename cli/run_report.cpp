@@ -284,6 +284,14 @@ void report_recorded(const scene::Scene& scene, const std::string& assets, const
           report);
 }
 
+std::string range_text(const VariableReport& variable) {
+  const auto text = [&variable](double value) { return quantity_text(value, variable.unit); };
+  if (text(variable.min) == text(variable.max))
+    return fmt::format("{} {} all the time", variable.name, text(variable.max));
+  return fmt::format("{} {} to {}, {} at the end", variable.name, text(variable.min), text(variable.max),
+                     text(variable.last));
+}
+
 }  // namespace
 
 std::vector<std::string> report_variables(const scene::Scene& scene) {
@@ -363,9 +371,7 @@ void print(const RunReport& report) {
                           percent(port.net), port.meaning.empty() ? "" : "; ", port.meaning)});
   }
   for (const VariableReport& variable : report.variables) {
-    rows.add({"range",
-              fmt::format("{} {} to {}, {} at the end", variable.name, quantity_text(variable.min, variable.unit),
-                          quantity_text(variable.max, variable.unit), quantity_text(variable.last, variable.unit))});
+    rows.add({"range", range_text(variable)});
   }
   for (const session::DeviceOutcome& device : report.devices) rows.add({"device", device_text(device)});
   for (const std::string& note : report.notes) rows.add({"note", note});

@@ -6,6 +6,7 @@
 
 #include "analysis/coupling_check.h"
 #include "cli/keyboard.h"
+#include "cli/problems_json.h"
 #include "cli/run_report.h"
 #include "cli/run_session.h"
 #include "cli/status_line.h"
@@ -38,7 +39,7 @@ class TerminalWatcher final : public session::RunWatcher {
   bool update(observer::Observer& observer, std::int64_t now_ns, bool is_ending) override {
     if (keyboard_) keyboard_->poll(observer, now_ns);
     text_.measure(observer.view(), now_ns);
-    if (status_.is_due(now_ns) && !is_ending) status_.show(text_.text(observer.view()), now_ns);
+    if (status_.is_due(now_ns) && !is_ending) status_.show(text_.text(observer.view(), status_width(mode_)), now_ns);
     return true;
   }
   void end() override { status_.clear(); }
@@ -90,6 +91,19 @@ ExitCode run(session::RunOptions options, const options::Command& verb) {
   return run_session(std::move(options), session);
 }
 
+// With --json standard output has a result in every case; the texts are on standard error too.
+ExitCode run_or_report(const session::RunOptions& options, const options::Command& verb) {
+  try {
+    return run(options, verb);
+  } catch (const scene::LoadError& error) {
+    if (options.is_json) fmt::print("{}\n", problems_json(error).dump(2));
+    throw;
+  } catch (const Failure& failure) {
+    if (options.is_json) fmt::print("{}\n", problems_json(failure).dump(2));
+    throw;
+  }
+}
+
 }  // namespace
 
 ExitCode run_session(session::RunOptions options, const io_node::SessionScene& session) {
@@ -125,8 +139,11 @@ ExitCode run_session(session::RunOptions options, const io_node::SessionScene& s
   const session::RunOutcome outcome = options.is_in_process ? session::run_in_process(options, session, watcher)
                                                             : session::run_distributed(options, session, watcher);
   if (!outcome.has_begun) {
-    for (const std::string& message : session::without_echoes(outcome.messages))
-      std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
+    const std::vector<std::string> messages = session::without_echoes(outcome.messages);
+    if (options.is_json) {
+      fmt::print("{}\n", problems_json(Failure(outcome.code, fmt::format("{}", fmt::join(messages, "\n")))).dump(2));
+    }
+    for (const std::string& message : messages) std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
     return outcome.code;
   }
   const RunReport report = make_report(outcome, scene, options.assets());
@@ -197,7 +214,7 @@ void add_run(options::Command& program) {
       "  slewring run scenes/truck_crane.yaml --remote hydraulics --interface eth0 --peer 192.168.1.20 "
       "--keys plant\n"
       "  slewring run --from crane.saved --set Bag.mass=1000kg --duration 60s");
-  verb.action([options, verb] { return run(*options, verb); });
+  verb.action([options, verb] { return run_or_report(*options, verb); });
 }
 
 }  // namespace slew::cli

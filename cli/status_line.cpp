@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
+#include <utility>
 
 #include "analysis/coupling_lamp.h"
 #include "cli/terminal.h"
@@ -52,7 +54,8 @@ void StatusLine::show(const std::string& text, std::int64_t now_ns) {
   if (mode_ == Mode::off) return;
   if (mode_ == Mode::terminal) {
     next_ns_ = now_ns + kStatusPeriodNs;
-    std::printf("\r%s\x1b[K", printable(text).substr(0, terminal_width() - 1).c_str());
+    const std::string line = printable(text).substr(0, terminal_width() - 1);
+    std::printf("\r%s\x1b[K", (uses_colours() ? with_coloured_lamps(line) : line).c_str());
     is_shown_ = true;
   } else {
     next_ns_ = now_ns + kLinesPeriodNs;
@@ -71,6 +74,34 @@ void StatusLine::clear() {
   is_shown_ = false;
   std::printf("\r\x1b[K");
   std::fflush(stdout);
+}
+
+std::size_t status_width(StatusLine::Mode mode) {
+  return mode == StatusLine::Mode::terminal ? terminal_width() - 1 : 0;
+}
+
+std::string with_coloured_lamps(const std::string& line) {
+  static constexpr std::pair<std::string_view, const char*> kColours[] = {
+      {"green", "\x1b[32m"}, {"amber", "\x1b[33m"}, {"red", "\x1b[31m"}};
+  constexpr std::string_view kBefore = "  coupling ";
+  std::size_t at = line.find(kBefore);
+  if (at == std::string::npos) return line;
+  at += kBefore.size();
+  std::string result = line.substr(0, at);
+  // lamps are separated by '/', and a blank ends them
+  while (at < line.size() && line[at] != ' ') {
+    const auto* const colour = std::find_if(std::begin(kColours), std::end(kColours),
+                                            [&](const std::pair<std::string_view, const char*>& one) {
+                                              return line.compare(at, one.first.size(), one.first) == 0;
+                                            });
+    if (colour == std::end(kColours)) {
+      result += line[at++];
+      continue;
+    }
+    result += colour->second + std::string(colour->first) + "\x1b[0m";
+    at += colour->first.size();
+  }
+  return result + line.substr(at);
 }
 
 StatusLine::Mode status_mode(bool is_quiet) {
@@ -113,19 +144,25 @@ std::string StatusText::nodes_text(const observer::SessionView& view) {
 
 std::string StatusText::coupling_text(const observer::SessionView& view) const {
   std::string lamps;
+  std::string_view first;
+  bool are_alike = true;
   double worst = 0;
   for (const std::string& port : ports_) {
     const observer::VariableView* eta = view.find(port + ".coupling_eta");
     if (eta == nullptr || eta->step < 0) continue;
     worst = std::max(worst, eta->value);
-    lamps += fmt::format("{}{}", lamps.empty() ? "" : "/", analysis::lamp_text(analysis::lamp_of(eta->value)));
+    const std::string_view lamp = analysis::lamp_text(analysis::lamp_of(eta->value));
+    if (lamps.empty()) first = lamp;
+    are_alike = are_alike && lamp == first;
+    lamps += fmt::format("{}{}", lamps.empty() ? "" : "/", lamp);
   }
   if (lamps.empty()) return "";
   const std::string error = analysis::usual_force_error(worst);
-  return "  coupling " + lamps + (error.empty() ? "" : ", force off by about " + error);
+  return "  coupling " + (are_alike ? std::string(first) : lamps) +
+         (error.empty() ? "" : ", force off by about " + error);
 }
 
-std::string StatusText::variables_text(const observer::SessionView& view) const {
+std::string StatusText::variables_text(const observer::SessionView& view, std::size_t room) const {
   std::string text;
   std::size_t shown = 0;
   for (const observer::VariableView* variable : view.variables()) {
@@ -135,19 +172,23 @@ std::string StatusText::variables_text(const observer::SessionView& view) const 
           return scene::fits_pattern(variable->name, pattern);
         });
     if (!is_plotted) continue;
+    const std::string item = "  " + variable->name + " " + quantity_text(variable->value, variable->unit);
+    if (text.size() + item.size() > room) break;
     ++shown;
-    text += "  " + variable->name + " " + quantity_text(variable->value, variable->unit);
+    text += item;
   }
   return text;
 }
 
-std::string StatusText::text(const observer::SessionView& view) const {
+std::string StatusText::text(const observer::SessionView& view, std::size_t width) const {
   if (!view.has_session()) return "waiting for the session";
   const double H = static_cast<double>(view.session().step_ns) * 1e-9;
   std::string text = view.step() < 0 ? "starting" : fmt::format("{:7.2f} s", static_cast<double>(view.step()) * H);
   if (duration_ > 0 && view.step() >= 0) text += fmt::format(" of {:g}", duration_);
   if (factor_ > 0) text += fmt::format("  x{:.2f}", factor_);
-  return text + "  " + nodes_text(view) + coupling_text(view) + variables_text(view);
+  text += "  " + nodes_text(view) + coupling_text(view);
+  constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+  return text + variables_text(view, width == 0 ? kNoLimit : width - std::min(width, text.size()));
 }
 
 }  // namespace slew::cli

@@ -31,22 +31,30 @@ class StatusLine {
   bool is_shown_ = false;
 };
 
+// Width for StatusText::text(): that of the terminal; elsewhere no limit.
+[[nodiscard]] std::size_t status_width(StatusLine::Mode mode);
+
+// Colours of the lamps green, amber and red behind the word "coupling", as escape sequences of a terminal.
+[[nodiscard]] std::string with_coloured_lamps(const std::string& line);
+
 // Terminal when standard output is one, else lines; off when only the result may be printed.
 [[nodiscard]] StatusLine::Mode status_mode(bool is_quiet);
 
-// Session time, real-time factor, nodes, plotted variables and coupling lamps, from an observer's view.
+// Session time, real-time factor, nodes, coupling lamps and plotted variables, from an observer's view: what matters
+// first, then as many variables as fit whole.
 class StatusText {
  public:
   explicit StatusText(const scene::Scene& scene);
   // Called in every round: measures the session's speed.
   void measure(const observer::SessionView& view, std::int64_t now_ns);
-  [[nodiscard]] std::string text(const observer::SessionView& view) const;
+  // width: characters of the line; 0: no limit.
+  [[nodiscard]] std::string text(const observer::SessionView& view, std::size_t width) const;
 
  private:
   // nodes are named only when their state is not just running
   [[nodiscard]] static std::string nodes_text(const observer::SessionView& view);
   [[nodiscard]] std::string coupling_text(const observer::SessionView& view) const;
-  [[nodiscard]] std::string variables_text(const observer::SessionView& view) const;
+  [[nodiscard]] std::string variables_text(const observer::SessionView& view, std::size_t room) const;
 
   std::vector<std::string> plotted_;  // patterns
   std::vector<std::string> ports_;

@@ -58,6 +58,9 @@ DisplayUnit display_unit(std::string_view si_unit) {
 }
 
 std::string quantity_text(double value, std::string_view si_unit) {
+  // what rounding leaves of an angle of zero
+  constexpr double kNoAngle = 1e-12;  // rad
+  if (si_unit == "rad" && std::fabs(value) < kNoAngle) value = 0;
   const DisplayUnit shown = display_unit(si_unit);
   std::string text = fmt::format("{:.4g}", value * shown.factor);
   if (text == "-0") text = "0";

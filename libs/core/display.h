@@ -19,7 +19,7 @@ struct DisplayUnit {
 // Pa -> bar, m3/s -> l/min, rad -> deg, ...; units that are not in the list stay as they are.
 [[nodiscard]] DisplayUnit display_unit(std::string_view si_unit);
 
-// "47.2 kN" style: value in the display unit with four significant digits.
+// "47.2 kN" style: value in the display unit with four significant digits. An angle below 1e-12 rad is 0.
 [[nodiscard]] std::string quantity_text(double value, std::string_view si_unit);
 
 // A chosen value as a user would write it: at most six digits, in the usual unit that gives the shortest text: "30

@@ -221,6 +221,29 @@ TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
   EXPECT_TRUE(page.str().starts_with("<!DOCTYPE html>"));
   EXPECT_NE(page.str().find("Height of the bag"), std::string::npos);
 
+  // a part, of the scene's plots and of one variable; outside of the recording there is nothing to draw
+  for (const std::vector<std::string>& names : std::vector<std::vector<std::string>>{{}, {"Bag.position.y"}}) {
+    std::vector<std::string> arguments = {"plot", recording};
+    arguments.insert(arguments.end(), names.begin(), names.end());
+    arguments.insert(arguments.end(), {"-o", "part.html", "--from", "0.2 s", "--to", "300 ms"});
+    ASSERT_EQ(slewring(arguments).code, 0);
+    std::ostringstream part;
+    part << std::ifstream(work_.path() / "part.html").rdbuf();
+    const std::size_t begin = part.str().find('{', part.str().find("id=\"data\""));
+    const std::size_t end = part.str().find("</script>", begin);
+    const nlohmann::json data = nlohmann::json::parse(part.str().substr(begin, end - begin));
+    for (const nlohmann::json& axis : data.at("times")) {
+      EXPECT_EQ(axis.size(), 11u);
+      EXPECT_EQ(axis.front(), 0.2);
+      EXPECT_EQ(axis.back(), 0.3);
+    }
+    arguments.back() = "0.1 s";
+    EXPECT_EQ(slewring(arguments).code, 2);
+    arguments[arguments.size() - 3] = "5 s";
+    arguments.back() = "6 s";
+    EXPECT_EQ(slewring(arguments).code, 2);
+  }
+
   ASSERT_EQ(slewring({"animate", recording, "-o", "crane.html"}).code, 0);
   ASSERT_EQ(slewring({"animate", recording, "-o", "crane.svg"}).code, 0);
   EXPECT_GT(std::filesystem::file_size(work_.path() / "crane.html"), 10'000u);

@@ -113,6 +113,68 @@ TEST_F(Program, EveryProgramPrintsTheSameBuild) {
   }
 }
 
+TEST_F(Program, TheVersionIsThatOfTheChangelogForMachinesToo) {
+  std::ifstream changelog(SLEWRING_SOURCE_DIR "/CHANGELOG.md");
+  std::string version;
+  for (std::string line; version.empty() && std::getline(changelog, line);) {
+    if (line.starts_with("## [")) version = line.substr(4, line.find(']') - 4);
+  }
+  ASSERT_FALSE(version.empty());
+  for (const char* program : {"slewring", "mechanics_node"}) {
+    const std::string text = run(program, {"--version"}, work_.path()).out;
+    EXPECT_TRUE(text.starts_with(program + (" " + version + "-"))) << text;
+    const nlohmann::json json = nlohmann::json::parse(run(program, {"--version", "--json"}, work_.path()).out);
+    EXPECT_EQ(json.at("program"), program);
+    EXPECT_EQ(json.at("version"), version);
+    EXPECT_EQ(std::string(program) + " " + json.at("build").get<std::string>() + "\n", text);
+    EXPECT_TRUE(contains(text, json.at("compiler").get<std::string>())) << text;
+    EXPECT_EQ(json.at("middlewares").at(0), "cyclone");
+  }
+  EXPECT_EQ(slewring({"--json"}).code, 2);
+}
+
+TEST_F(Program, HelpOfAVerbIsThatOfItsOption) {
+  EXPECT_EQ(slewring({"help"}).out, slewring({"--help"}).out);
+  for (const std::vector<std::string>& verbs : std::vector<std::vector<std::string>>{
+           {"run"}, {"control"}, {"control", "pause"}, {"node"}, {"node", "mechanics"}}) {
+    std::vector<std::string> helped = {"help"}, asked = verbs;
+    helped.insert(helped.end(), verbs.begin(), verbs.end());
+    asked.emplace_back("--help");
+    const CommandResult help = slewring(helped);
+    EXPECT_EQ(help.code, 0) << help.err;
+    EXPECT_EQ(help.out, slewring(asked).out) << verbs[0];
+  }
+  const CommandResult typo = slewring({"help", "chek"});
+  EXPECT_EQ(typo.code, 2);
+  EXPECT_TRUE(contains(typo.err, "there is no 'chek' here; did you mean 'check'?")) << typo.err;
+}
+
+// a session that fails to start and a scene that is refused print the same object
+TEST_F(Program, RunForMachinesPrintsOneObjectAlsoWhereItIsRefused) {
+  std::ofstream(work_.path() / "bad.yaml") << "bodies:\n  Rod: {mas: 2 kg}\n";
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"run", "bad.yaml", "--json"},
+           {"run", "nowhere.yaml", "--json"},
+           {"run", scene_file("first_steps.yaml"), "--json", "--in-process", "--cpu", "mechanics=0"}}) {
+    const CommandResult result = slewring(arguments);
+    EXPECT_EQ(result.code, 2) << result.err;
+    EXPECT_FALSE(result.err.empty());
+    const nlohmann::json json = nlohmann::json::parse(result.out);
+    EXPECT_FALSE(json.at("ok").get<bool>());
+    EXPECT_EQ(json.at("code"), 2);
+    EXPECT_FALSE(json.at("problems").at(0).at("what").get<std::string>().empty());
+  }
+}
+
+TEST_F(Program, PicturesOfOtherFormatsAreRefused) {
+  for (const char* verb : {"plot", "compare"}) {
+    const CommandResult result = slewring({verb, "x", "-o", "x.png"});
+    EXPECT_EQ(result.code, 2) << verb;
+    EXPECT_TRUE(contains(result.err, "'x.png' ends neither in .svg nor in .html")) << result.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(work_.path() / "x.png"));
+}
+
 TEST_F(Program, UsageErrorsReportWhatWhereAndWhatToDoAndExitWith2) {
   struct Case {
     std::vector<std::string> arguments;
@@ -124,6 +186,7 @@ TEST_F(Program, UsageErrorsReportWhatWhereAndWhatToDoAndExitWith2) {
       {{"control", "puase"}, "did you mean 'pause'?; nothing was done; see 'slewring control --help'\n"},
       {{"run"}, "slewring: scene is required; nothing was done; see 'slewring run --help'\n"},
       {{"run", "x.yaml", "--pace", "slow"}, "--pace: slow not in {real,free}"},
+      {{"run", "x.yaml", "--durtion", "5"}, "there is no option '--durtion' here; did you mean '--duration'?"},
       {{"run", "x.yaml", "--domain", "500"}, "--domain: Value 500 not in range 0 to 230"},
       {{"run", "x.yaml", "--keep-free", "nan"},
        "--keep-free: 'nan' is no number from 0 to 1000000000; nothing was done"},

@@ -13,6 +13,9 @@ TEST(Display, ShowsQuantitiesInTheUnitsOfTheWorkshop) {
   EXPECT_EQ(quantity_text(70.0 / 60000, "m3/s"), "70 l/min");
   EXPECT_EQ(quantity_text(0.5 * 3.14159265358979, "rad"), "90 deg");
   EXPECT_EQ(quantity_text(349'680, "N"), "349.7 kN");
+  EXPECT_EQ(quantity_text(-3.75e-18, "rad"), "0 deg");  // what rounding leaves of it
+  EXPECT_EQ(quantity_text(-1.745e-11, "rad"), "-9.998e-10 deg");
+  EXPECT_EQ(quantity_text(-3.75e-18, "m"), "-3.75e-18 m");
   EXPECT_EQ(quantity_text(0.86, "m"), "0.86 m");
   EXPECT_EQ(quantity_text(1e-4, "1"), "0.0001");
   EXPECT_EQ(quantity_text(-0.0, "N"), "0 kN");
