@@ -50,12 +50,16 @@ void read_enable(const std::string& name, devices::EnableChainDef& enable, doubl
   if (enable.dead_man.empty() && !enable.conditions.empty()) {
     problems.push_back({name + ".conditions", "conditions enable nothing without a dead-man input", "dead_man", ""});
   }
-  if (enable.conditions.size() > kMaxConditions) {
-    problems.push_back({name + ".conditions", fmt::format("there are {} conditions", enable.conditions.size()),
+  check_conditions(name, enable.conditions, problems);
+}
+
+void check_conditions(const std::string& device, const std::vector<std::string>& conditions, Problems& problems) {
+  if (conditions.size() > kMaxConditions) {
+    problems.push_back({device + ".conditions", fmt::format("there are {} conditions", conditions.size()),
                         fmt::format("at most {}", kMaxConditions), ""});
   }
-  for (const std::string& condition : enable.conditions)
-    static_cast<void>(read_condition(name + ".conditions", condition, problems));
+  for (const std::string& condition : conditions)
+    static_cast<void>(read_condition(device + ".conditions", condition, problems));
 }
 
 std::optional<devices::ByteLayout> read_layout(const std::string& name, devices::LayoutDef& def, Problems& problems) {

@@ -23,11 +23,16 @@ inline constexpr Range kSilenceRange{.min = 0.002, .max = 60, .min_is_open = fal
 
 // A row of a library's table for a member of ours that holds its Def.
 template <auto... Path>
-Field lent(std::span<const Field> fields, std::string_view key) {
+Field lent_as_is(std::span<const Field> fields, std::string_view key) {
   const auto found = std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.key == key; });
-  FieldOptions options = *found;
-  options.presence = Presence::optional;
-  return field<Path...>(key, options);
+  return field<Path...>(key, *found);
+}
+// The same, for a key that may be left out.
+template <auto... Path>
+Field lent(std::span<const Field> fields, std::string_view key) {
+  Field row = lent_as_is<Path...>(fields, key);
+  row.presence = Presence::optional;
+  return row;
 }
 
 template <typename Def>
@@ -71,11 +76,16 @@ void read_enable(const std::string& name, devices::EnableChainDef& enable, doubl
                                                              Problems& problems);
 // True if the text is an IPv4 address and a port; otherwise a problem.
 bool check_address(const std::string& path, const std::string& text, Problems& problems);
+void check_conditions(const std::string& device, const std::vector<std::string>& conditions, Problems& problems);
 
 void read_joystick(JoystickDef& def, InputUse& use, Problems& problems);
 void read_udp_in(UdpInDef& def, InputUse& use, Problems& problems);
 void read_udp_out(UdpOutDef& def, Problems& problems);
 void read_can_in(CanInDef& def, InputUse& use, Problems& problems);
 void read_can_out(CanOutDef& def, Problems& problems);
+void read_platform(MotionPlatformDef& def, Problems& problems);
+
+// Rules of fields that are sent: each has one source at most, and at least one has one.
+void check_sent_fields(const std::string& device, const devices::ByteLayout& layout, Problems& problems);
 
 }  // namespace slew::scene

@@ -28,6 +28,7 @@ std::vector<std::string> DevicesDef::names() const {
   for (const UdpOutDef& device : udp_outs) names.push_back(device.name);
   for (const CanInDef& device : can_ins) names.push_back(device.name);
   for (const CanOutDef& device : can_outs) names.push_back(device.name);
+  for (const MotionPlatformDef& device : platforms) names.push_back(device.name);
   return names;
 }
 
@@ -38,6 +39,7 @@ void read_devices(DevicesDef& devices, std::span<const InputDef> inputs, Problem
   for (UdpOutDef& device : devices.udp_outs) read_udp_out(device, problems);
   for (CanInDef& device : devices.can_ins) read_can_in(device, use, problems);
   for (CanOutDef& device : devices.can_outs) read_can_out(device, problems);
+  for (MotionPlatformDef& device : devices.platforms) read_platform(device, problems);
   check_listeners(devices, problems);
   const std::vector<std::string> names = devices.names();
   if (names.size() <= kMaxDevices) return;
@@ -47,16 +49,16 @@ void read_devices(DevicesDef& devices, std::span<const InputDef> inputs, Problem
 
 std::vector<NamedVariable> variables_of(const DevicesDef& devices, const OutputsDef& outputs) {
   std::vector<NamedVariable> all;
-  const auto add_conditions = [&](const devices::EnableChainDef& enable) {
-    Problems ignored;
-    for (const std::string& text : enable.conditions) {
-      if (const auto condition = read_condition("", text, ignored))
-        all.push_back({enable.name + ".conditions", condition->variable, condition->threshold.unit});
+  const auto add_conditions = [&](const std::string& device, const std::vector<std::string>& conditions) {
+    Problems none;
+    for (const std::string& text : conditions) {
+      if (const auto condition = read_condition("", text, none))
+        all.push_back({device + ".conditions", condition->variable, condition->threshold.unit});
     }
   };
-  for (const JoystickDef& device : devices.joysticks) add_conditions(device.enable);
-  for (const UdpInDef& device : devices.udp_ins) add_conditions(device.enable);
-  for (const CanInDef& device : devices.can_ins) add_conditions(device.enable);
+  for (const JoystickDef& device : devices.joysticks) add_conditions(device.name, device.enable.conditions);
+  for (const UdpInDef& device : devices.udp_ins) add_conditions(device.name, device.enable.conditions);
+  for (const CanInDef& device : devices.can_ins) add_conditions(device.name, device.enable.conditions);
   for (const CanOutDef& device : devices.can_outs) {
     for (const CanSignalDef& signal : device.bus.signals) {
       if (!signal.variable.empty())
@@ -66,6 +68,14 @@ std::vector<NamedVariable> variables_of(const DevicesDef& devices, const Outputs
   for (const UdpOutDef& device : devices.udp_outs) {
     for (const devices::LayoutFieldDef& f : device.layout.fields) {
       if (!f.variable.empty()) all.push_back({fmt::format("{}.{}.variable", device.name, f.name), f.variable});
+    }
+  }
+  for (const MotionPlatformDef& device : devices.platforms) {
+    add_conditions(device.name, device.conditions);
+    for (const std::string& variable : device.body_variables()) all.push_back({device.name + ".body", variable});
+    for (const devices::LayoutFieldDef& f : device.layout.fields) {
+      if (f.variable.empty() || device.own_quantity(f) != nullptr) continue;
+      all.push_back({fmt::format("{}.{}.variable", device.name, f.name), f.variable});
     }
   }
   Problems ignored;

@@ -79,14 +79,11 @@ void read_udp_in(UdpInDef& def, InputUse& use, Problems& problems) {
   }
 }
 
-void read_udp_out(UdpOutDef& def, Problems& problems) {
-  check_address(def.name + ".send", def.send, problems);
-  const auto layout = read_layout(def.name, def.layout, problems);
-  if (!layout) return;
+void check_sent_fields(const std::string& device, const devices::ByteLayout& layout, Problems& problems) {
   bool shows_something = false;
-  for (const devices::PlacedField& placed : layout->fields) {
+  for (const devices::PlacedField& placed : layout.fields) {
     const devices::LayoutFieldDef& f = placed.def;
-    const std::string path = fmt::format("{}.{}", def.name, f.name);
+    const std::string path = fmt::format("{}.{}", device, f.name);
     const bool is_used = !f.variable.empty() || !f.output.empty();
     shows_something = shows_something || is_used;
     if (!f.input.empty()) problems.push_back({path + ".input", "a sent field moves nothing", "variable or output", ""});
@@ -99,8 +96,13 @@ void read_udp_out(UdpOutDef& def, Problems& problems) {
     }
   }
   if (!shows_something) {
-    problems.push_back({def.name, "the device shows nothing", "a field with a variable or an output", ""});
+    problems.push_back({device, "the device shows nothing", "a field with a variable or an output", ""});
   }
+}
+
+void read_udp_out(UdpOutDef& def, Problems& problems) {
+  check_address(def.name + ".send", def.send, problems);
+  if (const auto layout = read_layout(def.name, def.layout, problems)) check_sent_fields(def.name, *layout, problems);
 }
 
 }  // namespace slew::scene
