@@ -7,7 +7,6 @@ Needs cyclone_star (SLEWRING_BUILD_BENCHMARKS) and Fast DDS. Rows alternate with
 of them; figures are medians of the rounds. Quote them with the load that is printed below them: on a busy machine only
 heap calls and memory mean something.
 """
-import json
 import os
 import re
 import statistics
@@ -16,9 +15,11 @@ import sys
 import tempfile
 import time
 
+sys.dont_write_bytecode = True
+from paced_crane import finish_session, print_load, scene_path, start_session  # noqa: E402
+
 MIDDLEWARES = {"cyclone": "transport", "fastdds": "fastdds", "fastdds-shm": "fastdds-shm"}  # way of cyclone_star
 DOMAIN = "96"
-SCENE = os.path.join(os.path.dirname(__file__), "..", "scenes", "truck_crane.yaml")
 
 
 def star(bin_folder):
@@ -41,15 +42,13 @@ def resident(process, program):
 
 
 def crane(bin_folder, middleware, pace, seconds, folder):
-    command = [bin_folder + "/slewring", "run", SCENE, "--input", "none", "--pace", pace, "--duration", f"{seconds} s",
-               "--session", f"bench{os.getpid()}", "--domain", DOMAIN, "--middleware", middleware, "--no-record",
-               "--quiet", "--json"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, cwd=folder)
+    process = start_session(bin_folder, scene_path("truck_crane.yaml"), pace, seconds, folder, DOMAIN, "--input", "none",
+                            "--middleware", middleware, "--no-record")
     memory = None
     while process.poll() is None:
         memory = resident(process, "mechanics_node") or memory
         time.sleep(0.2)
-    report = json.loads(process.stdout.read())
+    report = finish_session(process)
     steps = report["steps"]
     timing = report["nodes"]["mechanics"]["timing"]
     return {"rate": report["steps_per_second"], "response": report["deadline"]["response"]["p99"] * 1e6,
@@ -77,8 +76,7 @@ def main():
     for middleware, rows in figures.items():
         median = [statistics.median(column) for column in zip(*rows)]
         print(f"| {middleware} | " + " | ".join(f"{value:.0f}" if value >= 20 else f"{value:.2f}" for value in median) + " |")
-    with open("/proc/loadavg", encoding="utf-8") as file:
-        print(f"load: {file.read().strip()}")
+    print_load()
 
 
 if __name__ == "__main__":

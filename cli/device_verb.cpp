@@ -1,4 +1,5 @@
-// `slewring device list|monitor|calibrate|layout|run`: joysticks and UDP packets, with and without a session.
+// `slewring device list|monitor|calibrate|layout|run`: joysticks, packets and motion platforms, with and without a
+// session.
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
@@ -70,6 +71,8 @@ std::vector<Row> devices_of(const scene::Scene& scene) {
     rows.push_back({device.name, "can_in", device.bus.interface.empty() ? device.path : device.bus.interface});
   for (const scene::CanOutDef& device : scene.devices.can_outs)
     rows.push_back({device.name, "can_out", device.bus.interface});
+  for (const scene::MotionPlatformDef& device : scene.devices.platforms)
+    rows.push_back({device.name, "motion_platform", device.body + ", sends to " + device.send});
   return rows;
 }
 
@@ -168,6 +171,14 @@ const Def* find_device(const std::vector<Def>& defs, const std::string& name) {
                                                            : fmt::format("did you mean '{}'?", meant)));
 }
 
+// The receiver of what a device sends, in the place of the other side.
+std::unique_ptr<InputDevice> open_receiver(const std::string& name, const std::string& address,
+                                           const devices::LayoutDef& layout, device_node::Reach reach) {
+  scene::UdpInDef def{.name = name, .listen = address, .layout = layout, .enable = {}};
+  def.layout.most_lost = INT32_MAX;  // gaps are shown, not refused
+  return device_node::open_udp_in(def, reach);
+}
+
 std::unique_ptr<InputDevice> open_of_scene(const DeviceOptions& options) {
   const scene::Scene scene = scene::load_file(options.scene);
   if (const auto* stick = find_device(scene.devices.joysticks, options.device))
@@ -176,7 +187,11 @@ std::unique_ptr<InputDevice> open_of_scene(const DeviceOptions& options) {
   if (const auto* rig = find_device(scene.devices.udp_ins, options.device))
     return device_node::open_udp_in(*rig, reach);
   if (const auto* panel = find_device(scene.devices.can_ins, options.device)) return device_node::open_can_in(*panel);
-  refuse_device(scene, options.device, "joystick, udp_in or can_in");
+  if (const auto* dash = find_device(scene.devices.udp_outs, options.device))
+    return open_receiver(dash->name, dash->send, dash->layout, reach);
+  if (const auto* seat = find_device(scene.devices.platforms, options.device))
+    return open_receiver(seat->name, seat->send, seat->layout, reach);
+  refuse_device(scene, options.device, "joystick, udp_in, udp_out, can_in or motion_platform");
 }
 
 ExitCode monitor(const DeviceOptions& options) {
@@ -297,7 +312,8 @@ ExitCode write_layout(const DeviceOptions& options) {
   const devices::LayoutDef* def = nullptr;
   if (const auto* rig = find_device(scene.devices.udp_ins, options.device)) def = &rig->layout;
   if (const auto* dash = find_device(scene.devices.udp_outs, options.device)) def = &dash->layout;
-  if (def == nullptr) refuse_device(scene, options.device, "udp_in or udp_out");
+  if (const auto* seat = find_device(scene.devices.platforms, options.device)) def = &seat->layout;
+  if (def == nullptr) refuse_device(scene, options.device, "udp_in, udp_out or motion_platform");
   const devices::ByteLayout layout = build(*def);
   write_text(options.output, options.is_simulink ? simulink_note(layout) : c_header(layout));
   return ExitCode::ok;
@@ -321,7 +337,8 @@ ExitCode run_one(DeviceOptions options) {
 }  // namespace
 
 void add_device(options::Command& program) {
-  options::Command verb = program.command("device", "joysticks and UDP packets of a scene, with and without a session");
+  options::Command verb =
+      program.command("device", "joysticks, packets and platforms of a scene, with and without a session");
   verb.require_command();
   const auto options = std::make_shared<DeviceOptions>();  // lives as long as the command line's callbacks
 
@@ -331,7 +348,11 @@ void add_device(options::Command& program) {
   listing.action([options] { return list(*options); });
 
   options::Command monitoring = verb.command("monitor", "print what a device gives, as it changes");
-  monitoring.option("device", options->device, "path of an input device or of recorded events; with --scene a name")
+  monitoring
+      .option(
+          "device", options->device,
+          "path of an input device or of recorded events; with --scene a name: what it receives, or what udp_out and "
+          "motion_platform send to an address of this machine")
       .value_name("DEVICE")
       .required();
   scene::add_scene_file(monitoring, "--scene", options->scene, "scene file with the device");
@@ -355,7 +376,9 @@ void add_device(options::Command& program) {
 
   options::Command layout = verb.command("layout", "write the C header of a device's packets, or a note for Simulink");
   scene::add_scene_file(layout, "scene", options->scene).required();
-  layout.option("device", options->device, "name of a udp_in or udp_out device").value_name("DEVICE").required();
+  layout.option("device", options->device, "name of a udp_in, udp_out or motion_platform device")
+      .value_name("DEVICE")
+      .required();
   layout.flag("--simulink", options->is_simulink, "the parameters of Simulink's blocks in place of a C header");
   layout.option("-o,--output", options->output, "file; - is standard output").value_name("FILE").show_default();
   layout.action([options] { return write_layout(*options); });

@@ -17,7 +17,6 @@
 #include "core/printable.h"
 #include "core/report_table.h"
 #include "core/text_output.h"
-#include "device_node/device_run.h"
 #include "io_node/session_clock.h"
 #include "node/identity.h"
 #include "plotting/svg_plot.h"
@@ -169,23 +168,6 @@ Json timing_json(const wire::Health& health) {
           {"longest_overrun", health.longest_overrun},
           {"allocations", health.allocations},
           {"carrier_allocations", health.carrier_allocations}};
-}
-
-std::string device_text(const session::DeviceOutcome& device) {
-  std::string text = device.name + ": ";
-  if (!device.fault.empty()) text += "ended early, its inputs went to neutral: " + device.fault + "; ";
-  if (device.hangs > 0) text += counted(device.hangs, "time", "times") + " without a sign of life for 2 s; ";
-  text += device.summary ? device_node::summary_text(*device.summary) : "no summary";
-  return text;
-}
-
-Json devices_json(const RunReport& report) {
-  Json devices = Json::object();
-  for (const session::DeviceOutcome& device : report.devices) {
-    devices[device.name] = {
-        {"fault", device.fault}, {"hangs", device.hangs}, {"summary", device.summary.value_or(Json())}};
-  }
-  return devices;
 }
 
 // Of io: the session's own.
@@ -373,7 +355,7 @@ void print(const RunReport& report) {
   for (const VariableReport& variable : report.variables) {
     rows.add({"range", range_text(variable)});
   }
-  for (const session::DeviceOutcome& device : report.devices) rows.add({"device", device_text(device)});
+  for (const session::DeviceOutcome& device : report.devices) rows.add({"device", device.name + ": " + session::to_text(device)});
   for (const std::string& note : report.notes) rows.add({"note", note});
   print_table(rows);
   std::fflush(stdout);
@@ -424,7 +406,7 @@ std::string to_json_text(const RunReport& report) {
                {"ports", ports},
                {"omega_H_max", report.omega_H},
                {"variables", variables},
-               {"devices", devices_json(report)},
+               {"devices", session::to_json(report.devices)},
                {"notes", report.notes},
                {"messages", report.messages},
                {"plots", report.plots},

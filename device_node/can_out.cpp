@@ -17,7 +17,7 @@ class CanOut final : public ShownDevice {
   CanOut(const scene::CanOutDef& def, const scene::OutputsDef& outputs, SendFrame send)
       : def_(def),
         messages_(read_messages(def.bus)),
-        feed_(signals_of(def.bus), outputs, def.every, [this](std::span<const double> values) { show(values); }),
+        feed_(signals_of(def.bus), outputs, def.every, [this](const FedValues& fed) { show(fed.values); }),
         send_(std::move(send)) {
     for (const scene::CanSignalDef& signal : def.bus.signals) places_.push_back(place_of(messages_, signal.signal));
     for (const devices::CanMessage& message : messages_) {

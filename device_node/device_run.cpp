@@ -13,7 +13,6 @@
 #include "core/suggestion.h"
 #include "device_node/input_driver.h"
 #include "device_node/shown_device.h"
-#include "devices/packet.h"
 #include "node/driver.h"
 #include "node/open_transport.h"
 #include "observer/observer.h"
@@ -26,6 +25,7 @@ constexpr SimDuration kLongestRound = milliseconds(20);
 constexpr int kInputRoundMs = 1;  // with an input device: blocks of variables are taken this late at most
 constexpr SimDuration kLongestRepeat = milliseconds(50);
 constexpr std::int64_t kAliveIntervalNs = 500'000'000;
+constexpr int kRestRoundMs = 1;
 constexpr SimDuration kDirectoryTime = milliseconds(30'000);
 
 template <typename Defs>
@@ -47,6 +47,7 @@ class DeviceRun final : public observer::Receiver {
     while (!is_over() && !observer_->is_stopped()) do_round();
     const bool has_session = !is_over();
     if (driver_ && has_session) driver_->release(observer_->view().step(), monotonic_ns());
+    if (shown_) come_to_rest();
     report_notices();
     return summary();
   }
@@ -68,10 +69,10 @@ class DeviceRun final : public observer::Receiver {
  private:
   [[nodiscard]] bool is_over() const { return observer_->view().is_over(); }
 
-  void show_alive() {
+  void show_alive(std::string_view line = kAliveLine) {
     if (!options_.is_supervised || monotonic_ns() < next_alive_ns_) return;
     next_alive_ns_ = monotonic_ns() + kAliveIntervalNs;
-    report_(std::string(kAliveLine));
+    report_(std::string(line));
   }
 
   // True when `done` within the time; signs of life go on meanwhile.
@@ -135,6 +136,10 @@ class DeviceRun final : public observer::Receiver {
     } else if (const auto* cluster = find_named(scene.devices.can_outs, name)) {
       shown_ = open_can_out(*cluster, scene.outputs);
       type_ = "can_out";
+    } else if (const auto* seat = find_named(scene.devices.platforms, name)) {
+      refuse_free_pace();
+      shown_ = open_motion_platform(*seat, scene.outputs, scene.mechanics.gravity, reach);
+      type_ = "motion_platform";
     } else {
       refuse_name(scene);
     }
@@ -142,6 +147,14 @@ class DeviceRun final : public observer::Receiver {
       if (driver_) driver_->take(directory);
       if (shown_) shown_->feed().take(directory);
     }
+  }
+
+  void refuse_free_pace() const {
+    if (observer_->view().session().pace == Pace::real) return;
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: the session is not paced by the wall clock, and its motion would be felt faster or "
+                              "slower than it is; the device was not started; run the session with --pace real",
+                              options_.device));
   }
 
   [[noreturn]] void refuse_name(const scene::Scene& scene) const {
@@ -175,6 +188,7 @@ class DeviceRun final : public observer::Receiver {
     if (const auto* stick = find_named(scene.devices.joysticks, options_.device)) own.joysticks = {*stick};
     if (const auto* rig = find_named(scene.devices.udp_ins, options_.device)) own.udp_ins = {*rig};
     if (const auto* panel = find_named(scene.devices.can_ins, options_.device)) own.can_ins = {*panel};
+    if (const auto* seat = find_named(scene.devices.platforms, options_.device)) own.platforms = {*seat};
     const auto add_output = [&](const std::string& name) {
       if (const auto* lamp = find_named(scene.outputs.switched, name)) outputs.switched.push_back(*lamp);
       if (const auto* gauge = find_named(scene.outputs.analog, name)) outputs.analog.push_back(*gauge);
@@ -183,6 +197,8 @@ class DeviceRun final : public observer::Receiver {
       own.udp_outs = {*dash};
       for (const devices::LayoutFieldDef& f : dash->layout.fields) add_output(f.output);
     }
+    for (const scene::MotionPlatformDef& seat : own.platforms)
+      for (const devices::LayoutFieldDef& f : seat.layout.fields) add_output(f.output);
     if (const auto* cluster = find_named(scene.devices.can_outs, options_.device)) {
       own.can_outs = {*cluster};
       for (const scene::CanSignalDef& signal : cluster->bus.signals) add_output(signal.output);
@@ -222,7 +238,8 @@ class DeviceRun final : public observer::Receiver {
 
   void do_round() {
     if (shown_) {
-      observer_->wait_for([&] { return is_over(); }, kLongestRound);
+      const std::int64_t to_due_ns = std::max<std::int64_t>(0, shown_->due_ns() - monotonic_ns());
+      observer_->wait_for([&] { return is_over(); }, SimDuration{std::min(kLongestRound.ns, to_due_ns)});
       shown_->look_after(monotonic_ns());
     } else {
       pollfd request{device_->descriptor(), POLLIN, 0};
@@ -236,6 +253,17 @@ class DeviceRun final : public observer::Receiver {
     }
     show_alive();
     report_notices();
+  }
+
+  // A motion platform parks before its process ends.
+  void come_to_rest() {
+    shown_->leave_session();
+    while (!shown_->is_at_rest()) {
+      ::poll(nullptr, 0, kRestRoundMs);
+      shown_->look_after(monotonic_ns());
+      show_alive(kRestLine);
+      report_notices();
+    }
   }
 
   void report_notices() {
@@ -270,59 +298,10 @@ class DeviceRun final : public observer::Receiver {
   std::int64_t next_alive_ns_ = 0;
 };
 
-std::string counted_text(const Json& counts, std::string_view key, std::string_view what) {
-  const Json* const number = counts.find(key);
-  if (number == nullptr || !number->is_number() || number->integer() == 0) return "";
-  return fmt::format(", {} {}", number->integer(), what);
-}
-
 }  // namespace
 
 Json run_device(const DeviceOptions& options, const std::function<void(const std::string&)>& report) {
   return DeviceRun(options, report).run();
-}
-
-std::string summary_text(const Json& summary) {
-  const Json* const packets = summary.find("packets");
-  const Json* const inputs = summary.find("inputs");
-  std::string text;
-  if (inputs == nullptr && packets != nullptr) {
-    text = fmt::format("{} packets sent", packets->at("sent").integer());
-    text += counted_text(*packets, "unsent", "not taken by the system");
-    text += counted_text(*packets, "not_finite", "not sent since a value was not finite");
-    text += counted_text(*packets, "incomplete_steps", "steps incomplete");
-    return text;
-  }
-  if (inputs == nullptr) return "";
-  if (packets != nullptr) {
-    text = fmt::format("{} packets used", packets->at("used").integer());
-    text += counted_text(*packets, "lost", "lost");
-    const Json& refused = packets->at("refused");
-    text += counted_text(refused, kStrangerCause, "of senders that are not in from");
-    for (std::size_t i = 1; i < static_cast<std::size_t>(devices::PacketFault::number_of_faults); ++i) {
-      const std::string_view cause = text_of(static_cast<devices::PacketFault>(i));
-      text += counted_text(refused, cause, fmt::format("refused: {}", cause));
-    }
-  } else if (const Json* const frames = summary.find("frames")) {
-    text = fmt::format("{} frames used", frames->at("used").integer());
-    text += counted_text(*frames, "too_short", "too short");
-    text += counted_text(*frames, "other_identifiers", "of other identifiers");
-    for (const char* state : {"not available", "error", "out of range", "not finite"})
-      text += counted_text(frames->at("without_value"), state, std::string("values ") + state);
-  } else {
-    text = fmt::format("{} reports", summary.at("events").at("reports").integer());
-    text += counted_text(summary.at("events"), "dropped", "times events dropped by the kernel");
-  }
-  text += fmt::format("; {} values written", inputs->at("written").integer());
-  text += counted_text(*inputs, "without_lease", "without a lease");
-  text += counted_text(*inputs, "unsent", "not sent");
-  text += counted_text(*inputs, "silences", "times silent and at neutral");
-  text += counted_text(*inputs, "enable_losses", "times disabled");
-  const Json& latency = inputs->at("latency");
-  if (latency.at("count").integer() == 0) return text;
-  return text + fmt::format("; {} from an event to the first sample that used it, {} p99, {} max",
-                            duration_text(latency.at("p50").number()), duration_text(latency.at("p99").number()),
-                            duration_text(latency.at("max").number()));
 }
 
 }  // namespace slew::device_node

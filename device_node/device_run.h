@@ -21,6 +21,7 @@ struct DeviceOptions {
 
 // Lines of a supervised device for its supervisor.
 inline constexpr std::string_view kAliveLine = "alive";
+inline constexpr std::string_view kRestLine = "comes to rest";  // after the session, in the place of "alive"
 inline constexpr std::string_view kSummaryPrefix = "summary: ";
 
 // Until the session ends or a signal comes. report: takes lines for the user. Result: what it did. Throws Failure or

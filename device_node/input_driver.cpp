@@ -12,20 +12,6 @@ namespace {
 constexpr std::size_t kMostPending = 256;
 constexpr std::int64_t kNoticeIntervalNs = 1'000'000'000;
 
-bool is_met(const scene::Condition& condition, double value) {
-  switch (condition.comparison) {
-    case devices::Comparison::above:
-      return value > condition.threshold.value;
-    case devices::Comparison::at_least:
-      return value >= condition.threshold.value;
-    case devices::Comparison::below:
-      return value < condition.threshold.value;
-    case devices::Comparison::at_most:
-      return value <= condition.threshold.value;
-  }
-  return false;
-}
-
 Json seconds(std::int64_t ns) {
   return Json(static_cast<double>(ns) * 1e-9);
 }
@@ -105,7 +91,7 @@ void InputDriver::take(const wire::VariableBlock& block, std::int64_t now_ns) {
     const auto value = value_of(place);
     if (!value) continue;
     Watched& watched = conditions_[place.at];
-    watched.is_met = std::isfinite(*value) ? std::optional(is_met(watched.condition, *value)) : std::nullopt;
+    watched.is_met = std::isfinite(*value) ? std::optional(watched.condition.is_met(*value)) : std::nullopt;
   }
 }
 

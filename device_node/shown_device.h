@@ -9,6 +9,7 @@
 #include "core/json.h"
 #include "device_node/can_bus.h"
 #include "device_node/input_device.h"
+#include "device_node/packet_sender.h"
 #include "device_node/signal_feed.h"
 #include "scene/devices.h"
 
@@ -22,8 +23,14 @@ class ShownDevice {
   ShownDevice& operator=(const ShownDevice&) = delete;
 
   [[nodiscard]] virtual SignalFeed& feed() noexcept = 0;
-  // Called some 50 times a second: looks for an interface that has left.
+  // Called some 50 times a second, and when it is due: looks for an interface that has left, steps what moves by
+  // itself.
   virtual void look_after(std::int64_t /*now_ns*/) {}
+  // Monotonic time of its next step; the largest: none.
+  [[nodiscard]] virtual std::int64_t due_ns() const noexcept { return INT64_MAX; }
+  // The session is over, or a stop was requested: it comes to rest by look_after().
+  virtual void leave_session() {}
+  [[nodiscard]] virtual bool is_at_rest() const noexcept { return true; }
   // Its own counts and those of its feed.
   [[nodiscard]] virtual Json counts() const = 0;
   // Sentences for the user since the last call.
@@ -37,12 +44,15 @@ class ShownDevice {
 };
 
 // False: the system did not take it.
-using SendBytes = std::function<bool(std::span<const std::byte>)>;
 using SendFrame = std::function<bool(const CanFrame&)>;
 
 // With a sender of the caller's, for tests; without, on the network. Throws Failure.
 [[nodiscard]] std::unique_ptr<ShownDevice> open_udp_out(const scene::UdpOutDef& def, const scene::OutputsDef& outputs,
                                                         Reach reach, SendBytes send = nullptr);
+// gravity: of the scene, m/s2 in Ground.
+[[nodiscard]] std::unique_ptr<ShownDevice> open_motion_platform(const scene::MotionPlatformDef& def,
+                                                                const scene::OutputsDef& outputs, const Triple& gravity,
+                                                                Reach reach, SendBytes send = nullptr);
 [[nodiscard]] std::unique_ptr<ShownDevice> open_can_out(const scene::CanOutDef& def, const scene::OutputsDef& outputs,
                                                         SendFrame send = nullptr);
 

@@ -71,7 +71,7 @@ void SignalFeed::take(const wire::VariableBlock& block, double time) {
   // on the grid of `every`, unless steps are farther apart
   next_time_ = std::max(next_time_ + every_, time + kHalfNanosecond);
   for (std::size_t i = 0; i < sources_.size(); ++i) shown_[i] = value_of(sources_[i], *values);
-  show_(shown_);
+  show_({time, epoch_, shown_});
 }
 
 void SignalFeed::step_outputs(const std::vector<double>& values, double dt) {

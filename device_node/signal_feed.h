@@ -1,8 +1,8 @@
 // Values of a session for a device that shows them: variables, and outputs of the scene.
 //
 // The values are those of one step: they are made when all variables of that step have arrived, at the earliest `every`
-// of the session's time after the ones before. A session that stands still makes none. Outputs follow every published
-// step, also between.
+// of the session's time after the ones before; 0: in every published step. A session that stands still makes none.
+// Outputs follow every published step, also between.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,16 @@ struct FedSignal {
   std::string variable, output;
 };
 
+// Values of one step.
+struct FedValues {
+  double time = 0;  // of the step in the session, s
+  std::uint32_t epoch = 0;
+  std::span<const double> values;  // one for each signal
+};
+
 class SignalFeed {
  public:
-  using Show = std::function<void(std::span<const double>)>;  // one for each signal
+  using Show = std::function<void(const FedValues&)>;
 
   SignalFeed(const std::vector<FedSignal>& signals, const scene::OutputsDef& outputs, double every, Show show);
 

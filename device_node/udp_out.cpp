@@ -1,6 +1,5 @@
+#include "device_node/packet_sender.h"
 #include "device_node/shown_device.h"
-#include "device_node/udp_socket.h"
-#include "devices/packet.h"
 
 namespace slew::device_node {
 namespace {
@@ -8,25 +7,16 @@ namespace {
 class UdpOut final : public ShownDevice {
  public:
   UdpOut(const scene::UdpOutDef& def, const scene::OutputsDef& outputs, SendBytes send)
-      : layout_(build(def.layout)),
-        feed_(signals_of(layout_), outputs, def.every, [this](std::span<const double> values) { show(values); }),
-        packet_(layout_.size),
-        send_(std::move(send)) {
-    if (send_) return;
-    send_ = [this, to = *devices::parse_udp_address(def.send)](std::span<const std::byte> bytes) {
-      return socket_->send(to, bytes);
-    };
-    socket_ = std::make_unique<UdpSocket>();
-    add_notice("sends to " + def.send);
+      : sender_(def.layout, def.send, std::move(send)),
+        feed_(signals_of(sender_.layout()), outputs, def.every,
+              [this](const FedValues& fed) { sender_.send(fed.values); }) {
+    if (sender_.is_on_network()) add_notice("sends to " + def.send);
   }
 
   [[nodiscard]] SignalFeed& feed() noexcept override { return feed_; }
   [[nodiscard]] Json counts() const override {
     Json json = feed_.counts();
-    json["sent"] = sent_;
-    json["unsent"] = unsent_;
-    json["not_finite"] = state_.counts.of(devices::PacketFault::not_finite);
-    json["held"] = state_.counts.held;
+    sender_.add_counts(json);
     return json;
   }
 
@@ -38,18 +28,8 @@ class UdpOut final : public ShownDevice {
     return signals;
   }
 
-  void show(std::span<const double> values) {
-    if (encode(layout_, values, state_, packet_) != devices::PacketFault::none) return;
-    ++(send_(packet_) ? sent_ : unsent_);
-  }
-
-  devices::ByteLayout layout_;
+  PacketSender sender_;
   SignalFeed feed_;
-  devices::PacketState state_;
-  std::vector<std::byte> packet_;
-  std::unique_ptr<UdpSocket> socket_;
-  SendBytes send_;
-  std::uint64_t sent_ = 0, unsent_ = 0;
 };
 
 }  // namespace

@@ -173,8 +173,8 @@ std::string_view text_of(PlatformPhase phase) noexcept {
 void validate(const MotionPlatformDef& def, Problems& problems) {
   const std::size_t before = problems.size();
   check_fields(def.name, &def, kMotionPlatformFields, problems);
-  validate(def.name + ".washout", def.washout, problems);
-  validate(def.name + ".hexapod", def.hexapod, problems);
+  validate(def.name, def.washout, problems);
+  validate(def.name, def.hexapod, problems);
   if (problems.size() != before) return;
   // the whole way to the parked pose, and that pose itself
   const LegLengths parked = leg_lengths(def.hexapod, lowered(def, 1));

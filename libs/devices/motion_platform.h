@@ -12,6 +12,7 @@
 #include <string>
 
 #include "devices/hexapod.h"
+#include "devices/seat_motion.h"
 #include "devices/washout.h"
 
 namespace slew::devices {
@@ -37,12 +38,6 @@ enum class PlatformPhase : std::uint8_t { parked, rising, ramping_in, active, fr
 [[nodiscard]] std::string_view text_of(PlatformPhase phase) noexcept;
 
 enum class PlatformCommand : std::uint8_t { park, run };
-
-// Motion of the seat in its own axes P.
-struct SeatMotion {
-  Triple f_P{0, 0, kStandardGravity};  // specific force, m/s2
-  Triple w_P{};                        // angular velocity, rad/s
-};
 
 // Immutable. Throws Failure (bad_input) when the definition has a problem. step: s, above 0.
 struct MotionPlatform {

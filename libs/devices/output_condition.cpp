@@ -39,23 +39,9 @@ bool is_upward(Comparison comparison) {
   return comparison == Comparison::above || comparison == Comparison::at_least;
 }
 
-bool is_met(const SwitchedOutputDef& def, double value) {
-  switch (def.comparison) {
-    case Comparison::above:
-      return value > def.threshold;
-    case Comparison::at_least:
-      return value >= def.threshold;
-    case Comparison::below:
-      return value < def.threshold;
-    case Comparison::at_most:
-      return value <= def.threshold;
-  }
-  return false;
-}
-
 // Not met any more, and farther than the hysteresis from the threshold.
 bool is_left(const SwitchedOutputDef& def, double value) {
-  if (is_met(def, value)) return false;
+  if (is_met(def.comparison, value, def.threshold)) return false;
   if (def.hysteresis == 0) return true;
   return is_upward(def.comparison) ? value < def.threshold - def.hysteresis : value > def.threshold + def.hysteresis;
 }
@@ -64,6 +50,20 @@ bool is_left(const SwitchedOutputDef& def, double value) {
 
 std::span<const Field> switched_output_fields() noexcept {
   return kSwitchedOutputFields;
+}
+
+bool is_met(Comparison comparison, double value, double threshold) noexcept {
+  switch (comparison) {
+    case Comparison::above:
+      return value > threshold;
+    case Comparison::at_least:
+      return value >= threshold;
+    case Comparison::below:
+      return value < threshold;
+    case Comparison::at_most:
+      return value <= threshold;
+  }
+  return false;
 }
 
 std::optional<ConditionText> parse_condition(std::string_view path, std::string_view text, Problems& problems) {
@@ -109,8 +109,8 @@ bool step(const SwitchedOutputDef& def, double value, double dt, SwitchedOutputS
       state.time = 0;
     }
   } else if (state.is_known) {
-    state.time = is_met(def, value) ? state.time + dt : 0;
-    if (is_met(def, value) && state.time >= def.delay) {
+    state.time = is_met(def.comparison, value, def.threshold) ? state.time + dt : 0;
+    if (is_met(def.comparison, value, def.threshold) && state.time >= def.delay) {
       state.is_on = true;
       state.time = 0;
     }

@@ -21,6 +21,9 @@ namespace slew::devices {
 
 enum class Comparison : int { above, at_least, below, at_most };  // > >= < <=
 
+// False for a value that is NaN.
+[[nodiscard]] bool is_met(Comparison comparison, double value, double threshold) noexcept;
+
 // "Vol_MainPump.pressure > 250 bar" in its three parts; the quantity is for the caller's table of units.
 struct ConditionText {
   std::string variable;

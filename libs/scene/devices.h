@@ -15,7 +15,9 @@
 #include "devices/analog_output.h"
 #include "devices/byte_layout.h"
 #include "devices/enable_chain.h"
+#include "devices/motion_platform.h"
 #include "devices/output_condition.h"
+#include "devices/platform_quantities.h"
 #include "devices/stick.h"
 
 namespace slew::scene {
@@ -83,6 +85,23 @@ struct CanOutDef {
   CanBusDef bus;
 };
 
+// A hexapod under a driver's seat that follows a body's point.
+struct MotionPlatformDef {
+  std::string name;
+  std::string body;
+  devices::SeatDef seat;                // in axes of the body
+  std::vector<std::string> conditions;  // that must all be met; otherwise it parks
+  std::string send;                     // "127.0.0.1:6000"
+  double every = 0.005;                 // s of the wall clock between two packets
+  devices::LayoutDef layout;            // fields name variables "NAME.leg_1" of the platform and those of the session
+  devices::MotionPlatformDef platform;
+
+  // The quantity of the platform that the field has; null: it has none.
+  [[nodiscard]] const devices::PlatformQuantity* own_quantity(const devices::LayoutFieldDef& field) const;
+  // Names of the ten variables of the body, in the order of velocity, orientation (w first) and angular velocity.
+  [[nodiscard]] std::vector<std::string> body_variables() const;
+};
+
 // A quantity of any dimension, such as "250 bar" for a variable of which only its node has the unit.
 struct AnyQuantity {
   double value = 0;  // SI
@@ -94,6 +113,9 @@ struct Condition {
   std::string variable;
   devices::Comparison comparison{};
   AnyQuantity threshold;
+
+  // False for a value that is NaN.
+  [[nodiscard]] bool is_met(double value) const noexcept { return devices::is_met(comparison, value, threshold.value); }
 };
 
 // A lamp, buzzer or contact.
@@ -117,6 +139,7 @@ struct DevicesDef {
   std::vector<UdpOutDef> udp_outs;
   std::vector<CanInDef> can_ins;
   std::vector<CanOutDef> can_outs;
+  std::vector<MotionPlatformDef> platforms;
 
   // Names of all devices, in the order above.
   [[nodiscard]] std::vector<std::string> names() const;
@@ -135,6 +158,7 @@ inline constexpr std::size_t kMaxDevices = 16;  // each is a process
 [[nodiscard]] std::span<const Field> can_in_fields();    // without the list
 [[nodiscard]] std::span<const Field> can_out_fields();   // without the list
 [[nodiscard]] std::span<const Field> can_signal_fields() noexcept;
+[[nodiscard]] std::span<const Field> motion_platform_fields();  // without the list
 [[nodiscard]] std::span<const Field> switched_fields();
 [[nodiscard]] std::span<const Field> analog_fields();
 
@@ -152,6 +176,9 @@ void read_database(const std::string& device, CanBusDef& bus, const std::string&
 void read_outputs(OutputsDef& outputs, Problems& problems);
 // The same for devices, and their use of inputs.
 void read_devices(DevicesDef& devices, std::span<const InputDef> inputs, Problems& problems);
+
+// Rules between a platform and the rest of the scene. gravity: m/s2, Ground; publish_interval: of variables, s.
+void check_platform(const MotionPlatformDef& def, const Triple& gravity, double publish_interval, Problems& problems);
 
 // Variables that outputs, conditions and fields name, with the path of each text, and the unit of the quantity that
 // they are compared with; empty: none.

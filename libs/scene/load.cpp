@@ -419,6 +419,9 @@ class SceneReader {
       if (!errors.empty()) return;
       read_outputs(scene_.outputs, errors);
       read_devices(scene_.devices, scene_.inputs, errors);
+      const double interval = scene_.session.step * static_cast<double>(scene_.recording.every);
+      for (const MotionPlatformDef& device : scene_.devices.platforms)
+        check_platform(device, scene_.mechanics.gravity, interval, errors);
     });
     if (report_.size() > problems) return;
     for (const NamedVariable& named : variables_of(scene_.devices, scene_.outputs))

@@ -172,6 +172,14 @@ void add_devices(std::vector<ElementTable>& tables) {
        .append = [](Scene& scene, const std::string& name) { return append_named(scene.devices.can_outs, name); },
        .lists = signal_lists<CanOutDef>()});
   tables.push_back(
+      {.section = "devices",
+       .type = "motion_platform",
+       .kind = "device",
+       .doc = "hexapod under a driver's seat that follows a body's point: classical washout, legs by UDP",
+       .fields = motion_platform_fields(),
+       .append = [](Scene& scene, const std::string& name) { return append_named(scene.devices.platforms, name); },
+       .lists = layout_lists<MotionPlatformDef>()});
+  tables.push_back(
       {.section = "outputs",
        .type = "switched",
        .kind = "output",
@@ -341,6 +349,7 @@ std::vector<ElementRef> elements(Scene& scene) {
   collect(refs, table_of("devices", "udp_out"), scene.devices.udp_outs);
   collect(refs, table_of("devices", "can_in"), scene.devices.can_ins);
   collect(refs, table_of("devices", "can_out"), scene.devices.can_outs);
+  collect(refs, table_of("devices", "motion_platform"), scene.devices.platforms);
   collect(refs, table_of("plots", ""), scene.plots);
   return refs;
 }

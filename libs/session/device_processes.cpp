@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 
+#include "core/display.h"
 #include "core/installation.h"
 #include "core/time.h"
 #include "device_node/device_run.h"
@@ -16,10 +17,27 @@ namespace {
 constexpr std::int64_t kHangNs = 2'000'000'000;         // four signs of life
 constexpr std::int64_t kEndByItselfNs = 2'000'000'000;  // after the session
 constexpr std::int64_t kEndBySignalNs = 1'000'000'000;
+constexpr std::int64_t kLongestRestNs = 200'000'000'000;  // hold, washing back and lowering have 60 s at most each
 constexpr int kDeviceRoundMs = 20;
 constexpr std::string_view kProgram = "device_node: ";
 
 }  // namespace
+
+std::string to_text(const DeviceOutcome& device) {
+  std::string text;
+  if (!device.fault.empty()) text += "ended early, its inputs went to neutral: " + device.fault + "; ";
+  if (device.hangs > 0) text += counted(device.hangs, "time", "times") + " without a sign of life for 2 s; ";
+  return text + (device.summary ? device_node::summary_text(*device.summary) : "no summary");
+}
+
+Json to_json(const std::vector<DeviceOutcome>& devices) {
+  Json json = Json::object();
+  for (const DeviceOutcome& device : devices) {
+    json[device.name] = {
+        {"fault", device.fault}, {"hangs", device.hangs}, {"summary", device.summary.value_or(Json())}};
+  }
+  return json;
+}
 
 void DeviceProcesses::start(const std::string& name, const std::vector<std::string>& arguments) {
   outcomes_.push_back({.name = name, .summary = std::nullopt, .fault = "", .hangs = 0});
@@ -39,6 +57,10 @@ void DeviceProcesses::take_line(std::size_t i, const std::string& line, std::int
   if (device.is_hanging) report_(fmt::format("device {}: answers again", outcomes_[i].name));
   device.is_hanging = false;
   if (line == device_node::kAliveLine) return;
+  if (line == device_node::kRestLine) {
+    device.rest_ns = now_ns;
+    return;
+  }
   if (line.starts_with(device_node::kSummaryPrefix)) {
     outcomes_[i].summary = Json::parse(line.substr(device_node::kSummaryPrefix.size()));
     return;
@@ -94,7 +116,12 @@ void DeviceProcesses::finish() {
     const std::int64_t now_ns = monotonic_ns();
     look_after(now_ns);
     if (std::all_of(devices_.begin(), devices_.end(), [](const Device& device) { return device.is_reported; })) return;
-    const std::int64_t waited_ns = now_ns - begin_ns;
+    std::int64_t ended_ns = begin_ns;
+    if (now_ns - begin_ns < kLongestRestNs) {
+      for (const Device& device : devices_)
+        if (!device.is_reported) ended_ns = std::max(ended_ns, device.rest_ns);
+    }
+    const std::int64_t waited_ns = now_ns - ended_ns;
     const int due = waited_ns < kEndByItselfNs ? 0 : waited_ns < kEndByItselfNs + kEndBySignalNs ? SIGTERM : SIGKILL;
     if (due != sent) send_to_all(due);
     sent = due;

@@ -23,6 +23,12 @@ struct DeviceOutcome {
   std::uint64_t hangs = 0;      // times without a sign of life for 2 s
 };
 
+// How it ended, its counts and its latency from an event to the first sample that used it, in one line without its
+// name.
+[[nodiscard]] std::string to_text(const DeviceOutcome& device);
+// By name.
+[[nodiscard]] Json to_json(const std::vector<DeviceOutcome>& devices);
+
 class DeviceProcesses {
  public:
   // report: takes lines for the user.
@@ -32,7 +38,8 @@ class DeviceProcesses {
   void start(const std::string& name, const std::vector<std::string>& arguments);
   void add_outputs(std::vector<int>& descriptors) const;
   void look_after(std::int64_t now_ns);
-  // After the session: waits until all have ended, and ends those that do not by themselves. outcomes() is then whole.
+  // After the session: waits until all have ended, and ends those that do not by themselves. One that comes to rest, as
+  // a motion platform that parks, has time for it. outcomes() is then whole.
   void finish();
   [[nodiscard]] const std::vector<DeviceOutcome>& outcomes() const noexcept { return outcomes_; }
 
@@ -42,6 +49,7 @@ class DeviceProcesses {
     std::int64_t alive_ns = 0;
     bool is_hanging = false;
     bool is_reported = false;  // its end
+    std::int64_t rest_ns = 0;  // of its last line that it comes to rest; 0: none
     std::string last_error{};  // line
   };
 

@@ -166,6 +166,7 @@ void run_cell(const StressOptions& options, const io_node::SessionScene& session
   is_refusal_reported = outcome.is_refusal_reported;
   watch.finish();
   conclude(outcome, scene.session.steps(), of_load, cell);
+  cell.devices = outcome.devices;
   cell.step = scene.session.step;
   if (outcome.view.has_session()) cell.roles = outcome.view.session().required_roles;
   for (const Role role : wire::kNodeRoles) cell.nodes[static_cast<std::size_t>(role)] = outcome.view.node(role).health;

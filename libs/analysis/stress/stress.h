@@ -54,8 +54,9 @@ struct StressCell {
   wire::Health yardstick;
   std::vector<YardstickLoop> yardstick_loops;
   MachineActivity around_session, around_yardstick;
-  std::string books;          // imbalance of the books; empty: they balance
-  plotting::Series response;  // largest of every 0.1 s over the session's time
+  std::vector<session::DeviceOutcome> devices;  // of the scene
+  std::string books;                            // imbalance of the books; empty: they balance
+  plotting::Series response;                    // largest of every 0.1 s over the session's time
 };
 
 struct Stress {

@@ -99,16 +99,18 @@ ReportTable table_of(const Stress& stress) {
   return table;
 }
 
+std::string cell_text(const StressCell& cell) {
+  return fmt::format("{}, load {}, {:g} us", to_text(cell.scheduling), to_text(cell.load), cell.work_us);
+}
+
 std::string books_of(const StressCell& cell) {
   const wire::Health& io = session_of(cell);
   const auto step_ns = static_cast<std::int64_t>(std::llround(cell.step * 1e9));
   const std::int64_t slips_ns = static_cast<std::int64_t>(io.steps_skipped) * step_ns;
-  return fmt::format(
-      "{}, load {}, {:g} us: {} steps due = {} run + {} skipped + {} behind; lag {} us = slips {} us + rest "
-      "{} us{}",
-      to_text(cell.scheduling), to_text(cell.load), cell.work_us, io.steps_due, io.header.step, io.steps_skipped,
-      io.rest_ns < 0 ? 0 : io.rest_ns / step_ns + 1, io.lag_ns / 1000, slips_ns / 1000, io.rest_ns / 1000,
-      cell.books.empty() ? "" : "  DO NOT BALANCE: " + cell.books);
+  return fmt::format("{}: {} steps due = {} run + {} skipped + {} behind; lag {} us = slips {} us + rest {} us{}",
+                     cell_text(cell), io.steps_due, io.header.step, io.steps_skipped,
+                     io.rest_ns < 0 ? 0 : io.rest_ns / step_ns + 1, io.lag_ns / 1000, slips_ns / 1000,
+                     io.rest_ns / 1000, cell.books.empty() ? "" : "  DO NOT BALANCE: " + cell.books);
 }
 
 Json json_of(const wire::Quantiles& q) {
@@ -178,6 +180,7 @@ Json json_of(const StressCell& cell, const StressBounds& bounds) {
                    {"rest", static_cast<double>(io.rest_ns) * 1e-9},
                    {"balance", cell.books.empty()},
                    {"problem", cell.books}};
+  json["devices"] = session::to_json(cell.devices);
   json["nodes"] = Json::object();
   for (const Role role : wire::kNodeRoles) {
     if (role == Role::io || (cell.roles & bit(role)) == 0) continue;
@@ -197,6 +200,10 @@ std::string report_text(const Stress& stress, std::size_t width) {
   std::string text = heading(stress) + "\n" + table_of(stress).text("", width);
   for (const StressCell& cell : stress.cells) {
     if (has_stepped(cell)) text += books_of(cell) + "\n";
+  }
+  for (const StressCell& cell : stress.cells) {
+    for (const session::DeviceOutcome& device : cell.devices)
+      text += fmt::format("{}: device {}: {}\n", cell_text(cell), device.name, session::to_text(device));
   }
   for (const StressCell& cell : stress.cells) {
     for (const std::string& message : cell.messages) text += message + "\n";

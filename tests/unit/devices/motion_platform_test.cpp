@@ -431,19 +431,17 @@ TEST(MotionPlatform, RefusesWrongDefinitions) {
   EXPECT_EQ(with([](auto& d) { d.ramp_time = 61; }), "Platform.ramp_time: 61 is out of range");
   EXPECT_EQ(with([](auto& d) { d.freeze_after = 0; }), "Platform.freeze_after: 0 is out of range");
   EXPECT_EQ(with([](auto& d) { d.hold_time = NAN; }), "Platform.hold_time: nan is out of range");
-  EXPECT_EQ(with([](auto& d) { d.hexapod.base_joints.pop_back(); }), "Platform.hexapod.base_joints: 5 joints");
-  EXPECT_EQ(with([](auto& d) { d.hexapod.platform_joints.push_back({}); }),
-            "Platform.hexapod.platform_joints: 7 joints");
-  EXPECT_EQ(with([](auto& d) { d.hexapod.base_joints[0][0] = NAN; }),
-            "Platform.hexapod.base_joints: nan is out of range");
+  EXPECT_EQ(with([](auto& d) { d.hexapod.base_joints.pop_back(); }), "Platform.base_joints: 5 joints");
+  EXPECT_EQ(with([](auto& d) { d.hexapod.platform_joints.push_back({}); }), "Platform.platform_joints: 7 joints");
+  EXPECT_EQ(with([](auto& d) { d.hexapod.base_joints[0][0] = NAN; }), "Platform.base_joints: nan is out of range");
   EXPECT_EQ(with([](auto& d) { d.hexapod.longest_leg = 1; }),
-            "Platform.hexapod.longest_leg: 1 m is not above shortest_leg, 1.1 m");
+            "Platform.longest_leg: 1 m is not above shortest_leg, 1.1 m");
   EXPECT_EQ(with([](auto& d) { d.hexapod.longest_leg = 1.35; }),
-            "Platform.hexapod.neutral_height: leg 1 is 1.401 m long in neutral");
-  EXPECT_EQ(with([](auto& d) { d.hexapod.neutral_height = 0; }), "Platform.hexapod.neutral_height: 0 is out of range");
+            "Platform.neutral_height: leg 1 is 1.401 m long in neutral");
+  EXPECT_EQ(with([](auto& d) { d.hexapod.neutral_height = 0; }), "Platform.neutral_height: 0 is out of range");
   const auto washout = [&](auto change, const char* key) {
     const std::string text = with([&](auto& d) { change(d.washout); });
-    return text.starts_with("Platform.washout." + std::string(key) + ": ") && text.ends_with("is out of range");
+    return text.starts_with("Platform." + std::string(key) + ": ") && text.ends_with("is out of range");
   };
   EXPECT_TRUE(washout([](auto& w) { w.force_scale[0] = -1; }, "force_scale"));
   EXPECT_TRUE(washout([](auto& w) { w.rate_scale[0] = 11; }, "rate_scale"));
