@@ -320,11 +320,12 @@ void Command::action(Action action) {
 }
 
 std::string Command::help() const {
-  std::string name;
+  std::string name = app_->get_name();
   for (const CLI::App* app = app_->get_parent(); app != nullptr; app = app->get_parent()) {
-    name = app->get_name() + (name.empty() ? "" : " " + name);
+    name = app->get_name() + " " + name;
   }
-  return app_->help(name);
+  // App::help() gives that of the verb that was parsed
+  return app_->get_formatter()->make_help(app_, name, CLI::AppFormatMode::Normal);
 }
 
 CommandText Command::text() const {
