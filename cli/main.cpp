@@ -28,9 +28,8 @@ int main(int argc, char** argv) {
       "Exit codes: 0 ok, 1 failed, 2 usage or bad input or refused, 3 losses, 4 node lost, 5 diverged, 6 storage,\n"
       "7 resources or packages, 130 and 143 ended by a signal.\n\n"
       "Environment: SLEWRING_DOMAIN, SLEWRING_INTERFACE, SLEWRING_KEYS and SLEWRING_MIDDLEWARE stand for the options\n"
-      "--domain, --interface, --keys and --middleware where these are not given. Controllers that use the client "
-      "library\ntake SLEWRING_KEYS, SLEWRING_IDENTITY and SLEWRING_INSECURE_LAN=1. With NO_COLOR a\nterminal shows no "
-      "colours.");
+      "--domain, --interface, --keys and --middleware where these are not given. Controllers with the client library\n"
+      "take SLEWRING_KEYS, SLEWRING_IDENTITY and SLEWRING_INSECURE_LAN=1. NO_COLOR: no colours on a terminal.");
   program.require_command();
   for (const auto add :
        {cli::add_run,      cli::add_check,    cli::add_describe,      cli::add_import,   cli::add_variables,
