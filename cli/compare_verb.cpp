@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "analysis/comparison/comparison_report.h"
-#include "cli/picture_name.h"
 #include "cli/progress_line.h"
 #include "cli/terminal.h"
 #include "cli/verbs.h"
@@ -109,8 +108,7 @@ void add_compare(options::Command& program) {
       .value_name("SOURCE")
       .show_default();
   verb.option("-o,--output", options->picture, "picture, .svg or .html; without it SCENE_compare.svg")
-      .value_name("FILE")
-      .check(problem_of_picture_name, "");
+      .value_name("FILE");
   verb.option("--csv", options->csv, "write the table as comma-separated values too").value_name("FILE");
   verb.flag("--json", options->is_json, "print the table as JSON and nothing else");
   verb.flag("--quiet", options->is_quiet, "no progress");
