@@ -89,6 +89,35 @@ TEST(StressVerdict, StepsThatWereGivenUpAreMissesAndHaveAColumn) {
   EXPECT_NE(report_html(stress).find("a cell: 30.100 % of 8000 steps missed, 2400 of them skipped"), std::string::npos);
 }
 
+TEST(StressReport, HasTheLatencyOfEachDevice) {
+  Stress stress;
+  StressCell& cell = stress.cells.emplace_back();
+  cell.steps = 6000;
+  cell.step = 1e-3;
+  cell.load = Load::mixed;
+  session::DeviceOutcome& rig = cell.devices.emplace_back();
+  rig.name = "Rig";
+  rig.summary =
+      Json{{"packets", {{"used", 500}, {"lost", 3}, {"refused", Json::object()}}},
+           {"inputs", {{"written", 490}, {"latency", {{"count", 480}, {"p50", 2e-3}, {"p99", 4e-3}, {"max", 9e-3}}}}}};
+  cell.devices.push_back(
+      {.name = "Stick", .summary = std::nullopt, .fault = "killed by signal 9 (Killed)", .hangs = 1});
+  const std::string text = report_text(stress);
+  EXPECT_NE(
+      text.find("normal, load mixed, 0 us: device Rig: 500 packets used, 3 lost; 490 values written; 2 ms from "
+                "an event to the first sample that used it, 4 ms p99, 9 ms max\n"),
+      std::string::npos)
+      << text;
+  EXPECT_NE(
+      text.find("device Stick: ended early, its inputs went to neutral: killed by signal 9 (Killed); 1 time without "
+                "a sign of life for 2 s; no summary\n"),
+      std::string::npos)
+      << text;
+  const auto devices = nlohmann::json::parse(report_json(stress)).at("cells").at(0).at("devices");
+  EXPECT_EQ(devices.at("Rig").at("summary").at("inputs").at("latency").at("p99"), 4e-3);
+  EXPECT_EQ(devices.at("Stick").at("hangs"), 1);
+}
+
 TEST(StressVerdict, IsGivenOfWhatIsStatedAlone) {
   EXPECT_EQ(report_of(timing(1, 1), timing(1, 1), {}).verdict, "");
   EXPECT_EQ(report_of(timing(1, 1), timing(1, 1), {}).code, 0);
