@@ -40,9 +40,9 @@ struct Seat {
 // Published motion of the body at one instant.
 struct BodyMotion {
   double time = 0;  // of the session, s
-  math::Quaternion q_WB;
-  math::Vec3 v_WB;  // of the body's origin, m/s
-  math::Vec3 w_WB;  // rad/s
+  math::Quaternion q_WB{};
+  math::Vec3 v_WB{};  // of the body's origin, m/s
+  math::Vec3 w_WB{};  // rad/s
 };
 
 // Motion of the seat in its own axes P.
