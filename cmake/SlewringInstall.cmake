@@ -9,7 +9,8 @@ include(GNUInstallDirs)
 
 set(private lib/slewring)  # of Slewring alone: no part of the library path, and not named after the processor
 set(shared ${CMAKE_INSTALL_DATADIR})
-set(nodes mechanics_node hydraulics_node flex_node sensor_node io_node recorder_node device_node)
+# every folder X_node has a program of its name
+file(GLOB nodes LIST_DIRECTORIES true CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} *_node)
 
 # ---- program
 install(TARGETS slewring RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)

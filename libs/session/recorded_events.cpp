@@ -33,6 +33,11 @@ std::string request_text(const wire::ControlReply& reply, const Requests& reques
   return request == requests.end() ? "request" : node::to_text(request->second);
 }
 
+// A value that was read; one `param list` reads hundreds.
+bool is_answered_read(const wire::ControlReply& reply, const Requests& requests) {
+  return reply.is_accepted && reply.request != 0 && request_text(reply, requests).starts_with("get ");
+}
+
 std::string lease_text(const wire::ControllerLease& lease) {
   const char* const what = !lease.is_granted ? "does not have" : lease.holder.empty() ? "has released" : "has";
   return with_reason(fmt::format("controller {} {} channel {}", lease.controller, what, lease.channel), lease.reason);
@@ -91,6 +96,7 @@ std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
       }
     } else if (transport::decode(message.payload, reply)) {
       if (reply.request != 0 && !answered.insert(reply.request).second) return Visit::go_on;
+      if (is_answered_read(reply, requests)) return Visit::go_on;
       const std::string answer = reply.is_accepted ? " accepted" : " refused";
       const std::string text =
           reply.request == 0 ? reply.reason : with_reason(request_text(reply, requests) + answer, reply.reason);

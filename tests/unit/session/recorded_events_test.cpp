@@ -91,6 +91,21 @@ TEST_F(Events, ListAResentReplyOnce) {
   EXPECT_EQ(event_texts().size(), 1u);
 }
 
+TEST_F(Events, AreNoReadsUnlessRefused) {
+  wire::ControlRequest read = param_set();
+  read.action = wire::ControlAction::get_parameter;
+  write_message(read);
+  write_message(accepted(""));  // of an earlier recording
+  wire::ControlReply reply = accepted("get Bag.mass");
+  reply.request = kRequest + 1;
+  write_message(reply);
+  reply.request = kRequest + 2;
+  reply.is_accepted = false;
+  reply.reason = "there is no parameter of that name";
+  write_message(reply);
+  EXPECT_EQ(event_texts(), std::vector<std::string>{"get Bag.mass refused: there is no parameter of that name"});
+}
+
 TEST_F(Events, WithoutEitherAreARequest) {
   write_message(accepted(""));
   EXPECT_EQ(event_texts(), std::vector<std::string>{"request accepted"});
