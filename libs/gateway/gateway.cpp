@@ -345,7 +345,8 @@ void Gateway::report_left_out(std::int64_t now_ns) {
 void Gateway::poll(const observer::SessionView& view, std::int64_t now_ns) {
   view_ = &view;
   if (first_poll_ns_ == 0) first_poll_ns_ = now_ns;
-  const bool has_names = view.has_whole_directory() || now_ns - first_poll_ns_ > kDirectoryNs;
+  const bool has_names =
+      def_.playback != nullptr || view.has_whole_directory() || now_ns - first_poll_ns_ > kDirectoryNs;
   if (has_names && view.places().size() != built_places_) build_channels(view);
   watch_nodes(view);
   if (def_.playback == nullptr) {
