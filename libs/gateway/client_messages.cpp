@@ -183,7 +183,7 @@ ClientMessage message_of(std::string_view bytes) {
     case ClientOpcode::playback_control:
       return playback_control_of(fields);
   }
-  refuse("this server does not know the opcode of the binary message");
+  refuse("the opcode of the binary message is not one of this server's");
 }
 
 // A problem may show the client's own text.

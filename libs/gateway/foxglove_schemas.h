@@ -1,5 +1,5 @@
-// JSON schemas of the messages that Foxglove and Lichtblick know by name (foxglove-sdk, schemas/jsonschema), with the
-// members that the gateway sends.
+// JSON schemas of the messages that Foxglove and Lichtblick recognise by name (foxglove-sdk, schemas/jsonschema), with
+// the members that the gateway sends.
 #pragma once
 
 #include <string>

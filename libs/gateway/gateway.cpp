@@ -95,11 +95,10 @@ std::string Gateway::server_info() const {
   return to_text(info);
 }
 
-std::optional<ClientId> Gateway::connect(Subprotocol subprotocol) {
+std::optional<ClientId> Gateway::connect() {
   if (clients_.size() >= kMostClients) return std::nullopt;
   const ClientId id = ++last_client_;
-  Client& client = clients_[id];
-  client.subprotocol = subprotocol;
+  Client& client = clients_.try_emplace(id, def_.most_event_bytes).first->second;
   push(client, text_frame(server_info()));
   std::vector<ChannelInfo> infos;
   for (const Channel& channel : channels_) infos.push_back(channel.info);
@@ -125,7 +124,8 @@ const std::string& Gateway::close_reason(ClientId client) const {
 
 void Gateway::push(Client& client, Frame event) {
   if (client.outbox.push(std::move(event)) || !client.close_reason.empty()) return;
-  client.close_reason = "events waited for this client beyond 32 MiB; connect again";
+  client.close_reason = fmt::format("more than {} bytes of events wait for this client; read them, or connect again",
+                                    def_.most_event_bytes);
 }
 
 void Gateway::send_status(Client& client, StatusLevel level, std::string_view message, std::string_view id) {
@@ -174,10 +174,10 @@ std::string Gateway::session_body() const {
                      {"refused", node.health.refused_messages}});
   }
   Json holders = Json::object();
-  for (const auto& [input, holder] : holders_) holders[input] = holder;
+  for (const auto& [input, holder] : seen_.holders) holders[input] = holder;
   return Json({{"step", snapshot_.step()},
                {"time", static_cast<double>(time_ns_) * 1e-9},
-               {"is_paused", was_paused_},
+               {"is_paused", seen_.is_paused},
                {"clients", clients_.size()},
                {"holders", std::move(holders)},
                {"nodes", std::move(nodes)}})
@@ -208,7 +208,7 @@ void Gateway::begin_epoch(std::uint32_t epoch) {
   snapshot_.forget_values();
   inputs_.take_epoch(epoch);
   if (!is_reset) return;
-  holders_.clear();
+  seen_.holders.clear();
   parameters_.refresh();
   for (auto& [id, client] : clients_) {
     push(client, text_frame(server_info()));
@@ -219,7 +219,7 @@ void Gateway::begin_epoch(std::uint32_t epoch) {
 
 void Gateway::take_lease(const wire::ControllerLease& lease) {
   inputs_.take(lease);
-  std::string& holder = holders_[lease.channel];
+  std::string& holder = seen_.holders[lease.channel];
   if (holder == lease.holder) return;
   holder = lease.holder;
   add_event(LogLevel::info, "io",
@@ -315,11 +315,11 @@ void Gateway::publish_playback(std::int64_t now_ns) {
 }
 
 void Gateway::watch_nodes(const observer::SessionView& view) {
-  if (const bool is_paused = view.is_paused(); is_paused != std::exchange(was_paused_, is_paused))
+  if (const bool is_paused = view.is_paused(); is_paused != std::exchange(seen_.is_paused, is_paused))
     add_event(LogLevel::info, "io", is_paused ? "the session is paused" : "the session goes on");
   for (const wire::Role role : wire::kNodeRoles) {
     const observer::NodeView& node = view.node(role);
-    wire::NodeState& state = states_[static_cast<std::size_t>(role)];
+    wire::NodeState& state = seen_.states[static_cast<std::size_t>(role)];
     if (!node.is_known || node.status.state == state) continue;
     state = node.status.state;
     const bool is_bad = state == wire::NodeState::holding || state == wire::NodeState::fault;
@@ -344,19 +344,19 @@ void Gateway::report_left_out(std::int64_t now_ns) {
 
 void Gateway::poll(const observer::SessionView& view, std::int64_t now_ns) {
   view_ = &view;
-  if (first_poll_ns_ == 0) first_poll_ns_ = now_ns;
+  if (times_.first_poll_ns == 0) times_.first_poll_ns = now_ns;
   const bool has_names =
-      def_.playback != nullptr || view.has_whole_directory() || now_ns - first_poll_ns_ > kDirectoryNs;
+      def_.playback != nullptr || view.has_whole_directory() || now_ns - times_.first_poll_ns > kDirectoryNs;
   if (has_names && view.places().size() != built_places_) build_channels(view);
   watch_nodes(view);
   if (def_.playback == nullptr) {
-    if (now_ns >= next_request_ns_ && !snapshot_.is_requested()) {
+    if (now_ns >= times_.next_request_ns && !snapshot_.is_requested()) {
       snapshot_.request();
-      requested_ns_ = now_ns;
-      next_request_ns_ = std::max(next_request_ns_ + kFrameNs, now_ns);
+      times_.requested_ns = now_ns;
+      times_.next_request_ns = std::max(times_.next_request_ns + kFrameNs, now_ns);
     }
     const StepIndex shown = snapshot_.step();
-    const bool stands = snapshot_.is_requested() && now_ns - requested_ns_ > kStandstillNs;
+    const bool stands = snapshot_.is_requested() && now_ns - times_.requested_ns > kStandstillNs;
     if (stands && built_places_ > 0 && snapshot_.take(view) && snapshot_.step() != shown)
       publish(static_cast<std::uint64_t>(start_of(snapshot_.step(), {view.session().step_ns}).ns));
   }
@@ -370,8 +370,8 @@ void Gateway::poll(const observer::SessionView& view, std::int64_t now_ns) {
                   "no value for input " + input + " came for 150 ms; it was put to neutral", "silent " + input);
     });
   }
-  if (now_ns < next_second_ns_) return;
-  next_second_ns_ = now_ns + kOneSecondNs;
+  if (now_ns < times_.next_second_ns) return;
+  times_.next_second_ns = now_ns + kOneSecondNs;
   report_left_out(now_ns);
 }
 

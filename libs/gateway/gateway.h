@@ -29,7 +29,6 @@
 #include "core/json.h"
 #include "gateway/client_inputs.h"
 #include "gateway/client_messages.h"
-#include "gateway/door.h"
 #include "gateway/event_log.h"
 #include "gateway/frame.h"
 #include "gateway/live_parameters.h"
@@ -57,26 +56,40 @@ class Playback {
   [[nodiscard]] virtual PlaybackState state(std::int64_t now_ns) const = 0;
 };
 
+// The saved states of a live session, in files.
+class SavedStates {
+ public:
+  SavedStates() = default;
+  SavedStates(const SavedStates&) = delete;
+  SavedStates& operator=(const SavedStates&) = delete;
+  virtual ~SavedStates() = default;
+  // done is called once: with the step, or with the reason of the refusal. name: is_plain_name().
+  using Done = std::function<void(const std::string& problem, StepIndex step)>;
+  virtual void save(const std::string& name, Done done) = 0;
+  virtual void load(const std::string& name, Done done) = 0;
+};
+
 struct GatewayDef {
   std::string name;             // of the session
   std::string session_id;       // text
   std::string controller;       // beginning of the clients' names in leases
   Requests::Send send_request;  // into a live session; empty: the gateway only looks
   observer::InputLeases::Send send_input;
-  Playback* playback = nullptr;      // of a recording; outlives the gateway
-  std::optional<DataRange> range{};  // of a recording
+  SavedStates* saved = nullptr;              // with send_request; outlives the gateway
+  std::size_t most_event_bytes = 32u << 20;  // events that wait for one client
+  Playback* playback = nullptr;              // of a recording; outlives the gateway
+  std::optional<DataRange> range{};          // of a recording
 };
 
 class Gateway final : public observer::Receiver {
  public:
-  static constexpr std::size_t kMostEventBytes = 32u << 20;  // that wait for one client
   static constexpr std::size_t kMostClients = 32;
 
   Gateway(GatewayDef def, scene::Scene scene);
 
   // ---- clients; the server closes a client that has a reason
   // None: there are kMostClients already.
-  [[nodiscard]] std::optional<ClientId> connect(Subprotocol subprotocol);
+  [[nodiscard]] std::optional<ClientId> connect();
   void disconnect(ClientId client);
   void take_message(ClientId client, FrameType type, std::string_view bytes, std::int64_t now_ns);
   [[nodiscard]] std::optional<Frame> next_frame(ClientId client);
@@ -113,8 +126,8 @@ class Gateway final : public observer::Receiver {
     std::shared_ptr<const std::string> body{};  // the message now
   };
   struct Client {
-    Subprotocol subprotocol = Subprotocol::sdk_v1;
-    Outbox outbox{kMostEventBytes};
+    explicit Client(std::size_t most_event_bytes) : outbox(most_event_bytes) {}
+    Outbox outbox;
     std::map<std::uint32_t, std::size_t> channels{};           // by subscription
     std::vector<std::optional<std::uint32_t>> subscription{};  // by channel
     std::map<std::uint32_t, std::string> published{};          // input by the client's channel
@@ -162,6 +175,7 @@ class Gateway final : public observer::Receiver {
     std::uint32_t service = 0, call = 0;
   };
   void run_call(const CallPlace& place, Call call, const Json& request, std::int64_t now_ns);
+  void keep(const CallPlace& place, Call call, const std::string& name);
   void control(const CallPlace& place, wire::ControlAction action, double value, std::int64_t now_ns);
   void play(const CallPlace& place, const PlaybackControl& request, std::int64_t now_ns);
   void respond(const CallPlace& place, const Json& response);
@@ -183,19 +197,22 @@ class Gateway final : public observer::Receiver {
   std::vector<Channel> channels_;
   std::uint32_t last_channel_ = 0;  // id
   std::size_t built_places_ = 0;    // variables that the channels have
-  std::int64_t first_poll_ns_ = 0;
 
   StepSnapshot snapshot_;
   std::uint64_t time_ns_ = 0;   // of the snapshot in the session
   std::uint64_t revision_ = 0;  // of the snapshot; 0: none
-  std::int64_t next_request_ns_ = 0, requested_ns_ = 0, next_second_ns_ = 0;
+  struct {
+    std::int64_t first_poll_ns = 0, next_request_ns = 0, requested_ns = 0, next_second_ns = 0;
+  } times_;
   std::optional<std::uint32_t> epoch_;
   StepIndex newest_step_ = kJoinStep;
 
   const observer::SessionView* view_ = nullptr;  // of the last poll
-  bool was_paused_ = false;
-  std::array<wire::NodeState, wire::kRoles> states_{};
-  std::map<std::string, std::string> holders_;  // by input
+  struct {
+    bool is_paused = false;
+    std::array<wire::NodeState, wire::kRoles> states{};
+    std::map<std::string, std::string> holders{};  // by input
+  } seen_;                                         // what the events have stated
 };
 
 }  // namespace slew::gateway

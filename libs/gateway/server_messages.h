@@ -23,7 +23,7 @@ struct DataRange {
 struct ServerInfo {
   std::string name;
   std::vector<std::string> capabilities;
-  std::string session_id;            // a new one tells clients to forget what they have received
+  std::string session_id;            // with a new one clients forget what they have received
   Json metadata = Json::object();    // texts by name
   std::optional<DataRange> range{};  // of a recording
 };

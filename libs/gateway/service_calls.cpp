@@ -91,6 +91,9 @@ void Gateway::run_call(const CallPlace& place, Call call, const Json& request, s
           request.at("name").text(), wanted, over_of(request),
           [this, place](const std::string& problem, StepIndex step) { respond(place, problem, step); }, now_ns);
     }
+    case Call::save:
+    case Call::load:
+      return keep(place, call, request.at("name").text());
     case Call::lease: {
       const Json* take_over = request.find("take_over");
       const auto acquire = take_over != nullptr && take_over->boolean() ? Acquire::take_over : Acquire::free;
@@ -117,6 +120,15 @@ void Gateway::run_call(const CallPlace& place, Call call, const Json& request, s
       return play(place, wanted, now_ns);
     }
   }
+}
+
+void Gateway::keep(const CallPlace& place, Call call, const std::string& name) {
+  if (!is_plain_name(name)) {
+    return fail(place, "'name' is not of 1 to 63 letters, digits, '_' and '-'; nothing was done; choose another");
+  }
+  if (def_.saved == nullptr) return fail(place, "this window has no folder for saved states; nothing was done");
+  const auto done = [this, place](const std::string& problem, StepIndex step) { respond(place, problem, step); };
+  call == Call::save ? def_.saved->save(name, done) : def_.saved->load(name, done);
 }
 
 void Gateway::control(const CallPlace& place, wire::ControlAction action, double value, std::int64_t now_ns) {

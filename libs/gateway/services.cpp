@@ -6,8 +6,8 @@
 namespace slew::gateway {
 namespace {
 
-constexpr std::array kSessionCalls = {Call::pause,         Call::resume, Call::step,   Call::reset,
-                                      Call::set_parameter, Call::lease,  Call::release};
+constexpr std::array kSessionCalls = {Call::pause, Call::resume, Call::step,  Call::reset,  Call::set_parameter,
+                                      Call::save,  Call::load,   Call::lease, Call::release};
 constexpr std::array kRecordingCalls = {Call::play, Call::pause, Call::speed, Call::seek};
 
 Json member(const char* type, const char* description) {
@@ -49,6 +49,10 @@ ServiceInfo info_of(Call call) {
                                  {"value", member("number", "SI; or a text such as 1500kg")},
                                  {"over", member("number", "s, over which the change is spread; without it its own")}},
                                 {"name", "value"}));
+    case Call::save:
+      return make("save", object_schema({{"name", member("string", "of the file in the window's folder")}}, {"name"}));
+    case Call::load:
+      return make("load", object_schema({{"name", member("string", "of a file that was saved")}}, {"name"}));
     case Call::lease:
       return make("lease", object_schema({{"input", member("string", "")},
                                           {"take_over", member("boolean", "also from its holder, for its supervisor")}},
@@ -66,6 +70,13 @@ ServiceInfo info_of(Call call) {
 }
 
 }  // namespace
+
+bool is_plain_name(std::string_view name) noexcept {
+  constexpr std::size_t kLongest = 63;
+  return !name.empty() && name.size() <= kLongest &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+             std::string_view::npos;
+}
 
 std::span<const Call> session_calls() noexcept {
   return kSessionCalls;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "gateway/server_messages.h"
@@ -15,12 +16,17 @@ enum class Call : std::uint32_t {
   step,
   reset,
   set_parameter,
+  save,
+  load,
   lease,
   release,
   play,
   speed,
   seek,
 };
+
+// A name of a saved state: 1 to 63 letters, digits, '_' and '-'.
+[[nodiscard]] bool is_plain_name(std::string_view name) noexcept;
 
 // Of a live session; of a recording.
 [[nodiscard]] std::span<const Call> session_calls() noexcept;

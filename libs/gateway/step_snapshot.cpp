@@ -34,7 +34,6 @@ void StepSnapshot::forget_values() {
     role.values.assign(role.values.size(), kNoValue);
     role.is_there = false;
   }
-  is_requested_ = false;
   target_.reset();
   newest_ = step_ = kJoinStep;
 }

@@ -21,7 +21,7 @@ class StepSnapshot {
  public:
   // Number of variables of a role, from its directory.
   void set_total(wire::Role role, std::size_t total);
-  // Another session or epoch: no values, no request.
+  // Another session or epoch: no values; a request stays.
   void forget_values();
 
   // Requests the next whole step; a request that waits stays.
