@@ -16,8 +16,7 @@ struct PageFile {
 // folder, or it has more than 64 MiB. folder: empty for the built-in page.
 [[nodiscard]] std::optional<PageFile> read_page_file(const std::string& folder, const std::string& path);
 
-// The folder of the built page: beside the program, share/slewring/web of its prefix, or web/dist of its build. Empty:
-// there is none.
+// The folder of the built page: share/slewring/web of the program's prefix, or web of its build. Empty: there is none.
 [[nodiscard]] std::string find_page();
 
 }  // namespace slew::view_node

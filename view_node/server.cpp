@@ -154,10 +154,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
     }));
     stream_.read_message_max(gateway::kMaxMessageBytes);
     stream_.auto_fragment(false);
-    stream_.async_accept(parser_.get(), [self = shared_from_this(), subprotocol](error_code error) {
+    stream_.async_accept(parser_.get(), [self = shared_from_this()](error_code error) {
       if (error) return self->drop();
       self->deadline_ns_ = INT64_MAX;
-      self->client_ = self->gateway_.connect(subprotocol);
+      self->client_ = self->gateway_.connect();
       if (!self->client_) return self->close("the gateway has 32 clients already; close one and connect again");
       self->read();
     });

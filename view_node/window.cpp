@@ -16,6 +16,7 @@
 #include "session/survey.h"
 #include "view_node/page_files.h"
 #include "view_node/recorded_source.h"
+#include "view_node/saved_files.h"
 #include "view_node/server.h"
 
 namespace slew::view_node {
@@ -120,12 +121,13 @@ std::unique_ptr<observer::Observer> wait_for_session(const WindowOptions& option
   }
 }
 
-gateway::GatewayDef live_def(const WindowOptions& options, observer::Observer& observer) {
+gateway::GatewayDef live_def(const WindowOptions& options, observer::Observer& observer, SavedFiles& saved) {
   gateway::GatewayDef def;
   def.name = observer.session_name();
   def.session_id = node::to_text(observer.view().session().header.session);
   def.controller = fmt::format("window-{}", getpid());
   if (options.is_looking_only) return def;
+  def.saved = &saved;
   // one that cannot be sent stays without an answer, which its client receives as a refusal
   def.send_request = [&observer](wire::ControlRequest request) {
     if (request.request == 0) request.request = observer::Observer::draw_number();
@@ -146,13 +148,13 @@ gateway::GatewayDef live_def(const WindowOptions& options, observer::Observer& o
 // Processes that were killed publish no end.
 class Silence {
  public:
-  // A sentence when the session falls silent or speaks again.
+  // A sentence when the session falls silent or publishes again.
   [[nodiscard]] std::optional<std::string> look(const observer::SessionView& view, std::int64_t now_ns) {
     std::uint64_t all = 0;
     for (const wire::Role role : wire::kNodeRoles) all += view.node(role).healths;
-    if (all != healths_ || heard_ns_ == 0) heard_ns_ = now_ns;
+    if (all != healths_ || received_ns_ == 0) received_ns_ = now_ns;
     healths_ = all;
-    const bool is_silent = now_ns - heard_ns_ > kSilentNs;
+    const bool is_silent = now_ns - received_ns_ > kSilentNs;
     if (is_silent == std::exchange(was_silent_, is_silent)) return std::nullopt;
     return is_silent ? "no message of the session has come for 5 s; look with 'slewring sessions' whether it still runs"
                      : "messages of the session come again";
@@ -160,7 +162,7 @@ class Silence {
 
  private:
   std::uint64_t healths_ = 0;
-  std::int64_t heard_ns_ = 0;
+  std::int64_t received_ns_ = 0;
   bool was_silent_ = false;
 };
 
@@ -168,7 +170,10 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
   LateReceiver receiver;
   const auto observer = wait_for_session(options, receiver);
   const observer::SessionView& view = observer->view();
-  gateway::Gateway gateway(live_def(options, *observer),
+  node::SessionOptions of_session = options.session;
+  of_session.session = observer->session_name();
+  SavedFiles saved(options.saves, of_session);
+  gateway::Gateway gateway(live_def(options, *observer, saved),
                            scene::load_text(view.session().scene_text, view.session().scene_name));
   receiver.set_gateway(&gateway);
   def.description = [&] { return gateway.description(view); };
@@ -181,6 +186,7 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
     observer->drain();
     const std::int64_t now_ns = monotonic_ns();
     if (!is_over()) gateway.poll(view, now_ns);
+    saved.poll();
     if (const auto text = silence.look(view, now_ns)) {
       report(*text);
       gateway.add_event(gateway::LogLevel::warning, "window", *text);

@@ -27,6 +27,10 @@ void add_window_options(options::Command& verb, WindowOptions& options) {
       .value_name("ORIGIN")
       .group("Window");
   verb.flag("--view-only", options.is_looking_only, "no parameters, no services, no inputs").group("Window");
+  verb.option("--saves", options.saves, "folder in which clients save and load states of the session")
+      .value_name("DIR")
+      .show_default()
+      .group("Window");
   verb.option("--web", options.web, "folder of the page; without it the installed one")
       .value_name("DIR")
       .group("Window");
@@ -43,6 +47,7 @@ std::vector<std::string> window_arguments(const WindowOptions& options) {
   for (const std::string& host : options.hosts) add("--host", host);
   for (const std::string& origin : options.origins) add("--allow-origin", origin);
   add("--web", options.web);
+  add("--saves", options.saves);
   if (options.is_looking_only) arguments.emplace_back("--view-only");
   if (options.is_json) arguments.emplace_back("--json");
   if (!options.recording.empty()) {

@@ -22,6 +22,7 @@ struct WindowOptions {
   std::vector<std::string> hosts;    // gateway::DoorDef
   std::vector<std::string> origins;  // gateway::DoorDef
   std::string web;                   // folder of the page; empty: the built one
+  std::string saves = "saved";       // folder of saved states
   bool is_looking_only = false;
   bool is_json = false;
 };
