@@ -355,7 +355,8 @@ void print(const RunReport& report) {
   for (const VariableReport& variable : report.variables) {
     rows.add({"range", range_text(variable)});
   }
-  for (const session::DeviceOutcome& device : report.devices) rows.add({"device", device.name + ": " + session::to_text(device)});
+  for (const session::DeviceOutcome& device : report.devices)
+    rows.add({"device", device.name + ": " + session::to_text(device)});
   for (const std::string& note : report.notes) rows.add({"note", note});
   print_table(rows);
   std::fflush(stdout);

@@ -8,8 +8,11 @@
 
 namespace slew::cli {
 
-// Runs the session, records it, and prints its summary.
-[[nodiscard]] ExitCode run_session(session::RunOptions options, const io_node::SessionScene& session);
+class WindowProcess;
+
+// Runs the session, records it, and prints its summary. window: is started beside its nodes; null: none.
+[[nodiscard]] ExitCode run_session(session::RunOptions options, const io_node::SessionScene& session,
+                                   WindowProcess* window = nullptr);
 
 // --out, --keep-free, --join-timeout, --rt, --cpu, --quiet.
 void add_running_options(options::Command& verb, session::RunOptions& options);

@@ -11,6 +11,7 @@
 #include "cli/run_session.h"
 #include "cli/status_line.h"
 #include "cli/verbs.h"
+#include "cli/window_process.h"
 #include "core/failure.h"
 #include "core/node_names.h"
 #include "core/printable.h"
@@ -26,29 +27,50 @@ namespace {
 class TerminalWatcher final : public session::RunWatcher {
  public:
   // Throws Failure (bad_input) when the input is the keyboard and standard input is no terminal.
-  TerminalWatcher(const session::RunOptions& options, const scene::Scene& scene)
-      : mode_(status_mode(options.is_quiet || options.is_json)), status_(mode_), text_(scene) {
+  TerminalWatcher(const session::RunOptions& options, const scene::Scene& scene, WindowProcess* window)
+      : mode_(status_mode(options.is_quiet || options.is_json)),
+        status_(mode_),
+        text_(scene),
+        session_(options.session.session),
+        window_(window) {
     if (options.scene.input == "keyboard") keyboard_.emplace(scene);
   }
 
   [[nodiscard]] bool reads_values() const override { return mode_ != StatusLine::Mode::off || keyboard_; }
   void begin() override {
     if (keyboard_) status_.print_line(keyboard_->levers().help());
+    if (window_ != nullptr) window_->start(session_);
   }
   void report(const std::string& message) override { status_.print_line(message); }
   bool update(observer::Observer& observer, std::int64_t now_ns, bool is_ending) override {
     if (keyboard_) keyboard_->poll(observer, now_ns);
+    print_window();
     text_.measure(observer.view(), now_ns);
     if (status_.is_due(now_ns) && !is_ending) status_.show(text_.text(observer.view(), status_width(mode_)), now_ns);
     return true;
   }
-  void end() override { status_.clear(); }
+  void end() override {
+    if (window_ != nullptr) window_->finish();
+    print_window();
+    status_.clear();
+  }
 
  private:
+  void print_window() {
+    if (window_ == nullptr) return;
+    for (const std::string& line : window_->take_lines()) {
+      status_.clear();
+      fmt::print("{}\n", printable(line));
+      std::fflush(stdout);
+    }
+  }
+
   StatusLine::Mode mode_;
   StatusLine status_;
   StatusText text_;
   std::optional<Keyboard> keyboard_;
+  std::string session_;
+  WindowProcess* window_;  // null: none
 };
 
 // All physics as one system: one process, without deadlines.
@@ -106,7 +128,7 @@ ExitCode run_or_report(const session::RunOptions& options, const options::Comman
 
 }  // namespace
 
-ExitCode run_session(session::RunOptions options, const io_node::SessionScene& session) {
+ExitCode run_session(session::RunOptions options, const io_node::SessionScene& session, WindowProcess* window) {
   const scene::Scene& scene = session.scene;
   for (const std::string& warning : scene.warnings)
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
@@ -135,7 +157,7 @@ ExitCode run_session(session::RunOptions options, const io_node::SessionScene& s
                  "controller; run it as processes\n");
   }
   options.kept = report_variables(scene);
-  TerminalWatcher watcher(options, scene);
+  TerminalWatcher watcher(options, scene, window);
   const session::RunOutcome outcome = options.is_in_process ? session::run_in_process(options, session, watcher)
                                                             : session::run_distributed(options, session, watcher);
   if (!outcome.has_begun) {

@@ -15,6 +15,7 @@ void add_watch(options::Command& program);
 void add_param(options::Command& program);
 void add_control(options::Command& program);
 void add_bridge(options::Command& program);
+void add_window(options::Command& program);
 void add_device(options::Command& program);
 void add_check(options::Command& program);
 void add_describe(options::Command& program);

@@ -34,9 +34,14 @@ bool InputLeases::write(const Key& key, double value, StepIndex based_on, std::i
   }
   if (now_ns < lease.next_request_ns) return false;
   lease.next_request_ns = now_ns + kLeaseRequestNs;
-  if (lease.requested_from == 0) lease.requested_from = sequence_ + 1;
-  send(key, wire::ControllerAction::acquire, 0, kJoinStep);
+  request(key, Acquire::free);
   return false;
+}
+
+void InputLeases::request(const Key& key, Acquire acquire) {
+  Lease& lease = leases_[key];
+  if (lease.requested_from == 0) lease.requested_from = sequence_ + 1;
+  send(key, wire::ControllerAction::acquire, acquire == Acquire::take_over ? wire::kTakeOver : 0, kJoinStep);
 }
 
 void InputLeases::take(const wire::ControllerLease& message) {
@@ -78,6 +83,15 @@ void InputLeases::release() {
     if (lease.is_held) send(key, wire::ControllerAction::release, 0, kJoinStep);
   }
   leases_.clear();
+}
+
+// A request without its answer may be granted yet.
+void InputLeases::release(const Key& key) {
+  const auto found = leases_.find(key);
+  if (found == leases_.end()) return;
+  if (found->second.is_held || found->second.requested_from != 0)
+    send(key, wire::ControllerAction::release, 0, kJoinStep);
+  leases_.erase(found);
 }
 
 bool InputLeases::is_held(const Key& key) const {

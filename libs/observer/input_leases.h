@@ -28,11 +28,15 @@ class InputLeases {
   // Writes the value if the lease is held, else requests it: every 200 ms, after a refusal every second. based_on: step
   // whose variables the value follows from. Result: whether it was written.
   bool write(const Key& key, double value, StepIndex based_on, std::int64_t now_ns);
+  // Requests the lease without a value. take_over: also from its holder, for the channel's supervisor.
+  enum class Acquire : std::uint8_t { free, take_over };
+  void request(const Key& key, Acquire acquire);
   void take(const wire::ControllerLease& lease);
   // After a reset every input is free.
   void take_epoch(std::uint32_t epoch);
-  // Gives all inputs back.
+  // Gives all inputs back, or one.
   void release();
+  void release(const Key& key);
 
   [[nodiscard]] bool is_held(const Key& key) const;
   // Sentences for the user since the last call.

@@ -103,10 +103,9 @@ TEST(StressReport, HasTheLatencyOfEachDevice) {
   cell.devices.push_back(
       {.name = "Stick", .summary = std::nullopt, .fault = "killed by signal 9 (Killed)", .hangs = 1});
   const std::string text = report_text(stress);
-  EXPECT_NE(
-      text.find("normal, load mixed, 0 us: device Rig: 500 packets used, 3 lost; 490 values written; 2 ms from "
-                "an event to the first sample that used it, 4 ms p99, 9 ms max\n"),
-      std::string::npos)
+  EXPECT_NE(text.find("normal, load mixed, 0 us: device Rig: 500 packets used, 3 lost; 490 values written; 2 ms from "
+                      "an event to the first sample that used it, 4 ms p99, 9 ms max\n"),
+            std::string::npos)
       << text;
   EXPECT_NE(
       text.find("device Stick: ended early, its inputs went to neutral: killed by signal 9 (Killed); 1 time without "

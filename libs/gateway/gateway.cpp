@@ -1,0 +1,386 @@
+#include "gateway/gateway.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "gateway/foxglove_schemas.h"
+#include "node/identity.h"
+
+namespace slew::gateway {
+namespace {
+
+constexpr std::int64_t kOneSecondNs = 1'000'000'000;
+constexpr std::int64_t kFrameNs = kOneSecondNs / 60;
+constexpr std::int64_t kStandstillNs = 250'000'000;      // no whole step for so long: the newest values are shown
+constexpr std::int64_t kDirectoryNs = 5 * kOneSecondNs;  // longest wait for the names of all variables
+constexpr std::uint64_t kReportedLeftOut = 10;           // values; one or two are the jitter of any client
+constexpr std::int64_t kReportEveryNs = 5 * kOneSecondNs;
+constexpr std::size_t kAdvertisedAtOnce = 100;  // channels in one message
+constexpr std::size_t kTimeState = 0;           // state of an outbox: the time; then the channels
+constexpr const char* kLeftOutId = "left_out";
+
+std::size_t state_of(std::size_t channel) noexcept {
+  return channel + 1;
+}
+
+std::vector<InputChannel> inputs_of(const scene::Scene& scene) {
+  std::vector<InputChannel> channels;
+  for (const scene::InputDef& input : scene.inputs) {
+    channels.push_back(
+        {input.name, input.type == scene::InputType::digital, input.controller == scene::ControllerMode::lockstep});
+  }
+  return channels;
+}
+
+std::string session_schema() {
+  const Json number = {{"type", "number"}}, text = {{"type", "string"}}, truth = {{"type", "boolean"}};
+  const Json node = {{"type", "object"},
+                     {"properties", {{"role", text}, {"state", text}, {"overruns", number}, {"refused", number}}}};
+  return Json({{"title", "slewring.Session"},
+               {"type", "object"},
+               {"properties",
+                {{"step", number},
+                 {"time", number},
+                 {"is_paused", truth},
+                 {"clients", number},
+                 {"holders", {{"type", "object"}, {"properties", Json::object()}}},
+                 {"nodes", {{"type", "array"}, {"items", node}}}}}})
+      .dump();
+}
+
+}  // namespace
+
+Gateway::Gateway(GatewayDef def, scene::Scene scene)
+    : def_(std::move(def)),
+      scene_(std::move(scene)),
+      frames_(scene_),
+      requests_(def_.send_request),
+      parameters_(scene_, requests_, [this](const std::string& name) { publish_parameter(name); }),
+      inputs_(inputs_of(scene_), def_.controller, def_.send_input),
+      services_(service_infos(calls())) {
+  const auto add = [&](Kind kind, const char* topic, const char* schema_name, std::string schema) {
+    Channel& channel = channels_.emplace_back();
+    channel.info = {++last_channel_, topic, schema_name, std::move(schema)};
+    channel.kind = kind;
+  };
+  add(Kind::transforms, "/slewring/transforms", "foxglove.FrameTransforms", frame_transforms_schema());
+  add(Kind::scene, "/slewring/scene", "foxglove.SceneUpdate", scene_update_schema());
+  add(Kind::log, "/slewring/log", "foxglove.Log", log_schema());
+  add(Kind::session, "/slewring/session", "slewring.Session", session_schema());
+}
+
+std::span<const Call> Gateway::calls() const noexcept {
+  if (def_.playback != nullptr) return recording_calls();
+  return is_steering() ? session_calls() : std::span<const Call>();
+}
+
+// ---- clients
+// ----------------------------------------------------------------------------------------------------------
+
+std::string Gateway::server_info() const {
+  ServerInfo info;
+  info.name = "Slewring: " + def_.name;
+  info.capabilities = {"time"};
+  if (is_steering())
+    for (const char* name : {"parameters", "parametersSubscribe", "clientPublish"})
+      info.capabilities.emplace_back(name);
+  if (!services_.empty()) info.capabilities.emplace_back("services");
+  if (def_.playback != nullptr) info.capabilities.emplace_back("playbackControl");
+  // clients forget the time before a reset
+  info.session_id = fmt::format("{}-{}", def_.session_id, def_.playback != nullptr ? 0 : epoch_.value_or(0));
+  info.metadata = {{"session", def_.name}, {"scene", scene_.name}, {"inputs", "/inputs/<input>"}};
+  info.range = def_.range;
+  return to_text(info);
+}
+
+std::optional<ClientId> Gateway::connect() {
+  if (clients_.size() >= kMostClients) return std::nullopt;
+  const ClientId id = ++last_client_;
+  Client& client = clients_.try_emplace(id, def_.most_event_bytes).first->second;
+  push(client, text_frame(server_info()));
+  std::vector<ChannelInfo> infos;
+  for (const Channel& channel : channels_) infos.push_back(channel.info);
+  for (std::size_t first = 0; first < infos.size(); first += kAdvertisedAtOnce) {
+    const std::size_t count = std::min(kAdvertisedAtOnce, infos.size() - first);
+    push(client, text_frame(advertise_text(std::span(infos).subspan(first, count))));
+  }
+  if (!services_.empty()) push(client, text_frame(advertise_services_text(services_)));
+  if (revision_ > 0) client.outbox.mark(kTimeState);
+  return id;
+}
+
+void Gateway::disconnect(ClientId client) {
+  inputs_.leave(client);
+  clients_.erase(client);
+}
+
+const std::string& Gateway::close_reason(ClientId client) const {
+  static const std::string kGone = "the gateway has closed this client";
+  const auto found = clients_.find(client);
+  return found == clients_.end() ? kGone : found->second.close_reason;
+}
+
+void Gateway::push(Client& client, Frame event) {
+  if (client.outbox.push(std::move(event)) || !client.close_reason.empty()) return;
+  client.close_reason = fmt::format("more than {} bytes of events wait for this client; read them, or connect again",
+                                    def_.most_event_bytes);
+}
+
+void Gateway::send_status(Client& client, StatusLevel level, std::string_view message, std::string_view id) {
+  push(client, text_frame(status_text(level, message, id)));
+}
+
+std::optional<Frame> Gateway::next_frame(ClientId id) {
+  const auto found = clients_.find(id);
+  if (found == clients_.end()) return std::nullopt;
+  Client& client = found->second;
+  while (true) {
+    Outbox::Next next = client.outbox.next();
+    if (auto* const event = std::get_if<Frame>(&next)) return std::move(*event);
+    const auto* const state = std::get_if<std::size_t>(&next);
+    if (state == nullptr) return std::nullopt;
+    if (*state == kTimeState) return binary_frame(time_bytes(time_ns_));
+    const std::size_t index = *state - 1;
+    if (index >= client.subscription.size() || !client.subscription[index]) continue;
+    return binary_frame(message_head(*client.subscription[index], time_ns_), body_of(channels_[index]));
+  }
+}
+
+std::shared_ptr<const std::string> Gateway::body_of(Channel& channel) {
+  if (channel.revision == revision_ && channel.body != nullptr) return channel.body;
+  std::string body;
+  if (channel.kind == Kind::transforms) {
+    frames_.encode_transforms(snapshot_, time_ns_, body);
+  } else if (channel.kind == Kind::session) {
+    body = session_body();
+  } else {
+    channel.signal.encode(snapshot_, body);
+  }
+  channel.revision = revision_;
+  channel.body = std::make_shared<const std::string>(std::move(body));
+  return channel.body;
+}
+
+std::string Gateway::session_body() const {
+  Json nodes = Json::array();
+  for (const wire::Role role : wire::kNodeRoles) {
+    const observer::NodeView& node = view_->node(role);
+    if (!node.is_known) continue;
+    nodes.push_back({{"role", node::to_text(role)},
+                     {"state", node::to_text(node.status.state)},
+                     {"overruns", node.health.overruns},
+                     {"refused", node.health.refused_messages}});
+  }
+  Json holders = Json::object();
+  for (const auto& [input, holder] : seen_.holders) holders[input] = holder;
+  return Json({{"step", snapshot_.step()},
+               {"time", static_cast<double>(time_ns_) * 1e-9},
+               {"is_paused", seen_.is_paused},
+               {"clients", clients_.size()},
+               {"holders", std::move(holders)},
+               {"nodes", std::move(nodes)}})
+      .dump();
+}
+
+void Gateway::send_scene(Client& client) {
+  if (client.subscription.size() < 2 || !client.subscription[1] || revision_ == 0) return;
+  push(client, binary_frame(message_head(*client.subscription[1], time_ns_),
+                            std::make_shared<const std::string>(frames_.scene_update(snapshot_, time_ns_))));
+}
+
+// ---- the session
+// ------------------------------------------------------------------------------------------------------
+
+void Gateway::take_block(const wire::VariableBlock& block, std::span<const std::byte>, double) {
+  if (block.header.epoch != epoch_) begin_epoch(block.header.epoch);
+  newest_step_ = std::max(newest_step_, block.header.step);
+  const bool is_whole = snapshot_.take(block);
+  if (!is_whole || def_.playback != nullptr || view_ == nullptr || built_places_ == 0) return;
+  publish(static_cast<std::uint64_t>(start_of(snapshot_.step(), {view_->session().step_ns}).ns));
+}
+
+void Gateway::begin_epoch(std::uint32_t epoch) {
+  const bool is_reset = epoch_.has_value() && def_.playback == nullptr;
+  epoch_ = epoch;
+  newest_step_ = kJoinStep;
+  snapshot_.forget_values();
+  inputs_.take_epoch(epoch);
+  if (!is_reset) return;
+  seen_.holders.clear();
+  parameters_.refresh();
+  for (auto& [id, client] : clients_) {
+    push(client, text_frame(server_info()));
+    send_scene(client);
+  }
+  add_event(LogLevel::info, "io", "the session began again");
+}
+
+void Gateway::take_lease(const wire::ControllerLease& lease) {
+  inputs_.take(lease);
+  std::string& holder = seen_.holders[lease.channel];
+  if (holder == lease.holder) return;
+  holder = lease.holder;
+  add_event(LogLevel::info, "io",
+            lease.holder.empty()
+                ? "input " + lease.channel + " is free" + (lease.reason.empty() ? "" : ": " + lease.reason)
+                : "'" + lease.holder + "' holds input " + lease.channel);
+}
+
+void Gateway::take_reply(const wire::ControlReply& reply) {
+  if (!requests_.take(reply)) parameters_.take(reply);
+  if (reply.asked.empty() || reply.asked.starts_with("get ")) return;
+  add_event(reply.is_accepted ? LogLevel::info : LogLevel::warning, "io",
+            reply.is_accepted ? fmt::format("{}, from step {} on", reply.asked, reply.header.step)
+                              : fmt::format("{}: refused: {}", reply.asked, reply.reason));
+}
+
+void Gateway::add_event(LogLevel level, const std::string& source, const std::string& text) {
+  const LogEvent& event = log_.add(time_ns_, level, source, text);
+  for (auto& [id, client] : clients_) {
+    if (client.subscription.size() > 2 && client.subscription[2])
+      push(client, binary_frame(message_head(*client.subscription[2], event.time_ns), event.body));
+  }
+}
+
+// Replaces the channels of signals: a name that comes later may belong to an element that has a channel already.
+void Gateway::build_channels(const observer::SessionView& view) {
+  std::vector<NamedPlace> variables;
+  std::array<std::size_t, wire::kRoles> totals{};
+  for (const observer::VariablePlace& place : view.places()) {
+    const observer::VariableView& variable = view.variable(place);
+    variables.push_back({variable.name, variable.unit, place});
+    std::size_t& total = totals[static_cast<std::size_t>(place.role)];
+    total = std::max<std::size_t>(total, place.index + 1);
+  }
+  std::ranges::stable_sort(variables, {}, &NamedPlace::place);
+  for (std::size_t role = 0; role < totals.size(); ++role)
+    snapshot_.set_total(static_cast<wire::Role>(role), totals[role]);
+  built_places_ = view.places().size();
+  frames_.find_places(view);
+
+  std::vector<std::uint32_t> old;
+  const auto first_signal = std::ranges::find(channels_, Kind::signal, &Channel::kind);
+  const auto kept = static_cast<std::size_t>(first_signal - channels_.begin());
+  for (auto channel = first_signal; channel != channels_.end(); ++channel) old.push_back(channel->info.id);
+  channels_.resize(kept);
+  std::vector<ChannelInfo> infos;
+  for (SignalChannel& signal : signal_channels(variables)) {
+    Channel& channel = channels_.emplace_back();
+    channel.info = {++last_channel_, signal.topic, signal.schema_name, signal.schema};
+    channel.signal = std::move(signal);
+    infos.push_back(channel.info);
+  }
+  for (auto& [id, client] : clients_) {
+    client.outbox.forget_states();
+    std::erase_if(client.channels, [&](const auto& entry) { return entry.second >= kept; });
+    client.subscription.resize(std::min(client.subscription.size(), kept));
+    if (!old.empty()) push(client, text_frame(unadvertise_text(old)));
+    for (std::size_t first = 0; first < infos.size(); first += kAdvertisedAtOnce) {
+      const std::size_t count = std::min(kAdvertisedAtOnce, infos.size() - first);
+      push(client, text_frame(advertise_text(std::span(infos).subspan(first, count))));
+    }
+  }
+}
+
+void Gateway::mark_states(Client& client) {
+  client.outbox.mark(kTimeState);
+  for (const auto& [subscription, channel] : client.channels) {
+    const Kind kind = channels_[channel].kind;
+    if (kind != Kind::scene && kind != Kind::log) client.outbox.mark(state_of(channel));
+  }
+}
+
+void Gateway::publish(std::uint64_t time_ns) {
+  time_ns_ = time_ns;
+  const bool is_first = revision_ == 0;
+  ++revision_;
+  for (auto& [id, client] : clients_) {
+    mark_states(client);
+    if (is_first) send_scene(client);
+  }
+}
+
+void Gateway::show(const observer::SessionView& view, std::uint64_t time_ns) {
+  static_cast<void>(snapshot_.take(view));
+  publish(time_ns);
+}
+
+void Gateway::publish_playback(std::int64_t now_ns) {
+  const std::string bytes = playback_state_bytes(def_.playback->state(now_ns));
+  for (auto& [id, client] : clients_) {
+    if (client.has_controlled_playback) push(client, binary_frame(bytes));
+  }
+}
+
+void Gateway::watch_nodes(const observer::SessionView& view) {
+  if (const bool is_paused = view.is_paused(); is_paused != std::exchange(seen_.is_paused, is_paused))
+    add_event(LogLevel::info, "io", is_paused ? "the session is paused" : "the session goes on");
+  for (const wire::Role role : wire::kNodeRoles) {
+    const observer::NodeView& node = view.node(role);
+    wire::NodeState& state = seen_.states[static_cast<std::size_t>(role)];
+    if (!node.is_known || node.status.state == state) continue;
+    state = node.status.state;
+    const bool is_bad = state == wire::NodeState::holding || state == wire::NodeState::fault;
+    add_event(is_bad ? LogLevel::warning : LogLevel::info, std::string(node::to_text(role)),
+              fmt::format("{}{}{}", node::to_text(state), node.status.reason.empty() ? "" : ": ", node.status.reason));
+  }
+}
+
+void Gateway::report_left_out(std::int64_t now_ns) {
+  for (auto& [id, client] : clients_) {
+    client.left_out += client.outbox.take_left_out();
+    if (now_ns < client.next_report_ns || client.left_out - client.reported_left_out < kReportedLeftOut) continue;
+    client.next_report_ns = now_ns + kReportEveryNs;
+    client.reported_left_out = client.left_out;
+    send_status(client, StatusLevel::warning,
+                fmt::format("this client reads more slowly than values come: {} values were replaced by newer ones "
+                            "before they were sent; subscribe to fewer channels",
+                            client.left_out),
+                kLeftOutId);
+  }
+}
+
+void Gateway::poll(const observer::SessionView& view, std::int64_t now_ns) {
+  view_ = &view;
+  if (times_.first_poll_ns == 0) times_.first_poll_ns = now_ns;
+  const bool has_names =
+      def_.playback != nullptr || view.has_whole_directory() || now_ns - times_.first_poll_ns > kDirectoryNs;
+  if (has_names && view.places().size() != built_places_) build_channels(view);
+  watch_nodes(view);
+  if (def_.playback == nullptr) {
+    if (now_ns >= times_.next_request_ns && !snapshot_.is_requested()) {
+      snapshot_.request();
+      times_.requested_ns = now_ns;
+      times_.next_request_ns = std::max(times_.next_request_ns + kFrameNs, now_ns);
+    }
+    const StepIndex shown = snapshot_.step();
+    const bool stands = snapshot_.is_requested() && now_ns - times_.requested_ns > kStandstillNs;
+    if (stands && built_places_ > 0 && snapshot_.take(view) && snapshot_.step() != shown)
+      publish(static_cast<std::uint64_t>(start_of(snapshot_.step(), {view.session().step_ns}).ns));
+  }
+  if (is_steering()) {
+    requests_.poll(now_ns);
+    parameters_.poll(now_ns);
+    inputs_.poll(now_ns, [this](ClientId id, const std::string& input) {
+      const auto found = clients_.find(id);
+      if (found == clients_.end()) return;
+      send_status(found->second, StatusLevel::warning,
+                  "no value for input " + input + " came for 150 ms; it was put to neutral", "silent " + input);
+    });
+  }
+  if (now_ns < times_.next_second_ns) return;
+  times_.next_second_ns = now_ns + kOneSecondNs;
+  report_left_out(now_ns);
+}
+
+void Gateway::end(const std::string& reason) {
+  inputs_.leave_all();
+  for (auto& [id, client] : clients_) {
+    send_status(client, StatusLevel::info, reason);
+    if (client.close_reason.empty()) client.close_reason = reason;
+  }
+}
+
+}  // namespace slew::gateway

@@ -1,0 +1,183 @@
+// The services: calls of clients, and their answers.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/failure.h"
+#include "gateway/gateway.h"
+
+namespace slew::gateway {
+namespace {
+
+constexpr double kLongestChange = 3600;  // s
+constexpr std::int64_t kMostSteps = 1'000'000'000;
+
+const char* to_text(PlaybackStatus status) noexcept {
+  switch (status) {
+    case PlaybackStatus::playing:
+      return "playing";
+    case PlaybackStatus::paused:
+      return "paused";
+    case PlaybackStatus::buffering:
+      return "buffering";
+    case PlaybackStatus::ended:
+      return "ended";
+  }
+  return "";
+}
+
+std::optional<SimDuration> over_of(const Json& request) {
+  const Json* over = request.find("over");
+  if (over == nullptr) return std::nullopt;
+  const double seconds = over->number();
+  if (!(seconds >= 0 && seconds <= kLongestChange))
+    throw Failure(ExitCode::bad_input, "'over' is not from 0 to 3600 s; nothing was changed");
+  return duration_of_seconds(seconds);
+}
+
+}  // namespace
+
+void Gateway::fail(const CallPlace& place, const std::string& message) {
+  if (const auto client = clients_.find(place.client); client != clients_.end())
+    push(client->second, text_frame(service_failure_text(place.service, place.call, message)));
+}
+
+void Gateway::respond(const CallPlace& place, const Json& response) {
+  if (const auto client = clients_.find(place.client); client != clients_.end())
+    push(client->second, binary_frame(service_response_bytes(place.service, place.call, response)));
+}
+
+void Gateway::respond(const CallPlace& place, const std::string& problem, StepIndex step) {
+  respond(place, Json({{"accepted", problem.empty()}, {"step", step}, {"reason", problem}}));
+}
+
+void Gateway::take(ClientId id, Client&, const ServiceCall& message, std::int64_t now_ns) {
+  const CallPlace place{id, message.service, message.call};
+  const auto service = std::ranges::find(services_, message.service, &ServiceInfo::id);
+  if (service == services_.end())
+    return fail(place, "there is no service of this number; advertiseServices lists them");
+  if (message.encoding != "json") return fail(place, "the encoding of the call is not json");
+  const DecodedObject decoded = decode_object(message.bytes);
+  if (!decoded.object) return fail(place, decoded.problem);
+  try {
+    run_call(place, static_cast<Call>(message.service), *decoded.object, now_ns);
+  } catch (const Failure& failure) {  // a member is missing, or of another kind
+    fail(place, failure.what());
+  }
+}
+
+void Gateway::run_call(const CallPlace& place, Call call, const Json& request, std::int64_t now_ns) {
+  using Acquire = observer::InputLeases::Acquire;
+  const auto answer = [this, place](const std::string& problem) { respond(place, problem, newest_step_); };
+  switch (call) {
+    case Call::pause:
+      if (def_.playback != nullptr) return play(place, {.is_paused = true, .speed = 0}, now_ns);
+      return control(place, wire::ControlAction::pause, 0, now_ns);
+    case Call::resume:
+      return control(place, wire::ControlAction::resume, 0, now_ns);
+    case Call::step: {
+      const std::int64_t steps = request.find("steps") != nullptr ? request.at("steps").integer() : 1;
+      if (steps < 1 || steps > kMostSteps)
+        return fail(place, "'steps' is not from 1 to 1000000000; nothing was changed");
+      return control(place, wire::ControlAction::step, static_cast<double>(steps), now_ns);
+    }
+    case Call::reset:
+      return control(place, wire::ControlAction::reset, 0, now_ns);
+    case Call::set_parameter: {
+      const Json& value = request.at("value");
+      const auto wanted = value.is_number() ? std::variant<double, std::string>(value.number())
+                                            : std::variant<double, std::string>(value.text());
+      return parameters_.set(
+          request.at("name").text(), wanted, over_of(request),
+          [this, place](const std::string& problem, StepIndex step) { respond(place, problem, step); }, now_ns);
+    }
+    case Call::save:
+    case Call::load:
+      return keep(place, call, request.at("name").text());
+    case Call::lease: {
+      const Json* take_over = request.find("take_over");
+      const auto acquire = take_over != nullptr && take_over->boolean() ? Acquire::take_over : Acquire::free;
+      const std::string problem = inputs_.lease(place.client, request.at("input").text(), acquire, answer, now_ns);
+      if (!problem.empty()) answer(problem);
+      return;
+    }
+    case Call::release:
+      return answer(inputs_.release(place.client, request.at("input").text()));
+    case Call::play:
+      return play(place, {.is_paused = false, .speed = 0}, now_ns);
+    case Call::speed: {
+      PlaybackControl wanted;
+      wanted.is_paused = def_.playback->state(now_ns).status != PlaybackStatus::playing;
+      wanted.speed = static_cast<float>(request.at("factor").number());
+      return play(place, wanted, now_ns);
+    }
+    case Call::seek: {
+      const double seconds = request.at("time").number();
+      if (!(seconds >= 0 && seconds < 9e9))
+        return fail(place, "'time' is no time of the recording; nothing was changed");
+      PlaybackControl wanted{.is_paused = def_.playback->state(now_ns).status != PlaybackStatus::playing, .speed = 0};
+      wanted.seek_ns = static_cast<std::uint64_t>(std::llround(seconds * 1e9));
+      return play(place, wanted, now_ns);
+    }
+  }
+}
+
+void Gateway::keep(const CallPlace& place, Call call, const std::string& name) {
+  if (!is_plain_name(name)) {
+    return fail(place, "'name' is not of 1 to 63 letters, digits, '_' and '-'; nothing was done; choose another");
+  }
+  if (def_.saved == nullptr) return fail(place, "this window has no folder for saved states; nothing was done");
+  const auto done = [this, place](const std::string& problem, StepIndex step) { respond(place, problem, step); };
+  call == Call::save ? def_.saved->save(name, done) : def_.saved->load(name, done);
+}
+
+void Gateway::control(const CallPlace& place, wire::ControlAction action, double value, std::int64_t now_ns) {
+  wire::ControlRequest request;
+  request.action = action;
+  request.value = value;
+  requests_.send(
+      request,
+      [this, place](const Requests::Answer& answer) {
+        respond(place, answer.is_accepted ? "" : answer.reason, answer.step);
+      },
+      now_ns);
+}
+
+// A speed of 0 keeps the present one.
+void Gateway::play(const CallPlace& place, const PlaybackControl& request, std::int64_t now_ns) {
+  PlaybackControl wanted = request;
+  if (wanted.speed == 0) wanted.speed = def_.playback->state(now_ns).speed;
+  const Status status = def_.playback->control(wanted, now_ns);
+  if (!status.is_ok()) return fail(place, status.text);
+  const PlaybackState state = def_.playback->state(now_ns);
+  respond(place, Json({{"status", to_text(state.status)},
+                       {"time", static_cast<double>(state.time_ns) * 1e-9},
+                       {"speed", static_cast<double>(state.speed)}}));
+  publish_playback(now_ns);
+}
+
+// ---- /session.json
+// ----------------------------------------------------------------------------------------------------
+
+Json Gateway::description(const observer::SessionView& view) const {
+  Json variables = Json::array(), inputs = Json::array(), calls = Json::array();
+  for (const observer::VariableView* variable : view.variables())
+    variables.push_back({{"name", variable->name}, {"unit", variable->unit}});
+  for (const InputChannel& input : inputs_.channels()) {
+    inputs.push_back({{"name", input.name},
+                      {"topic", "/inputs/" + input.name},
+                      {"is_digital", input.is_digital},
+                      {"is_lockstep", input.is_lockstep}});
+  }
+  for (const ServiceInfo& service : services_) calls.push_back({{"name", service.name}, {"request", service.request}});
+  return {{"session", def_.name},
+          {"scene", scene_.name},
+          {"is_recording", def_.playback != nullptr},
+          {"may_steer", is_steering()},
+          {"variables", std::move(variables)},
+          {"inputs", std::move(inputs)},
+          {"services", std::move(calls)},
+          {"parameters", is_steering() ? parameters_.values({}) : Json::array()}};
+}
+
+}  // namespace slew::gateway

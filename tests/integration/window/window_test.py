@@ -1,0 +1,228 @@
+#!/usr/bin/env python3
+"""The window of a session and of a recording, from outside:
+
+window_test.py SOURCES SLEWRING PACKAGES CASE
+PACKAGES: folder in which the packages of the client are installed.
+"""
+import fcntl
+import hashlib
+import http.client
+import json
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../support"))
+from waiting import DEADLINE, require, skip, text_of, wait_for  # noqa: E402
+
+SOURCES, SLEWRING, PACKAGES, CASE = sys.argv[1:5]
+HERE = os.path.dirname(os.path.abspath(__file__))
+SESSION = "window_test"
+
+
+def take_domain():
+    """A DDS domain that no other test on this host uses (tests/support/test_domain.h)."""
+    for i in range(99):
+        number = 1 + (os.getpid() + i) % 99
+        file = os.open(f"{tempfile.gettempdir()}/slewring-test-domain-{number}", os.O_RDONLY | os.O_CREAT, 0o666)
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return str(number)
+        except OSError:
+            os.close(file)
+    sys.exit("FAILED: all test domains are in use")
+
+
+def install_packages():
+    if shutil.which("node") is None or shutil.which("npm") is None:
+        skip("node and npm are needed for a client of the Foxglove protocol")
+    with open(f"{HERE}/package-lock.json", "rb") as lock:
+        wanted = hashlib.sha256(lock.read()).hexdigest()
+    os.makedirs(PACKAGES, exist_ok=True)
+    stamp = f"{PACKAGES}/installed.sha256"
+    for name in ("package.json", "package-lock.json", "client.mjs"):
+        shutil.copy(f"{HERE}/{name}", PACKAGES)
+    if os.path.exists(stamp) and text_of(stamp) == wanted:
+        return
+    done = subprocess.run(["npm", "ci", "--no-audit", "--no-fund", "--ignore-scripts", "--fetch-retries=1"],
+                          cwd=PACKAGES, capture_output=True, text=True)
+    if done.returncode != 0:
+        output = done.stdout + done.stderr
+        if re.search("ENOTFOUND|EAI_AGAIN|ECONNREFUSED|ECONNRESET|ETIMEDOUT|ENETUNREACH|EHOSTUNREACH|ERR_SOCKET|E[45]..",
+                     output):
+            skip(f"the npm registry does not deliver the packages:\n{output}")
+        sys.exit(f"FAILED: npm ci:\n{output}")
+    with open(stamp, "w") as file:
+        file.write(wanted)
+
+
+class Program:
+    """A process of slewring; its output is in files."""
+
+    def __init__(self, folder, name, *arguments):
+        self.out = f"{folder}/{name}.out"
+        with open(self.out, "w") as out, open(f"{folder}/{name}.err", "w") as err:
+            self.process = subprocess.Popen([SLEWRING, *arguments], stdin=subprocess.DEVNULL, stdout=out, stderr=err,
+                                            cwd=folder)
+
+    def address(self):
+        """Of the page, when it is printed."""
+        def found():
+            require(self.process.poll() is None, f"the window ended: {text_of(self.out)}{text_of(self.out[:-3] + 'err')}")
+            return re.search(r'"page":"http://([^/]*)/', text_of(self.out))
+        return wait_for("the address of the window", found)[1]
+
+    def end(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+        try:
+            return self.process.wait(DEADLINE)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            sys.exit("FAILED: a program does not end at SIGINT")
+
+
+def start_scene(folder, domain, *more):
+    """The crane with its window, from one command. A machine that is busy keeps up with 4 ms."""
+    return Program(folder, "window", "window", f"{SOURCES}/scenes/truck_crane.yaml", "--port", "0", "--json",
+                   "--session", SESSION, "--domain", domain, "--step", "4 ms", "--no-record", "--quiet",
+                   "--set", "session.give_up_after=60 s", "--set", "session.controller_timeout=60 s", *more)
+
+
+def run_client(*arguments):
+    done = subprocess.run(["node", f"{PACKAGES}/client.mjs", *arguments], capture_output=True, text=True, timeout=280)
+    print(done.stdout)
+    require(done.returncode == 0, f"the client ended with {done.returncode}:\n{done.stderr}")
+
+
+def live(folder):
+    install_packages()
+    domain = take_domain()
+    window = start_scene(folder, domain)
+    try:
+        run_client("live", f"ws://{window.address()}/", SLEWRING, "--session", SESSION, "--domain", domain)
+        code = window.end()
+        require(code in (0, 3, 130), f"the window ended with {code}: {text_of(f'{folder}/window.err')}")
+        require("has ended" in text_of(window.out), f"the window does not report the end: {text_of(window.out)}")
+    finally:
+        window.process.kill()
+
+
+def recording(folder):
+    install_packages()
+    subprocess.run([SLEWRING, "run", f"{SOURCES}/scenes/truck_crane.yaml", "--in-process", "--pace", "free", "--duration",
+                    "2 s", "--out", f"{folder}/runs", "--quiet"], check=True, capture_output=True, cwd=folder)
+    path = f"{folder}/runs/" + os.listdir(f"{folder}/runs")[0]
+    window = Program(folder, "window", "window", path, "--port", "0", "--json")
+    try:
+        run_client("recording", f"ws://{window.address()}/", SLEWRING, path)
+        require(window.end() == 130, "the window does not end by SIGINT")
+    finally:
+        window.process.kill()
+
+
+def request(address, target="/", method="GET", host=None, **headers):
+    connection = http.client.HTTPConnection(address, timeout=DEADLINE)
+    connection.putrequest(method, target, skip_host=True, skip_accept_encoding=True)
+    connection.putheader("Host", address if host is None else host)
+    for name, value in headers.items():
+        connection.putheader(name.replace("_", "-"), value)
+    connection.endheaders()
+    answer = connection.getresponse()
+    return answer.status, answer.read().decode()
+
+
+UPGRADE = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec_WebSocket_Version": "13",
+           "Sec_WebSocket_Key": "dGhlIHNhbXBsZSBub25jZQ=="}
+
+
+def send_raw(address, data):
+    """Bytes, and whether the connection was closed or answered in the end."""
+    host, port = address.rsplit(":", 1)
+    with socket.create_connection((host, int(port)), timeout=DEADLINE) as connection:
+        try:
+            connection.sendall(data)
+            connection.shutdown(socket.SHUT_WR)
+            while connection.recv(65536):
+                pass
+        except OSError:  # closed with bytes unread
+            pass
+
+
+def open_websocket(address, target="/"):
+    host, port = address.rsplit(":", 1)
+    connection = socket.create_connection((host, int(port)), timeout=DEADLINE)
+    connection.sendall((f"GET {target} HTTP/1.1\r\nHost: {address}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+                        "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                        "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n").encode())
+    head = b""
+    while b"\r\n\r\n" not in head:
+        head += connection.recv(1)
+    require(head.startswith(b"HTTP/1.1 101"), head.decode())
+    return connection
+
+
+def door(folder):
+    with open(f"{folder}/token", "w") as file:
+        file.write("0123456789abcdef0123\n")
+    domain = take_domain()
+    window = start_scene(folder, domain, "--token-file", f"{folder}/token")
+    try:
+        address = window.address()
+        query = "?token=0123456789abcdef0123"
+        is_open = lambda: request(address, f"/session.json{query}")[0] == 200
+        require(is_open(), "the session's description was refused")
+        inputs = [one["name"] for one in json.loads(request(address, f"/session.json{query}")[1])["inputs"]]
+        require("Input_Lift" in inputs, f"inputs: {inputs}")
+        require("page.js" in request(address)[1] or "<script" in request(address)[1], "there is no page")
+        foxglove = {**UPGRADE, "Sec_WebSocket_Protocol": "foxglove.sdk.v1"}
+        for expected, answer in (
+                (403, request(address, host="evil.com")), (403, request(address, Origin="http://evil.com")),
+                (404, request(address, "/../../etc/passwd")), (404, request(address, "/%2e%2e/etc/passwd")),
+                (404, request(address, "/.git/config")), (404, request(address, "/no_such_file")),
+                (405, request(address, method="DELETE")), (414, request(address, "/" + "a" * 4000)),
+                (401, request(address, "/session.json")), (401, request(address, "/?token=0123", **foxglove)),
+                (400, request(address, f"/{query}", **UPGRADE)),
+                (403, request(address, f"/{query}", Origin="null", **foxglove))):
+            require(answer[0] == expected, f"expected {expected}, got {answer}")
+            require(len(answer[1]) > 10, f"{expected} without a reason")
+        # what is no HTTP, a header without an end, a body that was not wanted
+        for data in (b"\0" * 1000, b"GET / HTTP/1.1\r\n" + b"X: " + b"y" * 100_000, b"\x16\x03\x01" * 500,
+                     f"POST / HTTP/1.1\r\nHost: {address}\r\nContent-Length: 99999999\r\n\r\nabc".encode()):
+            send_raw(address, data)
+        require(is_open(), "the door does not answer after damaged requests")
+        # frames: without a mask, of a length beyond 2^62, of an unknown kind, of a text that is no UTF-8
+        for frame in (b"\x81\x02{}", b"\x82\xff\x7f" + b"\xff" * 7 + b"\0\0\0\0", b"\x8f\x80\0\0\0\0",
+                      b"\x81\x82\0\0\0\0\xff\xff"):
+            with open_websocket(address, f"/{query}") as connection:
+                connection.sendall(frame)
+                wait_for("the end of a damaged connection", lambda: connection.recv(65536) == b"")
+        # more connections than there is room for
+        many = [socket.create_connection(tuple(address.rsplit(":", 1)), timeout=DEADLINE) for _ in range(100)]
+        for connection in many:
+            connection.close()
+        wait_for("an open door after a hundred connections", is_open)
+        require(window.process.poll() is None, "the window has ended")
+        run = subprocess.run([SLEWRING, "sessions", "--domain", domain, "--json"], capture_output=True, text=True)
+        require(SESSION in run.stdout, "the session is gone")
+        window.end()
+    finally:
+        window.process.kill()
+    for arguments, text in ((("--listen", "0.0.0.0"), "name a file with --token-file"),
+                            (("--listen", "here"), "is no address"),
+                            (("--token-file", "/dev/null"), "no token")):
+        done = subprocess.run([SLEWRING, "window", "--session", "none", "--domain", domain, *arguments],
+                              capture_output=True, text=True, timeout=DEADLINE)
+        require(done.returncode == 2 and text in done.stderr, f"{arguments}: {done.returncode}: {done.stderr}")
+
+
+CASES = {"AForeignClientWatchesAndChangesALiveSession": live, "ARecordingIsSoughtByAForeignClient": recording,
+         "TheDoorRefusesHostileRequests": door}
+with tempfile.TemporaryDirectory(prefix="slewring_window_") as scratch:
+    CASES[CASE](scratch)

@@ -1,0 +1,54 @@
+#include "view_node/saved_files.h"
+
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "core/failure.h"
+#include "core/json.h"
+
+namespace slew::view_node {
+
+void SavedFiles::start(const char* command, const std::string& name, Done done) {
+  if (running_.size() >= kMostAtOnce)
+    return done("four states are being saved or loaded; nothing was done; try again later", kJoinStep);
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) return done(folder_ + ": " + error.message() + "; nothing was done; choose a --saves folder", kJoinStep);
+  std::vector<std::string> arguments = {
+      "control",   command,          (std::filesystem::path(folder_) / (name + ".saved")).string(),
+      "--session", session_.session, "--json"};
+  const std::vector<std::string> network = node::network_arguments(session_);
+  arguments.insert(arguments.end(), network.begin(), network.end());
+  try {
+    running_.push_back(
+        {std::make_unique<ChildProcess>(command, sibling_program("slewring"), arguments), std::move(done)});
+  } catch (const Failure& failure) {  // there is no process for it
+    done(failure.what(), kJoinStep);
+  }
+}
+
+void SavedFiles::poll() {
+  for (std::size_t i = 0; i < running_.size();) {
+    const std::optional<ProcessEnd> end = running_[i].process->poll_end();
+    for (const std::string& line : running_[i].process->take_lines()) running_[i].output += line + "\n";
+    if (!end) {
+      ++i;
+      continue;
+    }
+    const Running ended = std::move(running_[i]);
+    running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(i));
+    const bool is_done = end->exit_code == 0 && end->signal == 0;
+    const std::size_t begin = ended.output.find('{');
+    const auto answer =
+        begin == std::string::npos ? std::nullopt : Json::parse(std::string_view(ended.output).substr(begin));
+    if (is_done && answer) {
+      ended.done("", answer->at("step").integer());
+    } else {
+      ended.done(ended.output.empty() ? end->text() : ended.output.substr(0, ended.output.find_last_not_of('\n') + 1),
+                 kJoinStep);
+    }
+  }
+}
+
+}  // namespace slew::view_node

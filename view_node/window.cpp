@@ -1,0 +1,244 @@
+#include "view_node/window.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <memory>
+#include <optional>
+
+#include "core/failure.h"
+#include "core/json.h"
+#include "gateway/gateway.h"
+#include "node/driver.h"
+#include "node/identity.h"
+#include "session/recorded.h"
+#include "session/survey.h"
+#include "view_node/page_files.h"
+#include "view_node/recorded_source.h"
+#include "view_node/saved_files.h"
+#include "view_node/server.h"
+
+namespace slew::view_node {
+namespace {
+
+using Report = std::function<void(const std::string&)>;
+
+constexpr SimDuration kRound = milliseconds(5);
+constexpr SimDuration kLastRound = milliseconds(500);  // for the last events of clients
+constexpr std::size_t kShortestToken = 16;
+constexpr std::int64_t kSilentNs = 5'000'000'000;  // nodes publish their health ten times a second
+
+std::string read_token(const std::string& path) {
+  if (path.empty()) return "";
+  std::ifstream file(path);
+  std::string token;
+  std::getline(file, token);
+  const bool is_plain = token.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.~") ==
+                        std::string::npos;
+  if (file && is_plain && token.size() >= kShortestToken) return token;
+  throw Failure(ExitCode::bad_input,
+                fmt::format("--token-file {}: its first line is no token of at least {} letters, digits, '-', '_', '.' "
+                            "and '~'; nothing was started; make one with 'openssl rand -hex 16 > FILE'",
+                            path, kShortestToken));
+}
+
+ServerDef server_def(const WindowOptions& options) {
+  ServerDef def;
+  def.address = options.listen;
+  def.port = static_cast<std::uint16_t>(options.port);
+  def.door = {options.hosts, options.origins, read_token(options.token_file)};
+  def.web = options.web.empty() ? find_page() : options.web;
+  if (!gateway::is_address(options.listen)) {
+    throw Failure(ExitCode::bad_input, fmt::format("--listen {}: this is no address; nothing was started; expected one "
+                                                   "such as 127.0.0.1",
+                                                   options.listen));
+  }
+  if (!gateway::is_loopback(options.listen) && def.door.token.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("--listen {} leaves this machine, and without a token every program on that network can "
+                              "read and steer the session; nothing was started; name a file with --token-file "
+                              "('openssl rand -hex 16 > FILE' makes one)",
+                              options.listen));
+  }
+  return def;
+}
+
+void report_address(const WindowOptions& options, const Server& server, const std::string& what, bool has_token,
+                    const Report& report) {
+  const bool is_v6 = options.listen.find(':') != std::string::npos;
+  const std::string host = fmt::format("{}:{}", is_v6 ? "[" + options.listen + "]" : options.listen, server.port());
+  const char* const query = has_token ? "?token=..." : "";
+  if (options.is_json) {
+    report(Json({{"name", what}, {"page", "http://" + host + "/" + query}, {"foxglove", "ws://" + host + "/" + query}})
+               .dump());
+  } else {
+    report(fmt::format("{}: http://{}/{} (Foxglove, Lichtblick: ws://{}/{})", what, host, query, host, query));
+  }
+}
+
+// Gives clients the reason, and the time to receive it.
+void end(gateway::Gateway& gateway, Server& server, const std::string& reason, const Report& report) {
+  report(reason);
+  gateway.end(reason);
+  const std::int64_t end_ns = monotonic_ns() + kLastRound.ns;
+  while (gateway.clients() > 0 && monotonic_ns() < end_ns) server.poll(kRound);
+}
+
+// ---- a live session
+// ---------------------------------------------------------------------------------------------------
+
+// Receives for a gateway that is made when the session is found; names and values of before are in the view.
+class LateReceiver final : public observer::Receiver {
+ public:
+  void begin_session() override { has_new_session_ = gateway_ != nullptr; }
+  void take_block(const wire::VariableBlock& block, std::span<const std::byte> bytes, double time) override {
+    if (gateway_ != nullptr) gateway_->take_block(block, bytes, time);
+  }
+  void take_lease(const wire::ControllerLease& lease) override {
+    if (gateway_ != nullptr) gateway_->take_lease(lease);
+  }
+  void take_reply(const wire::ControlReply& reply) override {
+    if (gateway_ != nullptr) gateway_->take_reply(reply);
+  }
+  void set_gateway(gateway::Gateway* gateway) noexcept { gateway_ = gateway; }
+  [[nodiscard]] bool has_new_session() const noexcept { return has_new_session_; }
+
+ private:
+  gateway::Gateway* gateway_ = nullptr;
+  bool has_new_session_ = false;
+};
+
+std::unique_ptr<observer::Observer> wait_for_session(const WindowOptions& options, observer::Receiver& receiver) {
+  const auto access = options.is_looking_only ? session::Access::look : session::Access::steer;
+  const std::int64_t end_ns = monotonic_ns() + duration_of_seconds(options.session_timeout).ns;
+  while (true) {
+    try {
+      return session::find_session(options.session, access, &receiver);
+    } catch (const Failure& failure) {
+      if (failure.code() != ExitCode::failed || monotonic_ns() > end_ns) throw;
+    }
+  }
+}
+
+gateway::GatewayDef live_def(const WindowOptions& options, observer::Observer& observer, SavedFiles& saved) {
+  gateway::GatewayDef def;
+  def.name = observer.session_name();
+  def.session_id = node::to_text(observer.view().session().header.session);
+  def.controller = fmt::format("window-{}", getpid());
+  if (options.is_looking_only) return def;
+  def.saved = &saved;
+  // one that cannot be sent stays without an answer, which its client receives as a refusal
+  def.send_request = [&observer](wire::ControlRequest request) {
+    if (request.request == 0) request.request = observer::Observer::draw_number();
+    try {
+      return observer.send(request);
+    } catch (const Failure&) {
+      return request.request;
+    }
+  };
+  def.send_input = [&observer](const wire::ControllerInput& input) {
+    wire::ControllerInput message = input;
+    message.session = observer.session_name();
+    static_cast<void>(observer.send(message));  // its silence is neutral
+  };
+  return def;
+}
+
+// Processes that were killed publish no end.
+class Silence {
+ public:
+  // A sentence when the session falls silent or publishes again.
+  [[nodiscard]] std::optional<std::string> look(const observer::SessionView& view, std::int64_t now_ns) {
+    std::uint64_t all = 0;
+    for (const wire::Role role : wire::kNodeRoles) all += view.node(role).healths;
+    if (all != healths_ || received_ns_ == 0) received_ns_ = now_ns;
+    healths_ = all;
+    const bool is_silent = now_ns - received_ns_ > kSilentNs;
+    if (is_silent == std::exchange(was_silent_, is_silent)) return std::nullopt;
+    return is_silent ? "no message of the session has come for 5 s; look with 'slewring sessions' whether it still runs"
+                     : "messages of the session come again";
+  }
+
+ private:
+  std::uint64_t healths_ = 0;
+  std::int64_t received_ns_ = 0;
+  bool was_silent_ = false;
+};
+
+ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& report) {
+  LateReceiver receiver;
+  const auto observer = wait_for_session(options, receiver);
+  const observer::SessionView& view = observer->view();
+  node::SessionOptions of_session = options.session;
+  of_session.session = observer->session_name();
+  SavedFiles saved(options.saves, of_session);
+  gateway::Gateway gateway(live_def(options, *observer, saved),
+                           scene::load_text(view.session().scene_text, view.session().scene_name));
+  receiver.set_gateway(&gateway);
+  def.description = [&] { return gateway.description(view); };
+  const bool has_token = !def.door.token.empty();
+  Server server(std::move(def), gateway);
+  report_address(options, server, "session '" + observer->session_name() + "'", has_token, report);
+  Silence silence;
+  const auto is_over = [&] { return view.is_over() || receiver.has_new_session(); };
+  while (!is_over() && !observer->is_stopped()) {
+    observer->drain();
+    const std::int64_t now_ns = monotonic_ns();
+    if (!is_over()) gateway.poll(view, now_ns);
+    saved.poll();
+    if (const auto text = silence.look(view, now_ns)) {
+      report(*text);
+      gateway.add_event(gateway::LogLevel::warning, "window", *text);
+    }
+    server.poll(kRound);
+  }
+  std::string reason = "the window was closed";
+  if (receiver.has_new_session()) {
+    reason = "another session of this name has begun; open the window again for it";
+  } else if (view.is_over()) {
+    const std::string cause = view.end().value_or("");
+    reason = fmt::format("session '{}' has ended{}{}", observer->session_name(), cause.empty() ? "" : ": ", cause);
+  }
+  end(gateway, server, reason, report);
+  receiver.set_gateway(nullptr);
+  return static_cast<ExitCode>(node::stop_requested.load());
+}
+
+// ---- a recording
+// ------------------------------------------------------------------------------------------------------
+
+ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report& report) {
+  const auto reader = session::open_recording(options.recording);
+  RecordedSource source(*reader);
+  const recording::SessionIdentity& identity = reader->identity();
+  gateway::GatewayDef gateway_def;
+  gateway_def.name = identity.session_name;
+  gateway_def.session_id = identity.session_id + "-recorded";
+  gateway_def.playback = &source;
+  gateway_def.range = source.range();
+  gateway::Gateway gateway(std::move(gateway_def),
+                           scene::load_text(session::recorded_scene_text(*reader), identity.scene));
+  def.description = [&] { return gateway.description(source.view()); };
+  const bool has_token = !def.door.token.empty();
+  Server server(std::move(def), gateway);
+  report_address(options, server, "recording '" + reader->path().string() + "'", has_token, report);
+  while (node::stop_requested.load() == 0) {
+    const std::int64_t now_ns = monotonic_ns();
+    gateway.poll(source.view(), now_ns);
+    source.poll(gateway, now_ns);
+    server.poll(kRound);
+  }
+  end(gateway, server, "the window was closed", report);
+  return static_cast<ExitCode>(node::stop_requested.load());
+}
+
+}  // namespace
+
+ExitCode run_window(const WindowOptions& options, const Report& report) {
+  ServerDef def = server_def(options);
+  return options.recording.empty() ? run_live(options, std::move(def), report)
+                                   : run_recorded(options, std::move(def), report);
+}
+
+}  // namespace slew::view_node

@@ -1,0 +1,63 @@
+#include "view_node/window_options.h"
+
+#include <fmt/format.h>
+
+namespace slew::view_node {
+
+void add_window_options(options::Command& verb, WindowOptions& options) {
+  verb.option("--port", options.port, "TCP port of the page and of the Foxglove protocol; 0: any free one")
+      .between(std::uint32_t{0}, std::uint32_t{65535})
+      .value_name("PORT")
+      .show_default()
+      .group("Window");
+  verb.option("--listen", options.listen, "address to listen on; one beyond this machine needs --token-file")
+      .value_name("ADDRESS")
+      .show_default()
+      .group("Window");
+  verb.option("--token-file", options.token_file, "file whose first line clients must add to the address as ?token=...")
+      .value_name("FILE")
+      .group("Window");
+  verb.option("--host", options.hosts, "accept this name of the machine in addresses; repeat for more")
+      .one_value_each()
+      .value_name("NAME")
+      .group("Window");
+  verb.option("--allow-origin", options.origins,
+              "accept pages of this origin, such as https://app.foxglove.dev; repeat for more")
+      .one_value_each()
+      .value_name("ORIGIN")
+      .group("Window");
+  verb.flag("--view-only", options.is_looking_only, "no parameters, no services, no inputs").group("Window");
+  verb.option("--saves", options.saves, "folder in which clients save and load states of the session")
+      .value_name("DIR")
+      .show_default()
+      .group("Window");
+  verb.option("--web", options.web, "folder of the page; without it the installed one")
+      .value_name("DIR")
+      .group("Window");
+}
+
+std::vector<std::string> window_arguments(const WindowOptions& options) {
+  std::vector<std::string> arguments = {
+      "--port",       std::to_string(options.port), "--listen",
+      options.listen, "--session-timeout",          fmt::format("{}", options.session_timeout)};
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) arguments.insert(arguments.end(), {name, value});
+  };
+  add("--token-file", options.token_file);
+  for (const std::string& host : options.hosts) add("--host", host);
+  for (const std::string& origin : options.origins) add("--allow-origin", origin);
+  add("--web", options.web);
+  add("--saves", options.saves);
+  if (options.is_looking_only) arguments.emplace_back("--view-only");
+  if (options.is_json) arguments.emplace_back("--json");
+  if (!options.recording.empty()) {
+    arguments.push_back(options.recording);
+    return arguments;
+  }
+  add("--session", options.session.session);
+  const std::vector<std::string> network = node::network_arguments(options.session);
+  arguments.insert(arguments.end(), network.begin(), network.end());
+  return arguments;
+}
+
+}  // namespace slew::view_node

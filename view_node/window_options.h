@@ -1,0 +1,36 @@
+// Options of `slewring window` and view_node for the gateway.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "node/session_options.h"
+#include "options/options.h"
+
+namespace slew::view_node {
+
+inline constexpr std::uint32_t kDefaultPort = 8765;  // the one that Foxglove and Lichtblick propose
+
+struct WindowOptions {
+  node::SessionOptions session;  // a live one
+  std::string recording;         // in its place; empty: none
+  double session_timeout = 30;   // s
+  std::uint32_t port = kDefaultPort;
+  std::string listen = "127.0.0.1";
+  std::string token_file;            // its first line is the token; empty: none
+  std::vector<std::string> hosts;    // gateway::DoorDef
+  std::vector<std::string> origins;  // gateway::DoorDef
+  std::string web;                   // folder of the page; empty: the built one
+  std::string saves = "saved";       // folder of saved states
+  bool is_looking_only = false;
+  bool is_json = false;
+};
+
+// All but the session's and the recording.
+void add_window_options(options::Command& verb, WindowOptions& options);
+
+// The same as command-line arguments, for a child process: with those of the session or the recording.
+[[nodiscard]] std::vector<std::string> window_arguments(const WindowOptions& options);
+
+}  // namespace slew::view_node
