@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/installation.h"
 #include "core/time.h"
 
 namespace slew::cli {

@@ -9,6 +9,7 @@
 #include "cli/verbs.h"
 #include "cli/window_process.h"
 #include "core/failure.h"
+#include "core/installation.h"
 
 namespace slew::cli {
 namespace {

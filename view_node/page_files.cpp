@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "core/child_process.h"
+#include "core/installation.h"
 #include "view_node/built_in_page.h"
 
 namespace slew::view_node {
@@ -57,12 +57,12 @@ std::optional<PageFile> read_page_file(const std::string& folder, const std::str
 }
 
 std::string find_page() {
-  const fs::path programs = fs::path(sibling_program("view_node")).parent_path();
-  for (const fs::path& candidate : {programs / "../share/slewring/web", programs / "../web"}) {
-    std::error_code error;
-    if (fs::is_regular_file(candidate / "index.html", error)) return candidate.lexically_normal().string();
-  }
-  return "";
+  const std::string scenes = installed_scenes();
+  const fs::path beside =
+      scenes.empty() ? fs::path(sibling_program("view_node")).parent_path() / ".." : fs::path(scenes) / "..";
+  const fs::path page = (beside / "web").lexically_normal();
+  std::error_code error;
+  return fs::is_regular_file(page / "index.html", error) ? page.string() : "";
 }
 
 }  // namespace slew::view_node

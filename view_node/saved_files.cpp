@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/failure.h"
+#include "core/installation.h"
 #include "core/json.h"
 
 namespace slew::view_node {
