@@ -82,10 +82,10 @@ TEST(PlatformSection, WhatCannotMoveIsRefused) {
   expect_problem(with(whole, "127.0.0.1:6000", "platform"),
                  "test:11:11: Seat.send: 'platform' is no address; expected IPv4 address and port, as 127.0.0.1:5005");
   expect_problem(kBall + platform(whole + "    park_height: 0.3 m\n" + kFields),
-                 "test:17:18: Seat.park_height: a leg is 0.6604 m long when parked; expected 0.72 m or more");
+                 "test:17:18: Seat.park_height: a leg is 0.6755 m long when parked; expected 0.72 m or more");
   expect_problem(
       kBall + platform(whole + "    every: 30 ms\n" + kFields),
-      "test:7:5: Seat.freeze_after: 0.05 s are less than two steps of the platform; expected 0.06 s or more, "
+      "test:6:3: Seat.freeze_after: 0.05 s are less than two steps of the platform; expected 0.06 s or more, "
       "or a shorter every");
   expect_problem(kBall + platform(whole + "    conditions: [Ball]\n" + kFields),
                  "test:17:17: Seat.conditions: 'Ball' is no condition; expected a variable, > >= < or <=, and a "
