@@ -58,7 +58,7 @@ std::string_view token_of(std::string_view query) noexcept {
 
 // A relative path of plain names: no "..", no hidden file, no encoded character. None: it is another one.
 std::optional<std::string> plain_path(std::string_view path) {
-  if (!path.starts_with('/')) return std::nullopt;
+  if (!path.starts_with('/') || path.find("..") != std::string_view::npos) return std::nullopt;
   path.remove_prefix(1);
   bool is_begin = true;  // of a name
   for (const char c : path) {

@@ -342,10 +342,11 @@ Program::Program(const std::string& name, const std::string& description)
 Program::~Program() = default;
 
 void Program::version(const std::string& text, const std::string& as_json) {
-  CLI::Option* const json = app_->add_flag("--json")->description("with --version: as JSON");
+  CLI::Option* const own = app_->get_option_no_throw("--json");  // of a program whose lines may be JSON
+  CLI::Option* const json = own != nullptr ? own : app_->add_flag("--json")->description("with --version: as JSON");
   CLI::Option* const version = app_->set_version_flag(
       "--version", [text, as_json, json] { return json->count() > 0 ? as_json : text; }, "print version and build");
-  json->needs(version);
+  if (own == nullptr) json->needs(version);
 }
 
 Command Program::find_command(const std::vector<std::string>& verbs) const {
