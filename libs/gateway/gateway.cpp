@@ -222,6 +222,7 @@ void Gateway::take_lease(const wire::ControllerLease& lease) {
   std::string& holder = seen_.holders[lease.channel];
   if (holder == lease.holder) return;
   holder = lease.holder;
+  seen_.has_changed = true;
   add_event(LogLevel::info, "io",
             lease.holder.empty()
                 ? "input " + lease.channel + " is free" + (lease.reason.empty() ? "" : ": " + lease.reason)
@@ -315,14 +316,17 @@ void Gateway::publish_playback(std::int64_t now_ns) {
 }
 
 void Gateway::watch_nodes(const observer::SessionView& view) {
-  if (const bool is_paused = view.is_paused(); is_paused != std::exchange(seen_.is_paused, is_paused))
+  if (const bool is_paused = view.is_paused(); is_paused != std::exchange(seen_.is_paused, is_paused)) {
+    seen_.has_changed = true;
     add_event(LogLevel::info, "io", is_paused ? "the session is paused" : "the session goes on");
+  }
   for (const wire::Role role : wire::kNodeRoles) {
     const observer::NodeView& node = view.node(role);
     wire::NodeState& state = seen_.states[static_cast<std::size_t>(role)];
     if (!node.is_known || node.status.state == state) continue;
     state = node.status.state;
-    const bool is_bad = state == wire::NodeState::holding || state == wire::NodeState::fault;
+    seen_.has_changed = true;
+    const bool is_bad = state == wire::NodeState::fault || (state == wire::NodeState::holding && !seen_.is_paused);
     add_event(is_bad ? LogLevel::warning : LogLevel::info, std::string(node::to_text(role)),
               fmt::format("{}{}{}", node::to_text(state), node.status.reason.empty() ? "" : ": ", node.status.reason));
   }
@@ -360,6 +364,8 @@ void Gateway::poll(const observer::SessionView& view, std::int64_t now_ns) {
     if (stands && built_places_ > 0 && snapshot_.take(view) && snapshot_.step() != shown)
       publish(static_cast<std::uint64_t>(start_of(snapshot_.step(), {view.session().step_ns}).ns));
   }
+  // a session that stands publishes no step that would bring them
+  if (std::exchange(seen_.has_changed, false) && revision_ > 0) publish(time_ns_);
   if (is_steering()) {
     requests_.poll(now_ns);
     parameters_.poll(now_ns);

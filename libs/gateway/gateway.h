@@ -212,6 +212,7 @@ class Gateway final : public observer::Receiver {
     bool is_paused = false;
     std::array<wire::NodeState, wire::kRoles> states{};
     std::map<std::string, std::string> holders{};  // by input
+    bool has_changed = false;                      // since the last values
   } seen_;                                         // what the events have stated
 };
 

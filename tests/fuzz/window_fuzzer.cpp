@@ -93,7 +93,8 @@ void take_messages(fuzz::Choices choices) {
   std::size_t requests = session.requests;
   while (choices.has_more()) {
     const auto type = choices.byte() % 2 == 0 ? FrameType::text : FrameType::binary;
-    const std::size_t size = choices.byte() * std::size_t{4} + choices.below(4);
+    const std::size_t fours = choices.byte();
+    const std::size_t size = 4 * fours + choices.below(4);
     std::string bytes;
     while (bytes.size() < size && choices.has_more()) bytes.push_back(static_cast<char>(choices.byte()));
     const gateway::DecodedMessage decoded =

@@ -216,7 +216,8 @@ async function recording() {
   require(client.info.capabilities.includes("playbackControl"), "there is no capability playbackControl");
   require(seconds(client.info.dataStartTime) === 0 && seconds(client.info.dataEndTime) >= 2, JSON.stringify(client.info));
   client.subscribe("/Cyl_Lift");
-  const rows = run("export", rest[0], "--csv", "Cyl_Lift.stroke").split("\n").slice(1).map((line) => line.split(",").map(Number));
+  const table = run("export", rest[0], "--csv", "Cyl_Lift.stroke").trim().split("\n").slice(1);
+  const rows = table.map((line) => line.split(",").map(Number));
   // forwards, backwards, and to times between two steps
   for (const time of [1.5, 0.25, 1.0005, 1.9]) {
     client.playback.length = 0;

@@ -87,6 +87,21 @@ TEST_F(GatewayTest, AnEventReachesSubscribersAndThoseThatComeLater) {
   }
 }
 
+TEST_F(GatewayTest, APauseIsShownAlthoughNoStepFollows) {
+  const ClientId client = connect();
+  subscribe(client, 1, channel_of(take_all(client), "/slewring/session"));
+  do_step(5, 1);
+  EXPECT_FALSE(take_all(client).messages(1).back().at("is_paused").boolean());
+  wire::NodeStatus status;
+  status.header = header(Role::io, 0, 5);
+  status.state = wire::NodeState::holding;
+  show(status);
+  gateway.poll(view, now_ns);
+  const std::vector<Json> messages = take_all(client).messages(1);
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_TRUE(messages[0].at("is_paused").boolean());
+}
+
 TEST_F(GatewayTest, AResetGivesANewSessionIdAndKeepsSubscriptions) {
   const ClientId client = connect();
   const Received before = take_all(client);
