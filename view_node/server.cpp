@@ -140,8 +140,19 @@ class Connection : public std::enable_shared_from_this<Connection> {
     http::async_write(stream_.next_layer(), response_, [self = shared_from_this()](error_code, std::size_t) {
       error_code ignored;
       self->stream_.next_layer().shutdown(tcp::socket::shutdown_send, ignored);
-      self->drop();
+      self->deadline_ns_ = monotonic_ns() + kClosingNs;
+      self->read_rest();
     });
+  }
+
+  // A socket that is closed with bytes of its client unread takes the answer back.
+  void read_rest() {
+    buffer_.clear();
+    stream_.next_layer().async_read_some(buffer_.prepare(kMostHeaderBytes),
+                                         [self = shared_from_this()](error_code error, std::size_t) {
+                                           if (error) return self->drop();
+                                           self->read_rest();
+                                         });
   }
 
   void accept(gateway::Subprotocol subprotocol) {

@@ -176,7 +176,13 @@ def door(folder):
     try:
         address = window.address()
         query = "?token=0123456789abcdef0123"
-        is_open = lambda: request(address, f"/session.json{query}")[0] == 200
+
+        def is_open():
+            try:
+                return request(address, f"/session.json{query}")[0] == 200
+            except OSError:
+                return False
+
         require(is_open(), "the session's description was refused")
         inputs = [one["name"] for one in json.loads(request(address, f"/session.json{query}")[1])["inputs"]]
         require("Input_Lift" in inputs, f"inputs: {inputs}")
