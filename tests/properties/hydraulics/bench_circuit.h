@@ -1,6 +1,7 @@
 // A circuit that holds one of every component type that the truck crane does not use, for tests.
 #pragma once
 
+#include "hydraulics/components/check_valves.h"
 #include "hydraulics/components/compensated_orifice.h"
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_rod_cylinder.h"
@@ -9,6 +10,21 @@
 
 namespace slew::hydraulics::test {
 
+// Check valves of every type between the bench's volumes.
+inline void add_check_valves(HydraulicsDef& circuit) {
+  CheckValveDef& check = add<CheckValveDef>(circuit, "Check");
+  check.port_1 = "Vol_T", check.port_2 = "Vol_A", check.common.nominal_flow = 1e-3;
+  ThrottleCheckValveDef& throttle = add<ThrottleCheckValveDef>(circuit, "Throttle_Check");
+  throttle.port_1 = "Vol_P", throttle.port_2 = "Vol_B", throttle.common.nominal_flow = 1e-3;
+  throttle.throttle_flow = 2e-4, throttle.throttle_opening = 0.7;
+  PilotCheckValveDef& piloted = add<PilotCheckValveDef>(circuit, "Pilot_Check");
+  piloted.port_1 = "Vol_A", piloted.port_2 = "Vol_C", piloted.port_3 = "Vol_P", piloted.port_4 = "Vol_T";
+  piloted.pilot_ratio = 3, piloted.common.nominal_flow = 5e-4;
+  DoublePilotCheckValveDef& lock = add<DoublePilotCheckValveDef>(circuit, "Lock");
+  lock.port_a1 = "Vol_A", lock.port_a2 = "Vol_C", lock.port_b1 = "Vol_B", lock.port_b2 = "Vol_D";
+  lock.common.nominal_flow = 5e-4;
+}
+
 inline HydraulicsDef bench_circuit() {
   HydraulicsDef circuit;
   circuit.oil_density = 850;
@@ -16,6 +32,8 @@ inline HydraulicsDef bench_circuit() {
   add_volume(circuit, "Vol_A").rigid_volume = 2e-3;
   add_volume(circuit, "Vol_B");
   add_tank(circuit, "Vol_T");
+  add_volume(circuit, "Vol_C").rigid_volume = 1e-3;
+  add_volume(circuit, "Vol_D").rigid_volume = 1e-3;
 
   // a soft hose, whose wall law moves between its bounds
   add_hose(circuit, "Hose_B", "Vol_B", 3, 0.02);
@@ -56,6 +74,7 @@ inline HydraulicsDef bench_circuit() {
   FourWayValveDef& bridge = add<FourWayValveDef>(circuit, "Bridge");
   bridge.port_p = "Vol_P", bridge.port_a = "Vol_A", bridge.port_b = "Vol_B", bridge.port_t = "Vol_T";
   bridge.edge_area = 1e-5, bridge.neutral_opening = 0.4, bridge.opening_gain = 1e-3;
+  add_check_valves(circuit);
   return circuit;
 }
 
