@@ -3,6 +3,7 @@
 #include "hydraulics/component_def.h"
 #include "hydraulics/components/check_valves.h"
 #include "hydraulics/components/compensated_orifice.h"
+#include "hydraulics/components/counterbalance_valve.h"
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/double_rod_cylinder.h"
@@ -32,6 +33,7 @@ std::span<const ComponentType> component_types() {
       throttle_check_valve_type(),
       pilot_check_valve_type(),
       double_pilot_check_valve_type(),
+      counterbalance_valve_type(),
       compensated_orifice_type(),
       ls_pump_type(),
       bleed_type(),

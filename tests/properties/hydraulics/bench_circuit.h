@@ -3,6 +3,7 @@
 
 #include "hydraulics/components/check_valves.h"
 #include "hydraulics/components/compensated_orifice.h"
+#include "hydraulics/components/counterbalance_valve.h"
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/four_way_valve.h"
@@ -23,6 +24,16 @@ inline void add_check_valves(HydraulicsDef& circuit) {
   DoublePilotCheckValveDef& lock = add<DoublePilotCheckValveDef>(circuit, "Lock");
   lock.port_a1 = "Vol_A", lock.port_a2 = "Vol_C", lock.port_b1 = "Vol_B", lock.port_b2 = "Vol_D";
   lock.common.nominal_flow = 5e-4;
+}
+
+// Counterbalance valves with the spring's chamber at port 1 and vented.
+inline void add_counterbalance_valves(HydraulicsDef& circuit) {
+  CounterbalanceValveDef& valve = add<CounterbalanceValveDef>(circuit, "Counterbalance");
+  valve.port_1 = "Vol_A", valve.port_2 = "Vol_C", valve.port_3 = "Vol_B";
+  valve.setting_pressure = 180 * kBar, valve.nominal_flow = 1e-3, valve.check.nominal_flow = 1e-3;
+  CounterbalanceValveDef& vented = add<CounterbalanceValveDef>(circuit, "Counterbalance_Vented");
+  vented.port_1 = "Vol_B", vented.port_2 = "Vol_D", vented.port_3 = "Vol_A", vented.port_4 = "Vol_T";
+  vented.setting_pressure = 250 * kBar, vented.nominal_flow = 5e-4, vented.check.nominal_flow = 5e-4;
 }
 
 inline HydraulicsDef bench_circuit() {
@@ -75,6 +86,7 @@ inline HydraulicsDef bench_circuit() {
   bridge.port_p = "Vol_P", bridge.port_a = "Vol_A", bridge.port_b = "Vol_B", bridge.port_t = "Vol_T";
   bridge.edge_area = 1e-5, bridge.neutral_opening = 0.4, bridge.opening_gain = 1e-3;
   add_check_valves(circuit);
+  add_counterbalance_valves(circuit);
   return circuit;
 }
 
