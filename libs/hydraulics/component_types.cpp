@@ -1,6 +1,7 @@
 #include <array>
 
 #include "hydraulics/component_def.h"
+#include "hydraulics/components/accumulator.h"
 #include "hydraulics/components/check_valves.h"
 #include "hydraulics/components/compensated_orifice.h"
 #include "hydraulics/components/counterbalance_valve.h"
@@ -34,6 +35,7 @@ std::span<const ComponentType> component_types() {
       pilot_check_valve_type(),
       double_pilot_check_valve_type(),
       counterbalance_valve_type(),
+      accumulator_type(),
       compensated_orifice_type(),
       ls_pump_type(),
       bleed_type(),

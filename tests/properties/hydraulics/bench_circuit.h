@@ -1,6 +1,7 @@
 // A circuit that holds one of every component type that the truck crane does not use, for tests.
 #pragma once
 
+#include "hydraulics/components/accumulator.h"
 #include "hydraulics/components/check_valves.h"
 #include "hydraulics/components/compensated_orifice.h"
 #include "hydraulics/components/counterbalance_valve.h"
@@ -34,6 +35,16 @@ inline void add_counterbalance_valves(HydraulicsDef& circuit) {
   CounterbalanceValveDef& vented = add<CounterbalanceValveDef>(circuit, "Counterbalance_Vented");
   vented.port_1 = "Vol_B", vented.port_2 = "Vol_D", vented.port_3 = "Vol_A", vented.port_4 = "Vol_T";
   vented.setting_pressure = 250 * kBar, vented.nominal_flow = 5e-4, vented.check.nominal_flow = 5e-4;
+}
+
+// A bladder with polytropic gas, a piston with friction and heat exchange.
+inline void add_accumulators(HydraulicsDef& circuit) {
+  AccumulatorDef& bladder = add<AccumulatorDef>(circuit, "Bladder");
+  bladder.port_1 = "Vol_P", bladder.gas_volume = 1e-3, bladder.precharge_pressure = 100 * kBar;
+  bladder.nominal_flow = 2e-3;
+  AccumulatorDef& piston = add<AccumulatorDef>(circuit, "Piston");
+  piston.port_1 = "Vol_C", piston.gas_volume = 4e-3, piston.precharge_pressure = 60 * kBar;
+  piston.nominal_flow = 1e-3, piston.friction_pressure = 1 * kBar, piston.thermal_time_constant = 20;
 }
 
 inline HydraulicsDef bench_circuit() {
@@ -87,6 +98,7 @@ inline HydraulicsDef bench_circuit() {
   bridge.edge_area = 1e-5, bridge.neutral_opening = 0.4, bridge.opening_gain = 1e-3;
   add_check_valves(circuit);
   add_counterbalance_valves(circuit);
+  add_accumulators(circuit);
   return circuit;
 }
 
