@@ -89,6 +89,7 @@ class Circuit {
   // start states [y without x and v; the caller sets those]
   // Equilibrium: linear cylinders hold F with the rod side at the return pressure, slew cylinders around their mean
   // pressure; when a pressure would fall below 1 bar the pair is raised. Volumes of parallel cylinders take the mean.
+  // Components with states of their own begin at rest under these pressures.
   void start_in_equilibrium(std::span<const double> F, std::span<double> y) const;
   // The volume whose start pressure exceeds its limit most: above the pressure at which its relief and shock valves are
   // fully open, above kMostHeld without any, or below zero. None: all hold.
@@ -234,6 +235,7 @@ class Circuit {
     [[nodiscard]] double pressure() const noexcept { return sum / actuators; }
   };
   [[nodiscard]] std::vector<Asked> asked_in_equilibrium(std::span<const double> F) const;
+  void start_components(std::span<double> y) const;
   void add_contents(const CircuitBuilder& builder);
   void order_ls_sources(const CircuitBuilder& builder);
   void declare_pattern();

@@ -40,6 +40,11 @@ void Circuit::start_at_initial_pressures(std::span<double> y) const {
   std::copy(initial_pressure_.begin(), initial_pressure_.end(), y.begin());
   const std::size_t first = static_cast<std::size_t>(first_component_state());
   for (std::size_t k = 0; k < states_.size(); ++k) y[first + k] = states_[k].initial;
+  start_components(y);
+}
+
+void Circuit::start_components(std::span<double> y) const {
+  for (const HydraulicComponent* component : active_) component->start(y.data());
 }
 
 std::vector<Circuit::Asked> Circuit::asked_in_equilibrium(std::span<const double> F) const {
@@ -71,6 +76,7 @@ void Circuit::start_in_equilibrium(std::span<const double> F, std::span<double> 
   for (std::size_t i = 0; i < asked.size(); ++i) {
     if (asked[i].actuators > 0 && is_fixed_[i] == 0) y[i] = std::max(asked[i].pressure(), floor_);
   }
+  start_components(y);
 }
 
 std::optional<StartDemand> Circuit::demand_beyond_limits(std::span<const double> F) const {

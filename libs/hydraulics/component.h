@@ -113,6 +113,9 @@ class HydraulicComponent {
     add_jacobian(view, jacobian);
   }
 
+  // Sets the component's states in y to those at rest under the start pressures of the volumes in y.
+  virtual void start(double* /*y*/) const noexcept {}
+
   // Load-sensing pressure above tank and its derivatives, for components that have one; called in an order in which
   // every source comes before its consumers.
   [[nodiscard]] virtual std::vector<LsIndex> ls_inputs() const { return {}; }  // pressures that ls_pressure() reads

@@ -1,7 +1,10 @@
 #include <array>
 
 #include "hydraulics/component_def.h"
+#include "hydraulics/components/accumulator.h"
+#include "hydraulics/components/check_valves.h"
 #include "hydraulics/components/compensated_orifice.h"
+#include "hydraulics/components/counterbalance_valve.h"
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/double_rod_cylinder.h"
@@ -27,6 +30,12 @@ std::span<const ComponentType> component_types() {
       ls_shuttle_type(),
       relief_valve_type(),
       direct_relief_valve_type(),
+      check_valve_type(),
+      throttle_check_valve_type(),
+      pilot_check_valve_type(),
+      double_pilot_check_valve_type(),
+      counterbalance_valve_type(),
+      accumulator_type(),
       compensated_orifice_type(),
       ls_pump_type(),
       bleed_type(),

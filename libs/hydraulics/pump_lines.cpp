@@ -29,7 +29,7 @@ bool is_relieved(const PumpLines& lines, const PumpLines::Pump& pump) {
     unvisited.pop_back();
     if (lines.relieved.contains(volume)) return true;
     for (const PumpLines::Connection& way : lines.open) {
-      const std::string* const next = way.a == volume ? &way.b : way.b == volume ? &way.a : nullptr;
+      const std::string* const next = way.a == volume ? &way.b : way.b == volume && !way.is_one_way ? &way.a : nullptr;
       if (way.flow < pump.flow) continue;
       if (next != nullptr && line.insert(*next).second) unvisited.push_back(*next);
     }

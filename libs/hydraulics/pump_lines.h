@@ -1,11 +1,11 @@
 // Warns about pumps whose line has no relief.
 //
 // A pump's line is its outlet and every volume connected to it at any control signal: through orifices, bleeds, laminar
-// restrictions, compensated orifices, and four-way valves without gain; by orifices and bleeds only if they pass the
-// pump's flow below the end of the oil law. It is relieved where a relief valve that is set below that end or a shock
-// valve stands on it, or where it reaches a fixed volume. Leaks do not count: they pass the pump's flow only at
-// pressures far beyond any limit. A pressure controller of the pump does not count either: it acts at its setting and
-// after its delay.
+// restrictions, compensated orifices, four-way valves without gain, and check valves in their free direction; by
+// orifices, bleeds and check valves only if they pass the pump's flow below the end of the oil law. It is relieved
+// where a relief valve that is set below that end or a shock valve stands on it, or where it reaches a fixed volume.
+// Leaks do not count: they pass the pump's flow only at pressures far beyond any limit. A pressure controller of the
+// pump does not count either: it acts at its setting and after its delay.
 #pragma once
 
 #include <limits>
@@ -23,6 +23,7 @@ struct PumpLines {
   struct Connection {
     std::string a, b;                                       // volumes
     double flow = std::numeric_limits<double>::infinity();  // m3/s, the most that passes below the end of the oil's law
+    bool is_one_way = false;                                // from a to b only
   };
   struct Pump {
     std::string name, outlet;  // component, volume

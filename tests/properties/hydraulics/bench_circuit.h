@@ -1,13 +1,51 @@
 // A circuit that holds one of every component type that the truck crane does not use, for tests.
 #pragma once
 
+#include "hydraulics/components/accumulator.h"
+#include "hydraulics/components/check_valves.h"
 #include "hydraulics/components/compensated_orifice.h"
+#include "hydraulics/components/counterbalance_valve.h"
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
+
+// Check valves of every type between the bench's volumes.
+inline void add_check_valves(HydraulicsDef& circuit) {
+  CheckValveDef& check = add<CheckValveDef>(circuit, "Check");
+  check.port_1 = "Vol_T", check.port_2 = "Vol_A", check.common.nominal_flow = 1e-3;
+  ThrottleCheckValveDef& throttle = add<ThrottleCheckValveDef>(circuit, "Throttle_Check");
+  throttle.port_1 = "Vol_P", throttle.port_2 = "Vol_B", throttle.common.nominal_flow = 1e-3;
+  throttle.throttle_flow = 2e-4, throttle.throttle_opening = 0.7;
+  PilotCheckValveDef& piloted = add<PilotCheckValveDef>(circuit, "Pilot_Check");
+  piloted.port_1 = "Vol_A", piloted.port_2 = "Vol_C", piloted.port_3 = "Vol_P", piloted.port_4 = "Vol_T";
+  piloted.pilot_ratio = 3, piloted.common.nominal_flow = 5e-4;
+  DoublePilotCheckValveDef& lock = add<DoublePilotCheckValveDef>(circuit, "Lock");
+  lock.port_a1 = "Vol_A", lock.port_a2 = "Vol_C", lock.port_b1 = "Vol_B", lock.port_b2 = "Vol_D";
+  lock.common.nominal_flow = 5e-4;
+}
+
+// Counterbalance valves with the spring's chamber at port 1 and vented.
+inline void add_counterbalance_valves(HydraulicsDef& circuit) {
+  CounterbalanceValveDef& valve = add<CounterbalanceValveDef>(circuit, "Counterbalance");
+  valve.port_1 = "Vol_A", valve.port_2 = "Vol_C", valve.port_3 = "Vol_B";
+  valve.setting_pressure = 180 * kBar, valve.nominal_flow = 1e-3, valve.check.nominal_flow = 1e-3;
+  CounterbalanceValveDef& vented = add<CounterbalanceValveDef>(circuit, "Counterbalance_Vented");
+  vented.port_1 = "Vol_B", vented.port_2 = "Vol_D", vented.port_3 = "Vol_A", vented.port_4 = "Vol_T";
+  vented.setting_pressure = 250 * kBar, vented.nominal_flow = 5e-4, vented.check.nominal_flow = 5e-4;
+}
+
+// A bladder with polytropic gas, a piston with friction and heat exchange.
+inline void add_accumulators(HydraulicsDef& circuit) {
+  AccumulatorDef& bladder = add<AccumulatorDef>(circuit, "Bladder");
+  bladder.port_1 = "Vol_P", bladder.gas_volume = 1e-3, bladder.precharge_pressure = 100 * kBar;
+  bladder.nominal_flow = 2e-3;
+  AccumulatorDef& piston = add<AccumulatorDef>(circuit, "Piston");
+  piston.port_1 = "Vol_C", piston.gas_volume = 4e-3, piston.precharge_pressure = 60 * kBar;
+  piston.nominal_flow = 1e-3, piston.friction_pressure = 1 * kBar, piston.thermal_time_constant = 20;
+}
 
 inline HydraulicsDef bench_circuit() {
   HydraulicsDef circuit;
@@ -16,6 +54,8 @@ inline HydraulicsDef bench_circuit() {
   add_volume(circuit, "Vol_A").rigid_volume = 2e-3;
   add_volume(circuit, "Vol_B");
   add_tank(circuit, "Vol_T");
+  add_volume(circuit, "Vol_C").rigid_volume = 1e-3;
+  add_volume(circuit, "Vol_D").rigid_volume = 1e-3;
 
   // a soft hose, whose wall law moves between its bounds
   add_hose(circuit, "Hose_B", "Vol_B", 3, 0.02);
@@ -56,6 +96,9 @@ inline HydraulicsDef bench_circuit() {
   FourWayValveDef& bridge = add<FourWayValveDef>(circuit, "Bridge");
   bridge.port_p = "Vol_P", bridge.port_a = "Vol_A", bridge.port_b = "Vol_B", bridge.port_t = "Vol_T";
   bridge.edge_area = 1e-5, bridge.neutral_opening = 0.4, bridge.opening_gain = 1e-3;
+  add_check_valves(circuit);
+  add_counterbalance_valves(circuit);
+  add_accumulators(circuit);
   return circuit;
 }
 

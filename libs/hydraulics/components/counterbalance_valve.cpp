@@ -1,0 +1,178 @@
+#include "hydraulics/components/counterbalance_valve.h"
+
+#include <cmath>
+
+#include "hydraulics/circuit_builder.h"
+#include "hydraulics/components/check_poppet.h"
+#include "hydraulics/oil.h"
+#include "hydraulics/pump_lines.h"
+
+namespace slew::hydraulics {
+namespace {
+
+constexpr Field kCounterbalanceValveFields[] = {
+    field<&CounterbalanceValveDef::port_1>(
+        "port_1",
+        {.presence = Presence::required, .reference = "volume", .doc = "volume on the side of the directional valve"}),
+    field<&CounterbalanceValveDef::port_2>(
+        "port_2", {.presence = Presence::required, .reference = "volume", .doc = "volume on the side of the load"}),
+    field<&CounterbalanceValveDef::port_3>(
+        "port_3", {.presence = Presence::required, .reference = "volume", .doc = "volume that pilots the valve"}),
+    field<&CounterbalanceValveDef::port_4>(
+        "port_4",
+        {.reference = "volume", .doc = "volume of the spring's chamber of a vented valve; port_1 when absent"}),
+    field<&CounterbalanceValveDef::setting_pressure>("setting_pressure",
+                                                     {.dimension = Dimension::pressure,
+                                                      .range = kPositive,
+                                                      .presence = Presence::required,
+                                                      .change = Change::live,
+                                                      .doc = "pressure above the spring's chamber at which the load "
+                                                             "opens the valve without a pilot pressure"}),
+    field<&CounterbalanceValveDef::pilot_ratio>(
+        "pilot_ratio", {.range = kNotNegative, .doc = "area of the pilot over that of the relief; 0: no pilot"}),
+    field<&CounterbalanceValveDef::nominal_flow>("nominal_flow", {.dimension = Dimension::volume_flow,
+                                                                  .range = kPositive,
+                                                                  .presence = Presence::required,
+                                                                  .change = Change::live,
+                                                                  .doc = "flow of the open valve from port 2 to 1 at "
+                                                                         "nominal_pressure_drop"}),
+    field<&CounterbalanceValveDef::nominal_pressure_drop>(
+        "nominal_pressure_drop",
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of nominal_flow"}),
+    field<&CounterbalanceValveDef::opening_pressure_rise>("opening_pressure_rise",
+                                                          {.dimension = Dimension::pressure,
+                                                           .range = kPositive,
+                                                           .doc = "rise above the setting that opens the valve fully"}),
+    field<&CounterbalanceValveDef::step_response>("step_response", {.dimension = Dimension::time,
+                                                                    .range = kPositive,
+                                                                    .change = Change::live,
+                                                                    .doc = "three time constants of the spool"}),
+    field<&CounterbalanceValveDef::check, &CheckParameters::nominal_flow>(
+        "check_flow", {.dimension = Dimension::volume_flow,
+                       .range = kPositive,
+                       .presence = Presence::required,
+                       .change = Change::live,
+                       .doc = "free flow from port 1 to 2 at check_pressure_drop"}),
+    field<&CounterbalanceValveDef::check, &CheckParameters::nominal_pressure_drop>(
+        "check_pressure_drop",
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of check_flow"}),
+    field<&CounterbalanceValveDef::check, &CheckParameters::crack_pressure>(
+        "check_crack_pressure",
+        {.dimension = Dimension::pressure, .range = kNotNegative, .doc = "pressure drop that lifts the check valve"}),
+    field<&CounterbalanceValveDef::check, &CheckParameters::opening_pressure_rise>(
+        "check_opening_pressure_rise",
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "rise that opens the check valve fully"}),
+};
+
+constexpr double kSpoolClipWidth = 0.02;   // share of the opening, smoothing of its limits
+constexpr double kSpoolTimeConstants = 3;  // in a step response, to 95 % of the change
+
+class CounterbalanceValve final : public HydraulicComponent {
+ public:
+  CounterbalanceValve(const CounterbalanceValveDef& def, CircuitBuilder& builder)
+      : HydraulicComponent(def),
+        def_(def),
+        p_1_(builder.volume(def.port_1)),
+        p_2_(builder.volume(def.port_2)),
+        pilot_(builder.volume(def.port_3)),
+        spring_(builder.volume(def.port_4.empty() ? def.port_1 : def.port_4)),
+        u_(builder.add_state({.initial = 0, .scale = 1})),
+        transition_(builder.def().orifice_transition),
+        check_({.inlet = p_1_, .outlet = p_2_}, 0, transition_) {
+    apply_parameters();
+    builder.add_relief({.valve = def.name,
+                        .volume = p_2_,
+                        .outlet = spring_,
+                        .fully_open = def.setting_pressure + def.opening_pressure_rise});
+  }
+  void start(double* y) const noexcept override { y[u_] = command(y).value; }
+  void declare_dependencies(DependencyList& dependencies) const override {
+    check_.declare_dependencies(dependencies);
+    dependencies.add(p_1_, u_), dependencies.add(p_2_, u_), dependencies.add(u_, u_);
+    dependencies.add(u_, p_2_), dependencies.add(u_, pilot_), dependencies.add(u_, spring_);
+  }
+  void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
+    rates.set_rate(u_, rate_ * (command(view.y).value - view[u_]));
+    rates.move(p_2_, p_1_, lowering_flow(view));
+    check_.move(check_.flow(view), rates);
+  }
+  void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
+    const double d_command = rate_ * command(view.y).slope / def_.opening_pressure_rise;
+    jacobian.add(u_, u_, -rate_);
+    jacobian.add(u_, p_2_, d_command);
+    jacobian.add(u_, pilot_, def_.pilot_ratio * d_command);
+    jacobian.add(u_, spring_, -(1 + def_.pilot_ratio) * d_command);
+    const double u = opening(view);
+    const ValueSlope r = root(view[p_2_] - view[p_1_], transition_);
+    if (view[u_] > 0) jacobian.move(p_2_, p_1_, u_, K_ * r.value);
+    jacobian.move(p_2_, p_1_, p_2_, u * K_ * r.slope);
+    jacobian.move(p_2_, p_1_, p_1_, -u * K_ * r.slope);
+    check_.stamp(check_.flow(view), jacobian);
+  }
+  void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept override {
+    check_.raise_outflow_slopes(view, outflow_slope);
+  }
+  void list_variables(std::vector<ElementVariable>& variables) const override {
+    variables.push_back(variable("opening", Dimension::none));
+    variables.push_back(variable("flow", Dimension::volume_flow));
+  }
+  double* read_variables(const CircuitView& view, double* values) const noexcept override {
+    *values++ = view[u_];
+    *values++ = check_.flow(view).value - lowering_flow(view);
+    return values;
+  }
+  [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void apply_parameters() noexcept override {
+    K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop);
+    rate_ = kSpoolTimeConstants / def_.step_response;
+    check_.set(def_.check, 0);
+  }
+
+ private:
+  // clip of (2) with its slope over p_e / opening_pressure_rise, at the state y
+  [[nodiscard]] ValueSlope command(const double* y) const noexcept {
+    const double p_s = y[spring_];
+    const double p_e = y[p_2_] - p_s + def_.pilot_ratio * (y[pilot_] - p_s) - def_.setting_pressure;
+    return unit_clip(p_e / def_.opening_pressure_rise, kSpoolClipWidth);
+  }
+  // an opening below zero, from the solver's error, is closed
+  [[nodiscard]] double opening(const CircuitView& view) const noexcept { return std::fmax(view[u_], 0); }
+  // (3)
+  [[nodiscard]] double lowering_flow(const CircuitView& view) const noexcept {
+    const double u = opening(view);
+    return u > 0 ? u * K_ * root(view[p_2_] - view[p_1_], transition_).value : 0;
+  }
+
+  CounterbalanceValveDef def_;
+  StateIndex p_1_, p_2_, pilot_, spring_;
+  StateIndex u_;  // opening 0..1
+  double transition_;
+  CheckPoppet check_;
+  double K_ = 0, rate_ = 0;
+};
+
+void validate_counterbalance_valve(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {
+  const CounterbalanceValveDef& def = static_cast<const CounterbalanceValveDef&>(component);
+  check_nominal_drop(def.name + ".check_pressure_drop", def.check, errors);
+  check_distinct(def.name + ".port_2", def.port_1, def.port_2, errors);
+}
+
+}  // namespace
+
+void CounterbalanceValveDef::add_lines(PumpLines& lines) const {
+  const double drops = OilCompressibility::kHighest / check.nominal_pressure_drop;
+  lines.open.push_back({.a = port_1, .b = port_2, .flow = check.nominal_flow * std::sqrt(drops), .is_one_way = true});
+}
+
+ComponentType counterbalance_valve_type() {
+  return {.name = "counterbalance_valve",
+          .fields = kCounterbalanceValveFields,
+          .doc = "counterbalance (over-centre) valve with a check valve",
+          .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<CounterbalanceValveDef>(); },
+          .validate = validate_counterbalance_valve,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return std::make_unique<CounterbalanceValve>(static_cast<const CounterbalanceValveDef&>(def), builder);
+          }};
+}
+
+}  // namespace slew::hydraulics
