@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The books of the deadlines of the crane at 1 kHz, bare and with all doors open at once, side by side.
 
 benchmarks/all_doors.py BUILD_DIRECTORY [ROUNDS=3] [SECONDS=20]

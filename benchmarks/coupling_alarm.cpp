@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The alarm of the coupling and its lamps, beside the errors against the monolith: machines, kinds of control, levels,
 // steps and late samples, each run to its end.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coupling errors of all levels against the monolith, over the communication step, on the boom with one cylinder and on
 // the truck crane, rigid and with a jib boom that bends, with and without friction; and their relation to eta.
 //

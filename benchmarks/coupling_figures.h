@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Errors over the communication step or over the indicator, on two logarithmic axes, as self-contained SVG.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cost of the truck crane in one process, rigid and with two modes of its jib boom: each subsystem's step, both coupled
 // in one thread, and the whole session over the bus of one process (ticks, encoding, gate, no recorder), per simulated
 // millisecond at H = 1 ms, over the scene's own manoeuvre.

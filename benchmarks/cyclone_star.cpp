@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many steps per second the exchange alone allows: the session's messages among three processes, without physics.
 //
 // The master publishes tick n when both nodes' samples n-W+1 are there; a node publishes sample n+1 when it has tick n

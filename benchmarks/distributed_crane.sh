@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Steps per second of the distributed truck crane in `free` pace, beside a bare Cyclone star of the same shape measured
 # in the same minute, and with keys (DDS Security, everything encrypted). Prints the figures of every round.
 #

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cost of bending: the mechanics of the truck crane with its jib boom rigid, frozen, with an increasing number of
 // modes, with 20 and 200 nodes, and in segments; and a chain of five booms of which none, one or all bend. Beside each
 // the rigid one of the same run.

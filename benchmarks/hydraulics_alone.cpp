@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cost and error of the hydraulics' solvers over the extremes of the coupling study's section 7: the truck crane's
 // circuit with a mass and end stops on each piston, the lift at full command from 0.2 to 1.2 s of 2 s.
 //

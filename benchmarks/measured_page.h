@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pages with a measured part, which a program replaces.
 #pragma once
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """One table of the middlewares: exchange alone, the distributed crane in both paces, heap calls, memory.
 
 benchmarks/middlewares.py BUILD_DIRECTORY [ROUNDS=3] [SECONDS=10]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cost of the mechanics: forward dynamics and steps of the crane, of the crane with its cylinders as bodies in loops,
 // of contact and of chains, in nanoseconds of thread time; and the energy drift of a chain.
 //

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the benchmarks in Python share: a session of a scene as processes, its report, the load of the machine."""
 import json
 import os

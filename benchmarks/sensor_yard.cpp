@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cost of sensors: a boom of six boxes and a load above a yard of triangles, 10 s at 60 Hz.
 //
 //   sensor_yard [TRIANGLES]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring animate REC`: the machine of a recording in side and top view, as a page that needs no installation.
 #include <fmt/format.h>
 

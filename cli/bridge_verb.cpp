@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring bridge lcm`: a running session on LCM channels, and inputs from there.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring check SCENE`: reads a scene as strictly as a run does, builds its models and finds its start state.
 #include <fmt/format.h>
 

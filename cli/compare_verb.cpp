@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring compare SCENE`: one scene and input under every formulation, as a table and a picture of error over cost.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring control pause|resume|step|reset|stop|save|load`: commands to a running session.
 #include <fmt/format.h>
 

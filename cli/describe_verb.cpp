@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring describe SCENE`: the parts of a scene, its number of states, and its nodes with reasons; on request the
 // cost of each part, its eigenvalues and its liftable load.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring device list|monitor|calibrate|layout|run`: joysticks, packets and motion platforms, with and without a
 // session.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring doctor`: checks whether this machine is fit for a session, with a remedy for each problem.
 #include <fmt/format.h>
 #include <sys/resource.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring export REC`: a recording's variables as a table, or as structs for MATLAB.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring extremes SCENE|--suite`: the hard cases of a scene, each judged by its bounds, and its distance from the
 // edge.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flags that the steps of a recording, or of a live session, have reported (core/step_report.h): a sentence for each
 // flag that matters to a user, with the first step that raised it.
 #pragma once

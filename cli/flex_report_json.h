@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JSON of the report on a reduced flexible body.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring flex build FILE` and `slewring flex report FILE`: makes flexible files from a description of a flexible
 // body, and reports on the reduction.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring help [VERB...]`: the same text as `slewring VERB --help`.
 #include <fmt/format.h>
 

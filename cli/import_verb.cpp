@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring import urdf FILE [-o SCENE]`: makes a scene from a robot's URDF file.
 #include <fmt/format.h>
 

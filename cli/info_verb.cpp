@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring info REC`: what a recording holds.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The terminal's keyboard as a controller: reads keys without waiting, keeps lever positions, publishes them.
 //
 // The first channels of the scene get a pair of keys each (q/a, w/s, e/d, r/f, t/g, y/h) that move the lever by a tenth

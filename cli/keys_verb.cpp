@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring keys create|add|revoke|check|export`: keys of the processes that may take part in sessions beyond this
 // machine.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the verbs for LCM share: a scene as the bridge needs it, and the options of its messages.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring node ROLE`: one node of a session, in the place of this process.
 #include <fmt/format.h>
 #include <unistd.h>

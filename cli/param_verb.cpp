@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring param list|get|set`: parameters of a scene or of a running session.
 #include <fmt/format.h>
 

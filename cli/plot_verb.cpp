@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring plot REC VAR...`: a recording's variables as a picture or a page.
 #include <fmt/format.h>
 

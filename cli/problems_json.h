@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What --json prints where a verb has no result: the same object for every verb.
 #pragma once
 

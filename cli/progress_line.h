@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Progress of a long work on standard error: rewritten in place on a terminal with the time that is left, a line for
 // each part elsewhere.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring recover REC`: makes a whole recording from the sound parts of a damaged one.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The summary of a run: how it went, what it cost, how good the coupling was, and where everything is.
 #pragma once
 

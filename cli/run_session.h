@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A session from its scene, or from saved states, to its summary: `slewring run`, and a session that continues a
 // replay.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring run SCENE`: runs a scene as processes or in one process, records it, and prints its summary.
 #include <fmt/format.h>
 

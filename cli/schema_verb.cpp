@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring schema`: the formats of scenes and of flexible bodies for editors and programs.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring sessions`: lists the sessions on this domain.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring simplify SCENE --error "Bag.position 1mm"`: finds the parts of a scene that may be left out by trial,
 // measures the saving and writes an overlay.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The line at the bottom of a run: rewritten in place on a terminal, a plain line every other second elsewhere.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring stress SCENE`: measures how well this machine keeps a scene's deadlines.
 #include <fmt/format.h>
 

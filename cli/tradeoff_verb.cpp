@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring tradeoff SCENE`: error against cost of many settings of one scene, and the best of them.
 #include <fmt/format.h>
 

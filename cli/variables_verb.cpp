@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring variables`: the variables of a scene or a running session, for plots, watches and controllers.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The verbs of the program `slewring`: each adds its command line and its action.
 #pragma once
 

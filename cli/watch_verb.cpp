@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring watch VAR...`: values of variables of a running session, a line at a time.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The window of a run: the program view_node beside the nodes. It looks for the session itself, and ends with it.
 #pragma once
 

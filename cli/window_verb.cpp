@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring window [SCENE | RECORDING]`: a session or a recording in a browser and in clients of the Foxglove protocol.
 #include <unistd.h>
 

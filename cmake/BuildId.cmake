@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes the header with the build id. Run with -P at every build, so that the revision is that of the sources that are
 # built; the header is touched only when the id changes.
 execute_process(COMMAND git -C ${SOURCE_DIR} describe --always --dirty --abbrev=12

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Compiler settings of every target and the two helpers that declare a library and a test program.
 
 set(CMAKE_CXX_STANDARD 20)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # slewring_idl_library(NAME FILE x.idl): a static library of the C types that idlc makes of an IDL file.
 #
 # The generated code is compiled once, in the build tree only. Cyclone's own idlc_generate makes an INTERFACE library,

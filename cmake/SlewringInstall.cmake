@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What an installation holds, in three components that are the Debian packages too (SlewringPackages.cmake):
 #
 #   program   bin/slewring, its nodes and private libraries in lib/slewring, scenes, manual pages, completion, the unit

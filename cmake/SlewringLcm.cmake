@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # LCM is optional: without it `slewring bridge lcm`, `export --lcm` and `--input FILE.lcm` are errors that name the
 # packages. SLEWRING_HAS_LCM; slewring_lcm_types: the C++ types that lcm-gen makes of idl/slewring.lcm.
 option(SLEWRING_LCM "Use LCM where it is installed" ON)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # `cpack -G DEB` in the build folder: a Debian package of each component of SlewringInstall.cmake.
 #
 #   slewring                  programs, scenes, manual pages, completion, systemd unit

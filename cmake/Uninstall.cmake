@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -DBUILD=FOLDER -P Uninstall.cmake: removes what the last `cmake --install FOLDER` of each component has put into
 # place, and the folders that are empty then, but not the prefix. DESTDIR as for the installation.
 file(GLOB manifests ${BUILD}/install_manifest*.txt)

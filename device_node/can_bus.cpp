@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "device_node/can_bus.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames of a CAN bus: of an interface of Linux (SocketCAN), or of a file that `candump -l` wrote, which is played once
 // in its own time.
 #pragma once

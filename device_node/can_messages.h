@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages of a device on CAN: from the definition that the scene carries, and found by a frame.
 #pragma once
 

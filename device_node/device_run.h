@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs one device of a scene against a session, from its first tick to its end.
 #pragma once
 

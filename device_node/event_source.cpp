@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "device_node/event_source.h"
 
 #include <fcntl.h>

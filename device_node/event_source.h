@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the events of a joystick come from: a device file of Linux, or a file of recorded events (the bytes that
 // `cat /dev/input/event5` gives), which is played once in its own time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A device that moves inputs: a value for each of them, while it is there and fresh.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves inputs of a session by a device's values.
 //
 //   fresh and enabled      each new value is written, and repeated while it stays, since silence is neutral

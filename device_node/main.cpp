@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program device_node: one device of a scene as a process of its own.
 #include <fmt/format.h>
 

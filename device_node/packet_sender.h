@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sends packets of one layout and counts them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A device that shows variables and outputs of a session.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values of a session for a device that shows them: variables, and outputs of the scene.
 //
 // The values are those of one step: they are made when all variables of that step have arrived, at the earliest `every`

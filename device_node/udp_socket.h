@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A UDP socket: bound to receive, or to send from.
 #pragma once
 

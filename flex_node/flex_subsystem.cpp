@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flex_node/flex_subsystem.h"
 
 #include <fmt/format.h>

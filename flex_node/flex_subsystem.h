@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The flexible bodies of a scene as a Subsystem: their elastic forces, and deflection, stress and strain energy from
 // the modal coordinates of the mechanics (coupling study, section 5, scheme A1).
 //

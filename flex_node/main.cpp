@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program flex_node: the flexible bodies of a session's scene as a process of its own.
 #include "flex_node/flex_subsystem.h"
 #include "node/physics_program.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hydraulics_node/control_signals.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The circuit's control signals, from the values of the session's input channels, and their expected change over the
 // coming step.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The coupling's error per port (coupling/indicator.h), and the end of a session whose coupling diverges
 // (session.coupling_alarm).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hydraulic circuit of a scene as a Subsystem: the circuit's own integration with the partner's reduced mechanics
 // inside, volumes made consistent with the true piston positions at each exchange (coupling study, section 8).
 //

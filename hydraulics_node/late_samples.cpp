@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hydraulics_node/late_samples.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples of the mechanics that arrive late (free-running): each corrects the pistons by its difference to what the
 // circuit had at the step of the sample (coupling/own_past.h).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program hydraulics_node: the hydraulic circuit of a session's scene as a process of its own.
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "node/physics_program.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hydraulics' state as bytes: the circuit's integration, the copy of the partner's model, the coupling's indicator.
 #include "hydraulics_node/hydraulics_subsystem.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks of a session's start: a machine that the circuit, its solver or the exchange cannot follow is refused with the
 // reason.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gate between the sources of the inputs and the ticks.
 //
 // A raw value passes, in this order: finite (a NaN or infinity is rejected and counted), range (-1..1 analog, 0..1

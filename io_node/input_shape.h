@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Effect of dead zone and ramp on an input's raw signal over one step.
 //
 // w(t): the raw value, 0 where |raw| is less than the dead zone

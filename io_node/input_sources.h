@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sources of raw values for the channels that no controller holds, and parameter changes at set times.
 #pragma once
 

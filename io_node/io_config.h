@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Configuration of io_node: the settings of the session, and the parts that its scene is built into.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Owner of a session: its name and id, the ticks that are its clock and its log, the inputs, the requests.
 //
 // Tick n goes out when every physics node has published its sample n-W+1 (window W: 1 in `real` pace, 4 in `free`),

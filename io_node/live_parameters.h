@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Present values of the parameters that may change while the session runs.
 //
 // The changes take the same steps as in the nodes that apply them (coupling/parameter_ramps.h), so that io_node can

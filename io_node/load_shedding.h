@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Data that a session omits while it overruns (docs/realtime.md).
 //
 // The level rises by one when 5 of 100 judged steps overran, and falls by one after 2000 without an overrun; a session

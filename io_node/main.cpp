@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program io_node: owner of a session, its clock, its operator input and its commands.
 #include "core/failure.h"
 #include "io_node/io_node.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Answers of io_node to controllers and to control requests, and the events that it publishes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Newest samples of the physics nodes, which decide whether the next tick can go out.
 //
 // Tick n needs sample n - W + 1 of mechanics and hydraulics (window W). A flex node follows the others: it may be

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A session at one step as a file: the scene, and the state of every node, from which it continues to the same bits.
 //
 //   "SLEWSAVE" | format version u32 | build | session | scene name | scene text | H i64 | step i64

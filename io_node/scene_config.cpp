@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io_node/scene_config.h"
 
 #include <algorithm>

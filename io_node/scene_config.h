@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a scene to what io_node needs: channels, script, parameter directory, asset manifest, roles.
 #pragma once
 

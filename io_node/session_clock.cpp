@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io_node/session_clock.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Books of a session that is paced by the wall clock: the steps that were due, done and given up, the lateness of each,
 // and the action of the session's overrun policy (docs/realtime.md).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inputs of each tick, which are io_node's own state: control values of the channels, and changes of live
 // parameters.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io_node/session_scene.h"
 
 #include <cstdio>

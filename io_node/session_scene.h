@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scene of a session, from a scene file or a saved session, and the states from which it continues.
 #pragma once
 

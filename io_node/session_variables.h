@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Variables that io_node publishes in every session, whatever recording.variables selects: those of the inputs, of the
 // session, and of the steps of the physics nodes.
 #pragma once

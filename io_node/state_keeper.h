@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // States of the physics nodes that io_node keeps: it saves and loads a session from them, and gives them to a process
 // that replaces a lost node.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // State of io_node after the ticks of a recording, so that a session can continue behind them.
 //
 // The live parameters are those of io_node to the bit. A tick carries the control value of a channel alone, the mean

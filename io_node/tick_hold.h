@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reasons to hold the next tick although all samples are there: a pause, and lockstep controllers (input_gate.h).
 #pragma once
 

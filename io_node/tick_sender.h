@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tick that is sent next, and the ticks sent before, for nodes that request them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wall times of ticks and of the controllers' values that they use, for the session's statistics.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What `run` and `test` share: finding out which packages are missing, and building. To be sourced by bash.
 
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ends a run whose motion has left the mechanism's while its numbers are still finite.
 //
 // Two rules, checked after every step:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program mechanics_node: the mechanism of a session's scene as a process of its own.
 #include "mechanics_node/mechanics_subsystem.h"
 #include "node/physics_program.h"

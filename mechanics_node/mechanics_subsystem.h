@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mechanism of a scene as a Subsystem: life cycle, inputs, parameters, published sample, hash and saved state.
 //
 // A step advances the mechanism (mechanism.h) by sub-steps of the port problem (port_problem.h) under the partner's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The variables that the mechanics publish: those of the model, the reactions of its joints, then per port the line
 // force, its friction, its end stop, the static force and its change with the payload, then the age of the partner's
 // sample (free-running only) and the mass of the payload.

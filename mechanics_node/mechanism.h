@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mechanism of a scene: model with its live parameters, state, formulation, and the workspace with the last
 // evaluation of the rows.
 //

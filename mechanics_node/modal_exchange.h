@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mechanics' side of flexible bodies in a session: their motion, which the flex node receives, and the elastic
 // forces that it returns for their modes.
 #pragma once

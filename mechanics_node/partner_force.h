@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hydraulics' linearisation of the pressure forces as the mechanics use it: coupling level of each port, age of the
 // sample in use, and the correction by late samples (coupling study, section 6).
 #pragma once

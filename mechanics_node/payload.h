@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Static demand of a payload on the actuators: line forces that hold the ports at rest, and their change with the
 // payload's mass,
 //   W F = -a_free                                                                                     (1)

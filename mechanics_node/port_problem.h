@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mechanism's sub-step with the stiff forces of its rows: ports, and joints with friction or limits.
 //
 // Ports come first among the rows, in the scene's order, then the joints. Per sub-step:

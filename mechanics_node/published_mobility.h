@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Free accelerations and mobility of the ports as the mechanics publish them: with the friction and the limits of the
 // joints behind the ports condensed implicitly over the exchange interval, so that the partner sees a slewing ring with
 // its friction.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The force laws of the mechanism's rows, for the port problem: line force of an actuator, friction and limits of a
 // joint with the memory of its friction.
 #pragma once

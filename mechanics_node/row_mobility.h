@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Free acceleration and mobility of the mechanism's rows, at the evaluated instant or over an interval.
 //
 // Over an interval the springs and dampers behind the rows take part (multibody/constraints/step_rows.h). Rows over an

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mechanics' state as bytes: what is integrated, and what a step takes over from the step before.
 #include "coupling/saved_model.h"
 #include "mechanics_node/mechanics_subsystem.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sub-steps that meet an end stop or a joint limit: repeated in parts where the mechanism does not follow the port
 // problem.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mechanics_node/timed_loads.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loads that follow a table of the time: their share in the rows' free accelerations over a sub-step is computed before
 // the sub-step.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // RecorderNode's part that begins in mid-session, with the states from which a recording can be computed again.
 #include <utility>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program recorder_node: writes all messages of a session into one recording.
 #include <cstdio>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records all messages of a session, ordered by step, in one file.
 //
 // Ticks and samples must be complete: the recorder requests the missing steps of a gap after 3 ms, and their writers

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // RecorderNode's part that writes the file: its front, its messages, the gaps of a slow or full disk, its end.
 #include <algorithm>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The steps of one writer's topic that have arrived: the contiguous part, and the steps ahead of a gap.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program sensor_node: the sensors of a session's scene as a process of its own.
 #include "node/physics_program.h"
 #include "sensor_node/sensor_subsystem.h"

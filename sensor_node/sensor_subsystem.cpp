@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sensor_node/sensor_subsystem.h"
 
 #include <fmt/format.h>

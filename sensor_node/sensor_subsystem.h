@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sensors of a scene as a Subsystem: a follower that reads the poses of the mechanics and publishes events and
 // variables (docs/models/sensors.md). No force follows from it.
 //

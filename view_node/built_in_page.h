@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page of a gateway without a built page: values in a table.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program view_node: the window of a session or a recording, for a browser and for clients of the Foxglove
 // protocol.
 #include <fmt/format.h>

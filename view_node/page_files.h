@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of the page: from a folder, or the built-in page of the program.
 #pragma once
 

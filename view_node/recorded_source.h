@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recording as the source of a gateway: its messages in their order, up to a time that is played, held or set.
 //
 // Times are those of the recording, from 0: after a reset of the session they go on (recording/writer.h).

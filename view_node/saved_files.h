@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Saved states of a session as files NAME.saved in a folder. `slewring control save` and `load` write and read them,
 // each as a process: saving waits for all nodes, the window does not.
 #pragma once

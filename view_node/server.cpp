@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <utility>  // in front of Beast: its detectors of coroutines need std::exchange
 //
 #include "view_node/server.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // HTTP and WebSocket on one port, in front of a gateway. One thread: the caller gives it time by poll().
 //
 // A connection is first HTTP: one request, one answer. A request for a WebSocket makes it a client of the gateway. At

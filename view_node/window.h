@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A gateway and its server in front of a live session or a recording, until the session ends or a stop is requested.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options of `slewring window` and view_node for the gateway.
 #pragma once
 

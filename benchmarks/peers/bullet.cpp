@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bullet 3.24 with double precision (btMultiBody): articulated bodies, closures and contacts by 50 sweeps of projected
 // Gauss-Seidel in velocities. Its links have their centre of mass as origin and principal axes as axes. It has no
 // universal joint: two hinges with a link without mass between them. The box is a body of its own.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // DART 6.12: articulated bodies through virtual calls and lazily updated caches, closures and contacts by a linear
 // complementarity problem in velocities.
 #include <dart/collision/dart/DARTCollisionDetector.hpp>

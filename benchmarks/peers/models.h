@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mechanisms that are timed, and their data for a peer.
 #pragma once
 

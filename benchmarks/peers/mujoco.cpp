@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // MuJoCo 2.2.2. Forward dynamics of a tree is its mj_forward() without contacts, sensors and actuators:
 // composite inertias, bias forces, sparse L^T D L. Closures and contacts are its soft constraints, with the least
 // compliance that its default time constant of 0.02 s leaves.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A multibody program that runs the same mechanism as ours, to be timed beside it.
 //
 // Peers are compiled with the flags of their own packages, ours with -march of this project, under which types with

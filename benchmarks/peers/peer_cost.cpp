@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ours and one peer, the one that this program is linked with, on the same mechanisms: forward dynamics and steps of
 // 1 ms, in nanoseconds of thread time.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simbody 3.7: recursion over typed nodes, closures by multipliers with projection.
 #include "benchmarks/peers/peer.h"
 #include "tests/peers/multibody/simbody_headers.h"

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs ours beside every peer and prints the tables of benchmarks/results.md.
 
     benchmarks/peers/table.py BUILD [ROUNDS]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Completion of `slewring` in fish. The program itself lists what may stand at the cursor (slewring --complete); the
 # first line of its answer names the kind of files that fit too.
 function __slewring_complete

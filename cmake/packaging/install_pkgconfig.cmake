@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes the pkg-config file; its prefix follows the file's own folder. Set: source, destination, libdir, includedir,
 # version.
 set(file ${CMAKE_INSTALL_PREFIX}/${destination}/slewring-client.pc)

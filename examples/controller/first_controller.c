@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* The shortest controller, in C: half a stick for two seconds of the session.   first_controller SESSION [DOMAIN]
  * A session that is paused is waited for; Ctrl-C ends it, and gives the channel back. */
 #include <signal.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command lines of the example controllers: "--key value" pairs, numbers checked, problems named.
 #pragma once
 

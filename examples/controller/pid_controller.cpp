@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A PID controller on one input of a running session: the integral stops at the stick's ends, the derivative is of the
 // measured value and filtered. Its sample time is the time between two blocks of variables, from the session.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Closes a position loop on a cylinder of a running session, from outside: it reads a variable and moves one input.
 // A lockstep channel needs no other code than a sampled one. examples/controller_dds is the same without the library.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Closes a position loop on a cylinder of a running session, from outside: it reads the variables that the nodes
 // publish and writes one input channel. It depends only on idl/slewring.idl and Cyclone DDS; examples/controller is the
 // same with Slewring's client library.

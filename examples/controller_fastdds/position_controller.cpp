@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Closes a position loop on a cylinder of a running session, from outside, over Fast DDS: it reads the variables that
 // the nodes publish and writes one input channel. Its types are made of the installed slewring.idl by fastddsgen, its
 // settings are in slewring_fastdds.xml. examples/controller is the same with Slewring's client library.

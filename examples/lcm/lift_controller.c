@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* A position loop on LCM, in C, on the code that lcm-gen generates: crane_t comes in, input_t goes out.
  *   lift_controller SESSION TARGET SECONDS
  * Ends when the stroke has been within 2 mm of the target for half a second of the session, with 0, or after SECONDS of

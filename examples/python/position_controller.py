@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """examples/controller/position_controller.cpp in Python: the same loop on the same library.
 
     position_controller.py --session truck_crane --target 0.86

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Slewring's client library in Python: slewring_client.h through ctypes, nothing but the standard library.
 
     with Session("truck_crane", "pid") as session:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* A Simulink block that is a controller's end of a Slewring session: its outputs are variables of the session at the
  * present block, its inputs go to input channels as computed from that block. One major step is one block of variables,
  * in order, so that a lockstep channel is served; the model waits for the session, which is its clock.

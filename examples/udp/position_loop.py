@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Closes a position loop on the lift cylinder of scenes/truck_crane_devices.yaml, by UDP alone:
 
     position_loop.py --target 0.86

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks before a run whether the communication step suits the coupling levels of a scene.
 #pragma once
 

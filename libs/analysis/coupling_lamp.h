@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texts for the lamps of the coupling: the errors that they stand for, and the changes that make them green.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plots that a scene defines, for a recording of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Why a cylinder did not move although its valve was fully open: a sentence for the summary of a run.
 //
 // A stall is a time of at least half a second, from one second after the full-opening command to the valve, in which a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring bridge lcm` and `slewring export --lcm`: a session, live or recorded, towards LCM. A live one takes inputs
 // and parameter requests from there.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inputs from LCM on their way into a session: a lease for each controller and channel, in the name lcm:<controller>.
 //
 // Accepted values are forwarded one by one and never repeated (observer/input_leases.h).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A connection to LCM's UDP multicast. The only place with liblcm.
 //
 // LCM has no keys and binds its socket to all addresses: with a subscription, a datagram from any network would reach

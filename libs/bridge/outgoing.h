@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a session publishes, as messages of idl/slewring.lcm: variables, their names and units, health, signal lists.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bridge/parameter_door.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests from LCM for live parameters, and the session's replies. A request is repeated towards the session until it
 // is answered; one that LCM repeats is done once and answered again.
 #pragma once

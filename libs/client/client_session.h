@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A controller's view of one session: the functions of slewring_client.h in C++, without handles that may be wrong.
 //
 // Blocks of variables are put together by step: a step is complete when every requested variable of it has arrived.

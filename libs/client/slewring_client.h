@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Slewring's client library: read variables of a running session and move its inputs, from C or anything that calls C.
 //
 //   slewring_session* s = slewring_join("truck_crane", "pid", 0, "lo", "", 10);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The client library in C++: slewring_client.h with exceptions and a destructor, nothing else.
 //
 //   slewring::Session session({.session = "truck_crane", .controller = "pid"});

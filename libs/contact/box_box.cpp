@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two boxes: separating axes, then face against face or edge against edge.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A capsule against a box: the nearest points of its axis, then of the part of it that runs along a face.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lower bound of the distance of two shapes, and whether they can have met since.
 //
 // Convex shapes are apart by at least the gap between them along any direction; the directions tried are the line of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contact definition: shapes in frames, and the pairs of shapes that are tested. Only declared pairs are tested.
 //
 // A frame is a body or Ground; this library uses its pose only. A shape has a pose in its frame. Its own axes: sphere

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // State of contacts from one search to the next: impact speed and bristles, matched by position.
 //
 // A contact of this search is matched to the nearest contact of its pair in the last search, in the frame of shape A,

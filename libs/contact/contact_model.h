@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contacts of the declared pairs at given poses of their frames.
 //
 //   ContactModel   immutable: shapes, pairs, laws

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Convex shapes without a closed form: spheres against cylinders and convex meshes by the nearest point of their
 // surface, all others by their overlap (overlap.h) and the faces that meet there.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Friction of a contact: bristles that bend, hold and slip (LuGre), isotropic in the tangential plane.
 //
 //   g(s) = N (mu_d + (mu_s - mu_d) exp(-(s/v_s)^p)),   s = |v|,   N = F_n + F_0                       (1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contacts of two shapes without open-ended iteration. Every kernel appends the points of A against B with the normal
 // from B to A, and nothing when the shapes do not overlap. Real-time safe; cost bounded by the vertices of the shapes.
 //

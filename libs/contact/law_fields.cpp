@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keys, dimensions and ranges of the two laws, and the check of a Def against them.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contact points of two faces: the face of one shape clipped by the face of the other.
 //
 // n_W is the contact normal, from B to A; depth is counted along it, positive where the shapes overlap; a point lies

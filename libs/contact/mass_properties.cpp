@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "contact/mass_properties.h"
 
 #include "contact/mesh_check.h"

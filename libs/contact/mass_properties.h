@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mass, centre and inertia of the solid that a closed mesh encloses, at one density.
 //
 // Signed tetrahedra from an inner point o to every triangle (a, b, c), positions from o:

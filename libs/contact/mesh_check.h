@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks of meshes and height fields: the fault in words, or none.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A convex shape against the triangles of a ground that does not move.
 //
 // A triangle is one side of a solid. It counts if the shape's middle is on its outer side and the overlap along its

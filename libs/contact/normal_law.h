@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Normal force of a contact: a spring with damping by depth, so chosen that the rebound has the wanted restitution.
 //
 //   F   = max(0, w k d (d/d_ref)^(n-1) (1 + chi d'))     while d > 0, else 0                        (1)

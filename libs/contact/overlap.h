@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Overlap of two convex shapes of any kind: the shortest separating displacement, by an expanding polytope.
 //
 // All differences of their points, D = {b - a}, make a convex shape that holds the origin when they overlap. Along a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A shape placed in the world, and the geometric queries of the kernels.
 #pragma once
 

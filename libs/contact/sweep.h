@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects a pair that meets between two searched instants.
 //
 // The path is taken as straight, the turn as one step at its middle. It is sampled in pieces of at most half the

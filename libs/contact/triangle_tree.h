@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangles of a shape that does not move, in a tree of boxes: which of them may touch a box.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts heap allocations of a thread, between construction and count(), or from its start: proof of rule "no heap in a
 // step", in tests and in every node while it runs.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/arithmetic_self_test.h"
 
 #include <xmmintrin.h>

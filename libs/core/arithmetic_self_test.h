@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fingerprint of this machine's double arithmetic and mathematical library, compared between nodes at JOIN.
 #pragma once
 

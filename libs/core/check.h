@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pre-conditions. SLEW_ASSERT is off in optimised builds, SLEW_CHECK is always on and cheap.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program started beside this one: its own process group, its output in a pipe, dead when this process dies.
 #pragma once
 

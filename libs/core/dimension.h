@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Physical dimensions of scene fields and variables, with the SI unit each is kept in.
 //
 // The angle is a base dimension of its own, so that Hz is not taken for rad/s and a stiffness per radian is not one per

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Display of quantities and tables to users: workshop units, readable digits, lines that fit the terminal.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A variable that an element offers: any quantity with a name and a dimension, for plots, status, controllers.
 #pragma once
 

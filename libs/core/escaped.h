@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Escapes text for HTML, SVG or XML.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A reason to end the program: thrown anywhere above the step loops, caught in main, printed as one line.
 #pragma once
 

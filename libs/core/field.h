@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Field tables: one row for every member of a Def that a scene file may set.
 //
 // The table stands beside the Def in the physics library. The scene reader parses by it, `slewring schema` and the

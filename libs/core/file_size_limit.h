@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Behaviour of a process at the limit on its file size (ulimit -f).
 #pragma once
 

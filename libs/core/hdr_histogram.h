@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distribution of durations with a fixed relative error and fixed memory, for measuring deadlines while they run.
 //
 // Log-linear buckets (the idea of HdrHistogram, G. Tene): 128 of 64 ns each up to 8.192 us, then 128 to every doubling

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Indices of models are int, with -1 for "none"; containers count in std::size_t.
 #pragma once
 

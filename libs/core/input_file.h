@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that a user or a scene names: the type is checked before a byte is read.
 //
 // Accepts regular files up to a stated size. A FIFO or a device is refused without waiting for its other end. Reading a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the parts of an installation lie, found from the running program: build tree, prefix and package may be moved.
 //
 //   build tree     bin/slewring, bin/mechanics_node, ...

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A JSON value (RFC 8259) that is built, read and written: null, truth value, number, text, array or object.
 //
 //   Json json = {{"scene", scene.name}, {"steps", steps}};   an object

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names of a session's nodes, in the order of wire::Role, the sensors last: on command lines, in scenes and in
 // messages.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pace of a session's ticks, in its scene and in its description on the wire.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Foreign text on a terminal: file contents, names from the wire, messages that quote them.
 //
 // Control characters (C0, DEL, C1), those that change the direction or the line (U+061C, U+200E, U+200F, U+2028 to

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An error in a Def, found by the physics library that owns it; the scene reader adds the place in the file.
 #pragma once
 

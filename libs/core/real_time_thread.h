@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Real-time settings of `--rt`, and the processor that a program runs on.
 #pragma once
 

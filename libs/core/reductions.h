@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums in a fixed order: the result depends on the values and their order only, never on where they lie in memory.
 //
 // Libraries of linear algebra peel the unaligned head of a reduction, so that its result depends on the address modulo

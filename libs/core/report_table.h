@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A table of a report: its columns are stated once, and text, CSV, JSON and HTML are made from them.
 //
 //   ReportTable table({{"variable", "variable", "name"}, {"range", "range [m]", "range"}});

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A signal over one step as straight pieces; a tick carries one value for it.
 #pragma once
 

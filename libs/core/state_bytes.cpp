@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/state_bytes.h"
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole state of a subsystem as bytes, so that a run can be continued to the bit: raw bits of this architecture
 // (little-endian) behind a header.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/state_hash.h"
 
 #define XXH_INLINE_ALL

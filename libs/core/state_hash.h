@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // 64-bit hash of the raw bits of a state (XXH3), the unit of every determinism check.
 //
 // -0.0 and 0.0 differ, NaN payloads count: equal hashes mean equal bits. Values are added in id order by the owner.

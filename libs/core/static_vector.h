@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sequence with inline storage and a fixed capacity: no heap in wire messages and step loops. A copy moves the
 // elements, not the capacity.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Result of an operation that may fail for reasons outside the program, and the exit codes of every program.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Report of a step: flags and counters instead of prints and exceptions.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The name that was probably meant: the nearest candidate by edit distance, ties broken by the alphabet.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Output files of verbs: written whole, or left unchanged.
 #pragma once
 

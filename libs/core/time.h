@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simulation time: integer nanoseconds and step numbers. Double seconds exist only inside an integrator.
 #pragma once
 

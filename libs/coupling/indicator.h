@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Live error indicator of one port: defects at the exchange and the corrected power-bond residual
 // (coupling study, section 9).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coupling level: the part of the partner's behaviour that a subsystem uses inside a communication step (coupling
 // study, section 2).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The force that an actuator's line transmits: pressure force less friction plus end stops. One code for mechanics,
 // hydraulics and the monolith, so that all three use the same cylinder.
 //

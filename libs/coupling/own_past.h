@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // History of a subsystem's values at the ports at the beginning of its last steps: its own coordinate and its copy of
 // the partner's. A sample of step s that arrives at step n is compared with the copy at step s, not step n, and the
 // difference is applied to all later copies (coupling study, section 6):

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Live parameter changes that are spread over a time: value by step, the same in every node that applies them.
 //
 //   value(n) = from + (to - from) min(1, (n - begin + 1) / steps)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The small coupled problem at the ports, solved implicitly in the mechanics' sub-step (coupling study, section 8).
 //
 // A row is a scalar coordinate of the mechanism with a stiff force law: an actuator's stroke, or a joint coordinate

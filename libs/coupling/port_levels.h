@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The coupling level of every port of a session; each node keeps its own copy.
 //
 // A port has a level of its own or follows the session's. Levels change at step boundaries, by parameter changes that

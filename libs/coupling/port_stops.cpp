@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Micro-steps of the port problem in which a stop begins or ends to push, or throws back.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples that mechanics, hydraulics and flexible bodies exchange once per communication step (coupling study, sections
 // 5, 8 and 10).
 //

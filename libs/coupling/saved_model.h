@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Identity of the model that a saved state belongs to.
 #pragma once
 

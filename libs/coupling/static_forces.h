@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Line forces that hold the ports where they are: W F = -a_free, with the mobility and the free accelerations of a
 // MechanismSample.
 #pragma once

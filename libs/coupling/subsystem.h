@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A physics subsystem: a node steps it, hashes and records its state, and changes its parameters. One implementation
 // per physics role.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Expected change over the next sub-step of quantities that follow the motion.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A variable as an analog signal: gauges, currents, voltages.
 //
 //   target = low_output + (x - low)/(high - low) (high_output - low_output), held between both outputs

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Layout of a packet as a C struct: fields with types, in one byte order, packed as `#pragma pack` does.
 //
 // A field lies at the next multiple of min(its size, packing); the whole is rounded up to the largest of these

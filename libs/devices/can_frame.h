@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A frame of a CAN bus, and the lines in which `candump -l` writes frames.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CAN messages by signals: a database's, J1939's and CANopen's alike.
 //
 //   value = scale * raw + offset

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CANopen as far as a panel or a drive needs it: process data by layout, NMT commands, heartbeats.
 //
 // A PDO's objects follow each other bit by bit, each with its least significant bit first. Identifiers are those of the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reader of CAN databases in the DBC format.
 //
 // Read: BO_ messages with SG_ signals (Intel and Motorola, signed, factor and offset, range, unit, multiplexers M and

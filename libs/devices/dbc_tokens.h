@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Words, numbers, texts and signs of a DBC file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "devices/enable_chain.h"
 
 #include <fmt/format.h>

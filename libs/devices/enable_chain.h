@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Enable chain: a channel leaves neutral only while everything that its safety needs is there.
 //
 //   blocked -> ready      all devices are fresh, all conditions are met, and the dead-man input is released

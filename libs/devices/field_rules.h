@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rules that a field table states, for definitions of devices: ranges, required texts, numbers that are finite.
 #pragma once
 

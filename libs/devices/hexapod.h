@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Legs of a 6-6 platform by inverse kinematics.
 //
 //   l_i = |p_0 + x + R b_i - a_i|,  R = Rz(psi) Ry(theta) Rx(phi)

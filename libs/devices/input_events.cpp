@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "devices/input_events.h"
 
 #include <linux/input-event-codes.h>

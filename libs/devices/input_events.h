@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Events of Linux input devices from the bytes of /dev/input/event*, and the kernel's names of axes and buttons.
 //
 // An event has 24 bytes on a 64-bit kernel: seconds, microseconds (8 bytes each), type, code (2 each), value (4).

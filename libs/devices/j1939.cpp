@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "devices/j1939.h"
 
 #include <initializer_list>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SAE J1939: 29-bit identifiers, and two messages that machines need.
 //
 //   identifier = priority (3 bits), extended data page, data page, PDU format PF (8), PDU specific PS (8), source (8)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texts for the program on the other side of a layout: a C header and a note for Simulink's blocks.
 #pragma once
 

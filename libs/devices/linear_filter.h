@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Linear filter of order 2 or 3 with constant coefficients, advanced exactly for an input that is constant over a step.
 //
 //   y^(n) + c_n-1 y^(n-1) + ... + c_0 y = u,    states y, y', ..., y^(n-1)

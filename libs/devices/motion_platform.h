@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A motion platform by steps of time: washout, soft limits, legs, and the way from parked to active and back.
 //
 //   parked -> rising -> ramping_in -> active -> washing_back -> lowering -> parked

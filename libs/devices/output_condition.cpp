@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "devices/output_condition.h"
 
 #include <fmt/format.h>

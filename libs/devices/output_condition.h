@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conditions on variables, and lamps, buzzers and contacts that they switch, by steps of time.
 //
 //   x > s: on when x > s for `delay`, off when x < s - hysteresis, at least `least_on` after it went on

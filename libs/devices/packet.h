@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Packets of a layout: bytes to values and back. No allocation, no exception.
 //
 // A received packet is refused as a whole, for one cause, which is counted; the values are then left as they were:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checksums of packets, over a range of bytes that may be given in pieces.
 //
 //   sum8         sum of all bytes modulo 256

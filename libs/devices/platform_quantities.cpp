@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "devices/platform_quantities.h"
 
 #include <algorithm>

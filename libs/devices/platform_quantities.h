@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Quantities of a motion platform by name: what its packets can have, and what a monitor shows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers of 1 to 64 bits in messages: masks, signs and bounds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motion of a seat from the published motion of its body.
 //
 //   v_WP = v_WB + w_WB x (R_WB p_BP),   f_P = R_BP^T R_WB^T ((v_WP(t) - v_WP(t'))/(t - t') - g_W),   w_P = R_BP^T

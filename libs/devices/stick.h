@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A joystick, gamepad or set of pedals: events to axes and buttons.
 //
 // Events of one report take effect together, with its SYN_REPORT. After SYN_DROPPED (the kernel's queue was full)

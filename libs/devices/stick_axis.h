@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One axis of a stick: raw counts to -1 .. 1.
 //
 //   x = (raw - centre)/(highest - centre) above the centre, (raw - centre)/(centre - lowest) below it,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calibration of a device's axes, step by step: at rest, to all ends, at rest again.
 //
 //   rest         counts while nothing is touched, for rest_time; begins again when an axis moves by more than rest_band

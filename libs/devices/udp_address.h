@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Addresses of UDP in texts: "127.0.0.1:5005", IPv4 alone.
 #pragma once
 

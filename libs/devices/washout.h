@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Classical washout: specific force and rates at a seat to the pose of a platform that stays near neutral.
 //
 //   translation  X/U = s/((s^2 + 2 zeta w_n s + w_n^2)(s + w_b))       u = k_f (f - (0, 0, g)), held

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Comparison of a clamped and a free body frame: share of the tip's static compliance by the modes of each.
 //
 // The other frame uses the same nodes: a clamped body is set free with the clamped nodes as interfaces too, a free one

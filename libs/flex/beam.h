@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A beam structure as definitions, and the finite element model made of it.
 //
 // Nodes lie anywhere; straight elements join them, in the order of the nodes unless they are listed. Each element has

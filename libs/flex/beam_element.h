@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One straight beam element between two nodes, with shear deformation, in the axes of the body frame.
 //
 // Local axes: x from node 1 to node 2, y and z the section's. With xi = x/l and the shear numbers

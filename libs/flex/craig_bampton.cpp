@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flex/craig_bampton.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Modes of a body in its floating frame: Craig and Bampton's reduction, then modes of the reduced body.
 //
 // Freedoms: A held by the body frame (they are omitted), B at the interface nodes, I inside. With the static response

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Eigenproblems and linear systems of symmetric matrices; the only place of decompositions.
 //
 // Small problems are solved dense, large ones by Lanczos steps with (K + sigma M)^-1, both for the largest

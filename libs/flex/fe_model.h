@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A linear finite element model: nodes, mass and stiffness, and optional data beyond the two matrices.
 //
 // All vectors and freedoms are in the axes of the body frame. A node has three translations, or these and three

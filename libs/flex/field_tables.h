@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Field tables of a described flexible body, for the parts of its file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A straight beam as rigid lumps with massless elastic connectors between them: the finite segment method.
 //
 // n connectors of equal length l = L/n lie end to end from one end of the beam to the other; lump i, 0 to n, sits at

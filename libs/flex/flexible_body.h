@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Description of a flexible body: materials and sections by name, nodes, elements, and its reduction.
 //
 // Either a beam (a line of nodes, or nodes by id) or the matrices of another finite element code. Conversion to

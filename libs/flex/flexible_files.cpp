@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writing of the sets; reading is in flexible_files_read.cpp.
 #include "flex/flexible_files.h"
 

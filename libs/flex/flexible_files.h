@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reduced bodies as sets of text files, Model_Prefix_Matrix.dat.
 //
 // Source, Nodes, Frequencies, Modes, Inertia, Stiffness, Foreshortening, Recovery and Elements. Each begins with one

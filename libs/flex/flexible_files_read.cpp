@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reading of the sets that flexible_files.cpp writes.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One file of a flexible set: its format, and a strict reader.
 #pragma once
 

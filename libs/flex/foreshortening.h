@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shortening of a straight beam that bends: the second-order part of (1) in reduced_body.h.
 //
 // A section of a beam that keeps its length moves along the axis e by -1/2 times the integral of its squared slope.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Models of other finite element codes: mass and stiffness as Matrix Market files beside a table of the nodes.
 //
 // The table has one line a node, in the order of the matrices' rows, words between white space, commas or semicolons:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error of a request or an input file. One text: what happened; expected ...; what to do.
 //
 // Thrown while a model is built, reduced, written or read; never within a step.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The integrals of a reduced body over its material (reduced_body.h, equation 2), in reduced form from the start.
 //
 // With the mass samples of beams, M = sum w N^T N: for a sample at x (offset samples hold the second moments of a

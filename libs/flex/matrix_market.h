@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sparse matrices in Matrix Market files: coordinate, real (or integer), general or symmetric.
 //
 // A symmetric file holds the lower triangle. Comments (%) and blank lines may stand before the sizes; repeated entries

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Unique choice of modes: rotation within modes that share a frequency, and signs.
 #pragma once
 

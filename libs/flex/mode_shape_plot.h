@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mode shapes as a picture: self-contained SVG, one panel per mode, each with the undeformed and the deformed line in
 // the x-y plane above and in the x-z plane below, in the axes of the body frame.
 //

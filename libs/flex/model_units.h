@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Units of matrices from other finite element codes, and a plausibility check of the model in SI.
 //
 // A code without units gives matrices in any consistent system. A model in the unit of length L [m], of mass M [kg] and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flex/recovery.h"
 
 #include "core/check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stress of a flexible beam from its modal coordinates: matrices built once, evaluated without allocation.
 //
 // At both ends of every element, at the points of its section, with the strains of the shape functions

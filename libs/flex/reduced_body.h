@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A flexible body in its floating frame: the data of a multibody formulation, as plain numbers.
 //
 // In the axes of the body frame, the material point at x is at

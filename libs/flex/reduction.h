@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a finite element model to the reduced body: modes, integrals, shortening, recovery, and its origin.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Accuracy of a reduction: figures, and their text.
 //
 // Static compliance of the tip: tip_compliance.h. Effective modal mass of mode k along a: C_k,a^2; the sum over all

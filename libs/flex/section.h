@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cross-sections of beams: from dimensions, or from given numbers.
 //
 // y and z are the section's principal axes through its centroid, which is taken as the shear centre too.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text files read line by line, word by word, with errors that name the line.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Static compliance of a tip: the share of some modes in that of the whole model with the reference nodes held,
 //   c = sum_k Psi_k^2/omega_k^2,   Psi = phi(tip) - R(tip) R(ref)^+ phi(ref)                             (1)
 // with Psi the mode's displacement of the tip seen from the reference nodes, so that clamped and free modes are

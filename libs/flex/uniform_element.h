@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A beam's elements as numbers by length, for finite segments (finite_segments.h).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shapes of bodies as primitives of foxglove.SceneUpdate.
 #pragma once
 

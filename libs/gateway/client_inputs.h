@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inputs of a session that clients move: each client is a controller of its own, "NAME:number", so that one client at a
 // time drives an input.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages of the Foxglove WebSocket protocol from a client (foxglove-sdk, ws_protocol/client), read strictly: any
 // bytes are one message, or a sentence that states the problem.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/door.h"
 
 #include <arpa/inet.h>

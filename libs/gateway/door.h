@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides about an HTTP request to the gateway: which file it gets, whether it becomes a WebSocket, or why it is
 // refused.
 //

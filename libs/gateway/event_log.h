@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Events of a session as messages foxglove.Log, for clients that come and for those that come later.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gateway/foxglove_schemas.h"
 
 #include <initializer_list>

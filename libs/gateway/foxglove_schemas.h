@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JSON schemas of the messages that Foxglove and Lichtblick recognise by name (foxglove-sdk, schemas/jsonschema), with
 // the members that the gateway sends.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One message for a WebSocket client.
 #pragma once
 

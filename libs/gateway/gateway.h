@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gateway between a session, live or recorded, and clients of the Foxglove WebSocket protocol. It has no sockets: a
 // server gives it the clients' messages and takes the frames for them.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The live parameters of a session as the protocol shows them, and changes of them.
 //
 // A value is the scene's until the session has answered. Values are requested from the session when it begins, after a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The machine as Foxglove shows it: frames that move, and shapes that stay in their frames.
 //
 // Frames: World, with z up against gravity; in it Ground; in Ground each body, and for each cylinder `El/tube` at its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one client has yet to receive: events in their order, and states of which only the newest counts.
 //
 // A state waits as a mark, not as bytes: its value is encoded when the client can take it, so that a client that reads

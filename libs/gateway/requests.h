@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests to a live session that wait for their replies. A request is repeated until it is answered: io_node
 // recognises a copy and answers it again.
 #pragma once

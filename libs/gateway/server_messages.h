@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages of the Foxglove WebSocket protocol to a client (foxglove-sdk, ws_protocol/server). Texts are JSON; binary
 // messages are little-endian behind one byte of opcode.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The services: calls of clients, and their answers.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The services of the gateway: calls with a JSON object, answered by one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Named signals: one channel for each element, with its variables as fields, so that a plot finds `Cyl_Lift.force` as
 // field `force` of topic `/Cyl_Lift`.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The values of all variables at one step, taken now and then from the blocks of a session.
 //
 // A snapshot is requested, and becomes whole when every node that computes in lock-step has published the same step:

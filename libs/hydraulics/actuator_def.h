@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an actuator is to the mechanics, and to whatever reports on it: the facts of its Def that do not depend on its
 // type. Every ComponentDef that drives a force element through a power port returns them from actuator().
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A hydraulic circuit as a system of ordinary differential equations.
 //
 //   y = [u of all volumes | x | v of all actuators | component states]

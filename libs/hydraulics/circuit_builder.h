@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Services for a component while the circuit is built: positions of its ports, states, content, oil data.
 #pragma once
 

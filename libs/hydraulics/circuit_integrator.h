@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Advances a circuit and its pistons over communication steps, and provides the partner's linearisation.
 //
 // Within a step the circuit's equations and the pistons' motion (PistonMotion) are one system for the solver that the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Start states of a circuit, and the volume-consistent motion of its pistons.
 #include <algorithm>
 #include <cmath>

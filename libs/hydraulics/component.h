@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The interface of hydraulic components: their view of the circuit and their terms in its equations.
 //
 // The circuit's state vector is y = [p of all volumes | x | v of all actuators | component states]. A component keeps

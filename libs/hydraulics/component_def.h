@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Definition of one hydraulic component, and the table of all component types.
 //
 // The set is open: a new type is a final Def with its field table, a ComponentType row, and a HydraulicComponent. The

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Curves of a scene as tables of straight lines.
 #pragma once
 

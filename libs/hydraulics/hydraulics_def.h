@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Definition of a hydraulic circuit: oil, solver, start state, volumes, components, curves.
 //
 // Pressures are absolute. Settings of valves and pumps are relative to the tank they are connected to.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cylinder's chamber as a transmission line of one delay: the circuit's side of coupling level TLM.
 //
 // The chamber's oil is a line of capacity C between the circuit's volume (end h) and the piston (end m). Waves need the

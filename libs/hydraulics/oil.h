@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compressibility of oil with entrained air. vapour.h describes a volume below the cavitation floor p_f.
 //
 //   V(p)/V_0 = exp(-(p - p_0)/B) + alpha (p_0/p)^(1/n)                                          (1)

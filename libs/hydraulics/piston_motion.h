@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The interface by which a partner's model of the mechanics moves the pistons inside the circuit's integration.
 //
 // The circuit integrates x' = v, v' = a(F, x, v) together with its pressures, F = p_A A_A - p_B A_B per actuator. A

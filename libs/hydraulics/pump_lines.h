@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Warns about pumps whose line has no relief.
 //
 // A pump's line is its outlet and every volume connected to it at any control signal: through orifices, bleeds, laminar

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state of a circuit and of its integration as bytes.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two smooth functions that replace the kinks of fluid-power laws, with their slopes.
 //
 //   ramp(x, w) = 0 for x <= 0;  w t^2 (2 - t), t = x/w, for 0 < x < w;  x for x >= w                            (1)

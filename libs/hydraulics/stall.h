@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stall pressures of a circuit: the pistons cannot move and every flow has ended.
 //
 // The pistons are held at their strokes, all chambers begin without load, one control signal is held, and the circuit

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The circuit's part of cavitation: pressures for components, capacities at the floor, piston motion through the floor.
 #include "hydraulics/vapour.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cavitation of a volume: the meaning of its state below the cavitation floor.
 //
 // A volume's state u [Pa] is its pressure down to the floor p_f. Below, it is the pressure of oil in tension and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keys, certificates and signed documents of a key store (EC P-256), made with the openssl command line.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lists the problems of a key store or of keys exported from one.
 #include <fmt/format.h>
 #include <sys/stat.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files and folders of a key store. Files that existed before are left as they are, with their mode.
 #pragma once
 

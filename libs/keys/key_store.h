@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A key store: the authorities of a set of machines, and an identity with keys for every role that takes part. Made and
 // changed with the openssl command line; read by nodes through transport/protection.h.
 //

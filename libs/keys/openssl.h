@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The openssl command line: makes keys, signs certificates and documents.
 #pragma once
 

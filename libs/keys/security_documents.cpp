@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "keys/security_documents.h"
 
 #include <fmt/format.h>

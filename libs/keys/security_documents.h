@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The documents of DDS Security 1.1 that a key store signs: what a domain protects, and what a holder of keys may do.
 #pragma once
 

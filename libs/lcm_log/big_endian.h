@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Big-endian numbers of LCM: appending to a string, and taking from untrusted bytes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lcm_log/event_log.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // LCM's event logs, as lcm-logger writes and lcm-logplayer reads them. An event is, big-endian:
 //   uint32 0xEDA1DA01, int64 number, int64 time [us], int32 length of the channel, int32 length of the data,
 //   channel, data

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Judges inputs from LCM one by one: what may reach the session, and why the rest does not.
 //
 // LCM repeats nothing, names no sender and keeps no order. An input_t has therefore the sender's own number and a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inputs of an LCM event log as a time table for the scene's script (scene/csv_table.h), as a session would have
 // applied them: `slewring run --input FILE.lcm`.
 //

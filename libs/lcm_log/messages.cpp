@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lcm_log/messages.h"
 
 #include <slewring/input_t.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages of idl/slewring.lcm that come from outside, decoded from untrusted bytes.
 //
 // The decoders that lcm-gen generates trust the lengths of strings; these check every length and number first.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lists of variables as plain LCM structs of their own: step, time, and one double for each variable.
 //
 //   crane=Cyl_Lift.stroke,Cyl_Lift.force      ->      struct crane_t {

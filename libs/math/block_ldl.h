@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Factorisation of a symmetric saddle-point matrix of small blocks, with a plan that is made once.
 //
 //   K = [ M  G^T ]     M positive definite on the null space of G, block-sparse

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A function given by points, as the cubic spline through them: with continuous slope and curvature, so that a motion
 // along it has no jump of acceleration. Unlike the monotone cubic it may overshoot between points.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "math/cvode_stepper.h"
 
 #include <cvode/cvode.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SUNDIALS CVODE (variable-order BDF, Newton with the system's own Jacobian, dense LU) as a StiffIntegrator.
 //
 // Keeps its history over intervals while the motion is smooth: restarting every interval costs ten times the accuracy.

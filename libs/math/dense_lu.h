@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solution of a small dense system A x = b by LU with partial pivoting, in a fixed order of operations.
 //
 // No allocation after construction; the result depends on the values only, never on where they lie in memory.

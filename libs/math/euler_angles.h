@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Euler angles of a rotation matrix: the inverses of rotation_zxz and rotation_xyz.
 //
 // The third angle is taken from the rotation that remains after the first two, so that the product of the three is R to

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Implicit Euler with a fixed sub-step: order 1, L-stable, with strong numerical damping.
 //
 //   M (y_new - y) / h = f(y_new)                                                                            (1)

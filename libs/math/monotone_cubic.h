@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A function given by points, as the monotone cubic through them: continuous with its slope, no overshoot between two
 // points. Value, slope and integral from 0 are exact for this one curve, so that a spring of it has an exact energy.
 //

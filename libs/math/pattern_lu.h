@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // LU of (c M - J), M diagonal, for a J whose non-zero pattern is known at build: pivots on the diagonal in an order
 // chosen once.
 //

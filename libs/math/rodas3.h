@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adaptive RODAS3: L-stable Rosenbrock method of four stages, order 3 with an embedded order 2, for M y' = f(y).
 //
 //   (1/(h gamma) M - J) K_i = f(y + sum_j a_ij K_j) + M/h sum_j c_ij K_j,   gamma = 1/2                      (1)

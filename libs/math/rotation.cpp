@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "math/rotation.h"
 
 #include <math.h>  // sincos is not in <cmath>

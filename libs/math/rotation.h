@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rotations: matrices R_AB (columns are the axes of B in A), unit quaternions, Euler angles.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Classical Runge-Kutta of order 4 with a fixed sub-step, for systems that are not stiff.
 //
 //   y_new = y + h/6 (k_1 + 2 k_2 + 2 k_3 + k_4)                                                             (1)

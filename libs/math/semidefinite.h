@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solution of a consistent system with a symmetric positive semidefinite matrix, row by row without exchanges.
 //
 //   A x = b,   A = L D L^T over the rows that are independent of those before them                    (1)

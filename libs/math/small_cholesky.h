@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cholesky's factorisation of small symmetric positive definite matrices, and substitutions with the factor: A = C C^T.
 // Row-major, the factor in the lower triangle; nothing above the diagonal is read. Backward stable: the relative error
 // is the ratio of the eigenvalues times the rounding; an explicit inverse has the square of the ratio.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solution of a very small dense system with several right-hand sides, in place and in a fixed order of operations.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Largest |eigenvalue| of a square matrix by power iteration, and the state with the largest part in it.
 //
 //   w = D^-1 A D v / |v|,   |lambda|_max ~ sqrt(|A_s v_k+1| |A_s v_k|),  A_s = D^-1 A D                       (1)

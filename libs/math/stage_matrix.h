@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The matrix c M - J of an implicit stage, factorised sparsely with pivots on the diagonal, or densely if one of them
 // nearly vanishes. Real-time safe.
 #pragma once

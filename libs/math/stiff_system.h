@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A stiff system of ordinary differential equations, and the seam of the integrators that advance one.
 //
 //   M y' = f(y),  M diagonal of ones and zeros                                                        (1)

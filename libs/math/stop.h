@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two-sided stop along a coordinate x with speed v: a spring and a damper behind each limit, which push and never pull.
 //
 //   F = max(0, k (x_min - x) - c v) - max(0, k (x - x_max) + c v)                                             (1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors and matrices of three-dimensional space, four lanes wide so that one instruction handles a column.
 //
 // A Vec3 holds x, y, z and a fourth lane that stays zero. All operations are element by element in a fixed order, so

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mechanics alone in body coordinates under IDA: the second reference beside the one in joint coordinates.
 //
 // Every link has its own coordinates q (position, quaternion) and speeds u; joints are rows with the multipliers lambda

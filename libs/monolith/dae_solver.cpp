@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "monolith/dae_solver.h"
 
 #include <ida/ida.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SUNDIALS IDA as a value: variable-order BDF for F(t, y, y') = 0 with Newton iteration, dense matrix, Jacobian by
 // difference quotients.
 //

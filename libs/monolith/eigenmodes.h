@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Eigenvalues of a small general matrix and the participation of the states.
 //
 //   A r = lambda r,   l^T A = lambda l^T                                                              (1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene's equations about one state: A = df/dy of scene_equations.h (2) to (5), and its eigenvalues.
 //
 // A by central differences of 1e-5 of each state's scale. At a corner of a law (a check valve about to open, a piston

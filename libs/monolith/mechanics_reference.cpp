@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "monolith/mechanics_reference.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mechanics alone, to tight tolerances: the reference for formulations, integrators and steps.
 //
 //   q' = coordinate rates,   u' = f(P(q, u)),   P: nearest state on the loops                                (1)

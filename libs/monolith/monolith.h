@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The accuracy reference: all physics of a scene as one ODE (scene_equations.h) in CVODE.
 //
 // A co-simulation is judged against it: same laws, same start, same controls, no coupling. BDF at rtol 1e-9 with

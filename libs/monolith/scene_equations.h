@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All physics of a scene as one undivided system of ordinary differential equations y' = f(t, y).
 //
 //   y = [ q | u | z | p of all volumes | component states | work and impulse of all ports ]          (1)

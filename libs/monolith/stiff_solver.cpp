@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "monolith/stiff_solver.h"
 
 #include <cvode/cvode.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SUNDIALS CVODE as a value: variable-order BDF with Newton iteration, dense matrix, Jacobian by difference quotients.
 //
 // Errors per step are held below rtol |y_i| + atol_i (weighted root mean square). Source: Hindmarsh et al. 2005, ACM

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state of one node at one step as bytes: a physics node saves it and sends it in parts, io keeps it and sends it
 // to the process that takes the role over.
 //

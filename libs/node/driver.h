@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs nodes: one in this process, or several together on one thread.
 #pragma once
 

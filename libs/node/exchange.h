@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which samples a physics role uses, and how old they are: at the start of a session and in each step. Pure functions
 // that the nodes, the session in one process and the replay share.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "node/flag_counter.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts the flags that the steps of the two physics nodes report (core/step_report.h), sample by sample: in a live
 // session, while it is recorded, or from a recording.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A follower (flex) has no state to advance: the sample of a step follows from the mechanics' sample of the same step.
 // It needs no tick. Ticks give it the last step of the session and the order to shed the values of its variables.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Free-running: step n is done when tick n has arrived, or when the time at which it was due and the wait budget have
 // passed. It uses the partners' samples of step n or, after the budget has passed once more, the newest ones.
 //

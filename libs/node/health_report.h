@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The health message of a node, made from the atomics that its loop updates.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The identity of this process, for messages, logs and the detection of a process that has exited.
 #pragma once
 

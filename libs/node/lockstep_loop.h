@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lock-step: step n is done with tick n and the partners' samples that hold at step n, however late they come.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A transport that counts the heap calls inside its functions, so that a node's own use can be separated from the
 // middleware's.
 #pragma once

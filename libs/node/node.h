@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The interface between a node and the driver that polls it. The same node code runs in a process of its own, where the
 // driver waits on the transport, and beside others on one thread, where the driver polls them in turn.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frame of every main: processor check, command line, signals, and where exceptions end.
 #pragma once
 

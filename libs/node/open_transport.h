@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens the endpoint of a role, with the topics of its row in transport/roles.h: on the network, or on the bus of one
 // process.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The node around one physics subsystem: its part in the session, JOIN, INIT, and its steps (architecture section 2).
 //
 // Step n: the subsystem applies the commands, advances to t_{n+1}, and the node publishes sample n+1 with the hash of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "node/physics_program.h"
 
 #include "node/node_program.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program of a physics node: mechanics_node, hydraulics_node and flex_node differ in their subsystem and their
 // help.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PhysicsNode's part that receives messages.
 #include <string>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PhysicsNode's part that waits: requests for the messages that the next step lacks, the stall watch, and the reaction
 // to a node that is silent, gone or at its end.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times of requests for a missing step: 3 ms after it was expected, then with doubling pauses up to 100 ms.
 #pragma once
 

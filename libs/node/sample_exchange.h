@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The samples of one physics node: those of its partners by step, as long as they are needed, and its own, kept to be
 // resent. node/exchange.h defines the samples that a role uses in each step.
 //

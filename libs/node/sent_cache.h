@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The encoded step messages that a node has sent, kept to be resent. A resent message changes nothing at its readers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The common part of all nodes: the identity of the node, the state of its peers, the start-up check (JOIN) and the
 // detection of lost peers.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command-line options with which a node or a verb finds its session.
 #pragma once
 

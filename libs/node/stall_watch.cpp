@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "node/stall_watch.h"
 
 #include "node/identity.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Watches for the message that a node waits for. Health, status and samples of other topics do not count as progress: a
 // writer whose other messages arrive may never deliver the one that the next step needs.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // States that a physics node exchanges with io: its checkpoints, which io keeps, and the state of its role that it
 // takes over instead of INIT (bytes: node/checkpoint.h).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides when the next step of a physics node can be done, and selects its inputs. A node runs one loop for the
 // session:
 //

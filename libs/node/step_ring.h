@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages by step number, as many as the window needs: a later step overwrites the one `depth` before it.
 #pragma once
 

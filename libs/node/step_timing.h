@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Timing of a node: duration of each step, waits by partner, overruns (docs/realtime.md).
 //
 //   Tick n sent by io            released        t = 0 of the step's response

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "node/subsystem_factory.h"
 
 #include <algorithm>

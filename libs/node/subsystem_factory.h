@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds the subsystem of a physics node's program: loads the scene from the session's text, compares its files, and
 // selects the variables to publish.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts a session's ticks as they arrive: steps, wall time and pauses.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Publishes the variables of a physics node that the scene selects: their directory once, their values in blocks.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "observer/input_leases.h"
 
 #include <random>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Leases of a program that moves inputs of a session, for one controller name or several.
 //
 // A lease is requested when the first value for it comes, and again while values go on. A value that comes before the

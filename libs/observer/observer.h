@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Observes a live session from outside and sends it requests: a transport, and the view that its messages fill.
 #pragma once
 

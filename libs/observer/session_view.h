@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An observer's view of a session: its processes and their health, the variables' names, values and extremes.
 //
 // Fed with messages, from a live transport or from a recording. Messages of other sessions, and of processes whose

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "observer/step_values.h"
 
 #include <iterator>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values of chosen variables of one step, which come in blocks of several nodes: whole when each of them has arrived.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a command line accepts, as plain values: for completion in a shell and for manual pages.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Completion of a command line: the words that may stand at the cursor, from the program's own tree of commands.
 #pragma once
 

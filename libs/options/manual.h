@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Manual pages of a program in the macros of man(7), made of its tree of commands.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line of a program: verbs, options and flags with their texts, ranges and groups, read once in main.
 //
 //   options::Program program("slewring", "what it is for");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ticks of an axis: steps of 1, 2 or 5 times a power of ten, labelled with as many digits as the step needs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Curves as a table of comma-separated values (RFC 4180), for spreadsheets, MATLAB and pandas.
 //
 // First line: "time [s]" and "name [unit]" of each curve. One line for every instant at which any curve has a value; a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Thins out a curve to the resolution of a plot: of every pixel column the first, smallest, largest and last value.
 //
 // No peak is lost, however many samples there are. Values that cannot be shown and steps back in time part the curve.

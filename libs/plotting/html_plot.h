@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Curves over time as an interactive page: one file without external resources, panels as in plot_svg, one time axis
 // for all.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plotting/html_text.h"
 
 #include "core/json.h"

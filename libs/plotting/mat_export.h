@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Curves as a MAT-file (level 5, compressed) for MATLAB, Octave and scipy.io.
 //
 // One struct for each curve: name (as in the session), unit, time [s], value (columns of equal length). It is called

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "plotting/scatter_svg.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Marks over two logarithmic axes as a picture: self-contained SVG. For error over cost: lower left is better.
 //
 // Marks of a group share a colour and are joined by a line in their order; each has its label beside it and its figures

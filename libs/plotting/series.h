@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One curve over time: plain numbers with a name and a unit, from any source.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Curves over time as a picture: self-contained SVG, plots below each other, one time axis for all.
 //
 // A plot has a heading and one panel per unit, in the order in which its units first appear; plots share no panel, so

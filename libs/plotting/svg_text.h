@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The common look of all pictures: fonts and colours.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The file of a recording, written by a thread of its own: a slow disk delays the writing thread, not the recorder.
 //
 // Takes whole records like OutputFile and returns size and checksum as if they were written. The backlog is bounded:

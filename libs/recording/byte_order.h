@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Little-endian byte strings: appending to a buffer, and reading from an untrusted one.
 //
 // MCAP serialisation: integers little-endian; String = uint32 length + bytes; Map = uint32 byte length + entries.

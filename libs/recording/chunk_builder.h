@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gathers messages into one MCAP chunk: compressed by zstd, checksummed, followed by an index per channel.
 //
 // Buffers keep their size from chunk to chunk: after the first full chunk nothing allocates.

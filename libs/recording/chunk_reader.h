@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Extracts the messages of an untrusted chunk.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a recording from its first byte on and finds the longest prefix that can be trusted.
 //
 // Checks structure, checksums of chunks and attachments, the Marks between them, Data End and summary. The scan stops

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A file that is read by offset. Its size is taken once; a file that shrinks meanwhile gives an error, not a crash.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The file that a recording is written to: whole records only, with the checksum of everything written so far.
 //
 // When a write fails the file is cut back to the last whole record, so that it stays readable, and no further byte is

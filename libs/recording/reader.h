@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a recording: whole, cut at any byte, or damaged.
 //
 // A whole file is read through the index at its end. Otherwise it is scanned from the start, and its content is the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The records of an MCAP file (https://mcap.dev/spec, version 0) that a recording uses, as structs, with their bytes.
 //
 // A record is  <opcode: 1 byte> <length of content: uint64> <content>. encode* append a whole record to a buffer;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes a whole recording from the proved records of a damaged one (salvage.h).
 //
 // Identity, attachments, schemas, channels and chunks are taken over as they are; index, statistics and end are built

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "recording/run_directory.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The directory of a run: runs/<scene>-<time>/, a new one for every session.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds all proved records of a damaged recording, also after the damage.
 //
 // Chunks and attachments prove themselves by their checksum. The other records are proved by the Marks around them: the

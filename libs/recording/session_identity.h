@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Identity of a recording: the Metadata record "slewring.recording", the first one behind the Header.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sorts messages into the order of steps before they are written, for any order of arrival.
 //
 // Order: (epoch, step, channel, sequence), then the payload's bytes, then arrival; so the same messages leave in the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The end of a recording: Data End, the summary section (schemas, channels, index, statistics) and the Footer.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes one session to one MCAP file.
 //
 // Layout, reasons and guarantees: docs/recording-format.md. In short: identity, attachments, schemas and channels in

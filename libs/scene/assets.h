@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that belong to a scene: size and SHA-256, so that a node on another machine detects a different copy.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene as canonical YAML: every field with its value in SI, in one order, so that reading it gives the same Scene
 // and writing that gives the same text. Fields that no text can express (an infinite default: "no limit") are left out.
 #pragma once

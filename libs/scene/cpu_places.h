@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // On which processor each node of a session runs: "mechanics=1, hydraulics=0".
 #pragma once
 

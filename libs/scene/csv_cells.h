@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines, cells and numbers of CSV files from spreadsheets, measuring programs and this program.
 //
 // The first line determines the separator: ';' if present, else the more frequent of tab and comma; a line "sep=;" in

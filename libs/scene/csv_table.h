@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time tables as CSV: a header with `time` and names of columns, then one line for each time.
 //
 //   time [ms]; Stick [%]; Boom.position.y [m]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shapes that a scene starts deep in each other.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/defs.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Definitions of a scene beside the physics: session, inputs, script, recording, plots.
 #pragma once
 

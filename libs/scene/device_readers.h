@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts that the readers of all kinds of devices share: rows of the libraries' tables, and rules of inputs, addresses,
 // layouts and enable chains.
 #pragma once

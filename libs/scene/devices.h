@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Devices of a scene, which move its inputs and show its variables, and the outputs that they show: lamps and gauges.
 //
 // `slewring run` starts each device as a process (device_node); nothing of it takes part in a step.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Problems of a scene: one Diagnostic for each with its place, all of them in one LoadError.
 //
 // Text of a diagnostic:  file:line:col: path: what is wrong; expected ...; did you mean 'x'?

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From files and overrides to one tree: included files, the scene over them, `--set` over both.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fills a Def from a map of the scene by the Def's field table, checking type, unit, range and choice of every value.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files of flexible bodies: read, checked, and counted among the scene's assets.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Descriptions of flexible bodies: one body in a YAML file of its own, read as strictly as a scene.
 //
 //   model: truck_crane

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mesh files of shapes, read once when the scene is loaded.
 //
 // The triangles become part of the scene (`vertices`, `triangles`), and so of its expanded text: nodes on other

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mass, centre of mass and inertia of a body from a closed mesh: `inertia: from_mesh`.
 //
 //   Bag: {inertia: from_mesh, mesh: bag.stl, mesh_unit: 1 mm, mesh_up: z, density: 1600 kg/m3}

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a reduced body of libs/flex for the mechanics.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selection of variables by name or pattern (* any characters, ? one character), for scenes and the command line.
 #pragma once
 

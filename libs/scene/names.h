@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The names of a scene's elements: one name, one element, in any section.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers as scene files write them: decimal, finite, without the traps of YAML (010, 0x1F, .inf, 1_000).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Outputs of a scene, and the quantities and conditions of their texts.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parameters of a scene: every numeric field and every choice of every element and section, with its range and
 // whether it may be changed while the session runs. A choice is changed by name; its value, in ticks and in programs,
 // is the name's place among the choices, from 0.

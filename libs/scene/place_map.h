@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Places of all elements and keys of a scene in its files, for problems found after reading.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The points of a table field in a CSV file:
 //
 //   deflection [mm], force [kN]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Power ports of a scene: each actuator of the circuit with the force element it drives.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene: everything a session needs, read from a file, checked, in SI.
 //
 // A scene file is YAML (docs/scene-format.md). Reading is strict: unknown and duplicate keys, missing units, wrong

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options of `slewring run` and io_node for the scene of a session and its changes.
 #pragma once
 

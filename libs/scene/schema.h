@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene format as a JSON Schema and as tables for readers, both from the field tables.
 #pragma once
 

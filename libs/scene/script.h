@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plays a scene's script: the raw value of every input at any time of the session.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads `script:`: the scene's own operator, in the scene or in a file beside it.
 //
 //   script:

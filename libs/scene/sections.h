@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sections of a scene and the types of elements in them, from the libraries that own the Defs.
 //
 // All code that iterates over a scene (reading, canonical text, parameters, schema, documentation) uses these tables

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts finite segments of libs/flex for libs/multibody, which are independent of each other.
 #pragma once
 

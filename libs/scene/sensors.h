@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sensors of a scene with the shapes and bodies that they look at.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One change of a file's values from a command line: "PATH=VALUE".
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reading a scene's files: size and kind are checked before a byte is read, the bytes before they are parsed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CSV files of tables: their notation in a scene, and opening them.
 //
 //   force_table: drive.csv

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Quantities: a number with a unit, checked against a dimension, in SI.
 //
 // UDUNITS-2 parses the unit and provides the scales; the dimension check is done here, because UDUNITS takes Hz for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts of a scene without effect: legal, and probably a mistake.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A YAML document as a tree of our own, with the place of every key and value.
 //
 // Stricter than libyaml, whose events it is built from: one document, a map at its root, no anchors, aliases

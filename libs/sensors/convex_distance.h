@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distance of two convex shapes, with a proof (docs/models/sensors.md).
 //
 // The differences of their points, D = {a - b}, make a convex set, and the distance is that of D from the origin.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The only way to FCL: a shared library of its own with plain numbers at its border.
 //
 // FCL as Debian builds it is for baseline x86-64, where Eigen's types are aligned to 16 bytes; with our instruction set

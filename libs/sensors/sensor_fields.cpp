@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The types of sensors and their keys.
 #include "sensors/sensors.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sensors of a scene: clearance of groups of shapes, zones, collisions (docs/models/sensors.md).
 //
 // An observer of poses: no force follows from a sensor. FCL searches and allocates: not for a step in real time.

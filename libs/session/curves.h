@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selected variables of a session as curves, taken block by block from a recording or while the
 // session runs.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The devices of a scene as processes beside the nodes of a run.
 //
 // A device that ends early or hangs changes nothing for the nodes: the session puts its inputs to neutral. It is

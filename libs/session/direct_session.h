@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The physics of a scene stepped by hand in this process, without nodes and messages: it computes the nodes' results
 // from INIT and the ticks, in the same order. For replay and for a look at the start state.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Signals that request the program to end: the first one ends a session in order, a Ctrl-C some time after it at once.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A session whose physics is one system (libs/monolith), seen as the subsystems of any other: the same samples,
 // variables and parameters, so that driver, recorder and replay do not depend on it.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contents of a recording, for the verbs that read one: the session as an observer would have seen it, and variables as
 // curves.
 #pragma once

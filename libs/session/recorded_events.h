@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Events of a recorded session besides its steps: requests and io's replies, io's own actions (overruns, load
 // shedding), changes of the holder of a controller's channel, and events of sensors. Requests that read a value, and
 // were answered, change nothing and are left out.

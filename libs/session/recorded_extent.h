@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far the session of a recording goes without a gap: ticks and samples of every node.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes a recorded session again, from its INIT and its ticks, and compares the state's hash at every step.
 //
 // The physics runs in this process without nodes and messages (direct_session.h). Equal hashes in every sample mean

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run of a session: its options, the two ways to run, and its outcome.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sessions that run on a domain, and an observer of one of them.
 #pragma once
 

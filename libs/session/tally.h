@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Beside the view of a session, for the report of a run: flags of the physics samples, curves of chosen variables, and
 // a digest of all blocks of variables.
 #pragma once

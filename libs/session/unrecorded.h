@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Warns about scene variables that recording.variables does not select: before a run, and when a recording lacks one.
 //
 // Only the built model has the quantities of an element. Here a name is one of the scene when the part in front of its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How every middleware delivers the topics of a session, beside topics.h.
 #pragma once
 

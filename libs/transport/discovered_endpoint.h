@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writers and readers of other processes as discovery shows them, whatever middleware has found them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A word of bits that other threads set and one thread sleeps on: the shortest way from a receiving thread to the loop.
 //
 // A futex of Linux on an atomic word; no lock, no allocation, and no system call while no thread sleeps.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What this host offers a session: its network interfaces, and the names that may stand for its endpoints.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a middleware's messages go: one line on stderr at a time, at most one per second, the others counted.
 //
 // A broken link makes a thousand lines a second otherwise. Thread-safe.

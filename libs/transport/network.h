@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The connection of a process to the others, whatever middleware carries the messages: a network, and an endpoint on
 // it.
 #pragma once

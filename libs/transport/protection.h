@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Protection of a session from foreign processes: the keys of a store, or a network without foreign processes.
 //
 // Files of a key store, the same in the store and in what was exported of it:

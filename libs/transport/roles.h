@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The roles of a session, one row each. A new role is an enumerator in idl/slewring.idl and wire.h, its row here, and
 // the folder of its program; a node is in the lists beside the enumerator too.
 #pragma once

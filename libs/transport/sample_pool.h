@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Memory of the samples of one topic, which several threads take and give back while the session runs.
 //
 // The first sample of a size reserves room for as many samples as the topic keeps, in one piece, before the first step.

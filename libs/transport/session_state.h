@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the messages of a session state about it: processes that have lost their place, and pauses.
 #pragma once
 

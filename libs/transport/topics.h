@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The topics of a session: name, message type and delivery. idl/README.md has the same table with rates and units.
 //
 // Every topic is reliable and keep-last. The depth is the number of messages that a writer keeps for slow or stopped

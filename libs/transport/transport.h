@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One node's connection to the others: bytes out on a topic, bytes in with their topic.
 //
 // Two transports behind it: Cyclone DDS (cyclone_transport.h) and the bus of one process (in_process_bus.h). Both carry

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages between the processes of a session, as plain structs. idl/slewring.idl is the same on the wire.
 //
 // Caps are the constants below and of the same name in the IDL; exceeding one is an error at load. Every message starts

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The collision geometry of a link as a shape of the scene.
 //
 // Boxes, spheres, cylinders and capsules are taken over as they are. A mesh becomes a convex mesh when it is closed and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot as definitions of a mechanism.
 //
 // Links with mass become bodies of the same frames; a link without rides on another (placement.h). With the axis a of a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values of XML elements: names, numbers, triples; problems go to the report with the element's line.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene from a URDF file: a starting point for adding loops, cylinders and a circuit.
 //
 // Taken over: links with their inertia and collision shapes, joints (revolute, continuous, prismatic, fixed, floating,

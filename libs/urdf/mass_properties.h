@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mass properties of a robot's links, checked for groups that move as one.
 //
 // Links that fixed joints hold together are one body: a link with impossible mass properties of its own (a dummy base

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names of links and joints as names of a scene's elements.
 #pragma once
 

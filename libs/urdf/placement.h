@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Placement of a robot's links: the links that become bodies, and every link's frame in its body.
 //
 // Links that fixed joints hold together move as one. A link with mass becomes a body; one without rides on a body of

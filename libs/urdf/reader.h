@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a URDF file: strict for numbers and names, with a note on everything omitted.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot as given by its URDF file, before conversion.
 //
 // Frames of URDF: a link's frame is that of the joint that carries it. A joint's origin is the pose of the child's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Start positions of a robot's joints.
 #pragma once
 

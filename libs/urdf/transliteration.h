@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names in any script as ASCII letters, so that they stay recognisable in a scene.
 //
 // Latin letters lose their marks (ä, ö, ü become ae, oe, ue), Greek, Cyrillic, kana and Hangul are romanised letter by

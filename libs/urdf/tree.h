@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The links of a robot as a tree, and the joints that follow others.
 #pragma once
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the meshes of the truck crane:  make_meshes.py [FOLDER]   (this file's folder without one)
 
 Every mesh is in the frame of its element in truck_crane.yaml, in metres, y up (the axes of a cylinder or piston are those

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # No library of ours holds a multiply-add that the compiler made of alternating sums: g++ 12 does so also where contraction
 # is off, and bits of Debug and Release would differ. BUILD: the build folder; OBJDUMP: the program, or ...-NOTFOUND.
 if(NOT OBJDUMP)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Includes go downwards only, along the edges of edges.txt.
 #include <gtest/gtest.h>
 

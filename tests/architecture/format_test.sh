@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # format_test.sh SOURCE CLANG_FORMAT   every source is as clang-format leaves it. SOURCE: the root. CLANG_FORMAT: the
 # program, or ...-NOTFOUND.
 set -euo pipefail

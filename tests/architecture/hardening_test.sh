@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # hardening_test.sh C_COMPILER FORTIFIED BINARY...   what the build says of hardened code is in each of our programs and
 # libraries: position-independent, relocations resolved at the start and read-only from then on, no executable stack,
 # guarded stacks; FORTIFIED yes: checked lengths too. A program without all that is refused.

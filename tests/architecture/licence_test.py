@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""The licence stands in the root, and docs/licences.md has a row for every package of the launch scripts.
+# SPDX-License-Identifier: Apache-2.0
+"""The licence stands in the root, every source file names it in its first line, and docs/licences.md has a row for
+every package of the launch scripts.
 
 licence_test.py ROOT
 """
@@ -7,6 +9,62 @@ import glob
 import os
 import re
 import sys
+
+LINE = "SPDX-License-Identifier: Apache-2.0"
+# comments by the name of a file; begin and end
+SLASHES, HASH, ARROW = ("// ", ""), ("# ", ""), ("<!-- ", " -->")
+COMMENTS = {
+    ".cpp": SLASHES, ".h": SLASHES, ".hpp": SLASHES, ".c": SLASHES, ".h.in": SLASHES, ".idl": SLASHES, ".lcm": SLASHES,
+    ".js": SLASHES, ".mjs": SLASHES, ".ts": SLASHES, ".css": ("/* ", " */"), ".html": ARROW, ".xml": ARROW,
+    ".py": HASH, ".sh": HASH, ".bash": HASH, ".fish": HASH, ".cmake": HASH, ".map": HASH, ".supp": HASH,
+    ".pc.in": HASH, ".service.in": HASH, "CMakeLists.txt": HASH,
+}
+FOLDERS = ("benchmarks", "cli", "cmake", "examples", "idl", "launch_scripts", "libs", "scenes", "tests", "web", ".ci")
+# written by a program, or kept inputs of one
+GENERATED = ("examples/lcm/crane.lcm", "tests/fuzz/corpus/", "web/node_modules/", "web/dist/")
+
+
+def comment_of(name, path):
+    for ending, comment in COMMENTS.items():
+        if name.endswith(ending):
+            return comment
+    if "." in name:
+        return None
+    with open(path, "rb") as file:  # a script without an ending
+        return HASH if file.read(9).startswith((b"#!", b"#compdef")) else None
+
+
+def sources(root):
+    """Path, begin and end of its comments, of every source file."""
+    nodes = sorted(name for name in os.listdir(root) if name.endswith("_node"))
+    paths = [os.path.join(root, "CMakeLists.txt")]
+    for top in (*FOLDERS, *nodes):
+        for folder, _, names in os.walk(os.path.join(root, top)):
+            paths += [os.path.join(folder, name) for name in sorted(names)]
+    for path in paths:
+        if os.path.relpath(path, root).startswith(GENERATED):
+            continue
+        comment = comment_of(os.path.basename(path), path)
+        if comment:
+            yield path, *comment
+
+
+def place_of(lines):
+    """Where the line stands: first, behind what has to be first itself."""
+    return 1 if lines and lines[0].startswith(("#!", "#compdef", "<?xml", "<!doctype", "<!DOCTYPE")) else 0
+
+
+def without_line(root):
+    count = 0
+    for path, begin, end in sources(root):
+        count += 1
+        with open(path, encoding="utf-8") as file:
+            lines = file.readlines()
+        at = place_of(lines)
+        if at >= len(lines) or lines[at] != f"{begin}{LINE}{end}\n":
+            yield f"{os.path.relpath(path, root)}:{at + 1}: expected '{begin}{LINE}{end}'"
+    if count < 1000:
+        yield f"only {count} source files were found"
 
 
 def packages(root):
@@ -23,6 +81,8 @@ def problems(root):
         text = file.read()
     if not re.search(r"Apache License\s+Version 2\.0, January 2004", text) or "END OF TERMS AND CONDITIONS" not in text:
         yield "LICENSE: is not the whole text of the Apache License 2.0"
+
+    yield from without_line(root)
 
     with open(os.path.join(root, "docs", "licences.md"), encoding="utf-8") as file:
         rows = [line for line in file if line.startswith("|")]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """precompiled_test.py COMPILE_COMMANDS   every source has the compiler options of its precompiled header.
 
 g++ 12 takes the header's options in the place of the source's, or crashes, when they differ.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Finds words of people's talk where programs are meant: in comments and texts of C++ and in documents.
 
 words_test.py ROOT [PATH ...]: files or folders below ROOT; all tracked kinds of file without paths. Prints file:line: word.

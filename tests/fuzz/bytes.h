@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Input of a fuzzer as a sequence of choices; 0 after its end.
 #pragma once
 

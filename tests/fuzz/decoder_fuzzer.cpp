@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sample decoder: any bytes of any message are decoded or refused, and a decoded message is encoded to the same
 // contents.
 //

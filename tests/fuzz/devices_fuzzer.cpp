@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes from devices: packets of a layout, DBC files and frames of their messages, events of input devices, conditions,
 // recorded frames, addresses.
 // Any bytes are refused with a reason or give finite values; what is sent is read as valid; J1939's reserved codes are

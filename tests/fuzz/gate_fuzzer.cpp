@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The controller gate: with any values at any times, controls stay finite and within their channel's scale, and a
 // channel without a holder takes no controller's value.
 #include <cmath>

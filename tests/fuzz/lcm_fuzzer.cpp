@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What comes from LCM: any bytes are a message, or refused by cause; any bytes are an event log, up to the first
 // damage. What is accepted is a finite value of a channel of the scene in the name of an accepted controller, and a
 // log's table has times that do not fall and values from -1 to 1.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // States in parts: with any parts in any order, a state is whole when each of its parts has arrived, and holds the
 // bytes of its own parts alone; a part without a place in it changes nothing.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The recording reader: any file is read as far as it is sound, verified and recovered, or refused.
 //
 // Most changes break a check sum, and the reader goes no further. So three of four changed inputs get the right sums of

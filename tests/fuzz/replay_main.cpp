@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fuzzer without libFuzzer: gives it kept inputs, and changed ones of them from a fixed seed.
 //   REPLAY_PROGRAM CHANGED FOLDER_OR_FILE...
 #include <algorithm>

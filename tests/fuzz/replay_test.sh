@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Gives a fuzzer the inputs that are kept for it, and some that are changed, without libFuzzer.
 #   replay_test.sh REPLAY_PROGRAM CORPUS.tar.gz CHANGED
 set -euo pipefail

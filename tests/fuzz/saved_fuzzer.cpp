@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of saved sessions: any file is read as it was written or refused; its contents can be written and read again,
 // and its states go through the parts in which the nodes receive them.
 //

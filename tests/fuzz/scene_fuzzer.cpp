@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene reader: any text is a scene or is refused with where and why; it throws LoadError and nothing else.
 #include <string>
 

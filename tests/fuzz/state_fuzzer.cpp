@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // States as nodes load them: any bytes in the place of a node's state are refused, which leaves the node as after a
 // reset, or they become a state that can be stepped and shown, the same one each time.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tables in CSV files: any bytes are a script, an export, a force table or a table of named columns, or are refused
 // with place and reason. Accepted values are in order and finite, and the scene's own text gives them again.
 #include <cmath>

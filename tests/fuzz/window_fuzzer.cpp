@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What comes to the window's port: any request is answered with a file, a WebSocket or a refusal with a reason, and no
 // request of another site or without the token reaches values; any messages of a client are acted on or ignored with a
 // reason, every answer is a message of the protocol, and no request without one of the client reaches the session.

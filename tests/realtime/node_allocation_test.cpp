@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lock-step loop around the step: taking messages, stepping, encoding and publishing use no heap either once the
 // caches have been filled, over the bus of one process.
 #include <gtest/gtest.h>

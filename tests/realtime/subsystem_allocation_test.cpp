@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // No heap in a step: 1,000 steps of each subsystem of the crane after a warm-up, under the allocation guard.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chains of n links with hinges about x and y in turn, for the cost of an additional link.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shapes of tests: definitions in a line each, and a scene of two shapes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Both physics subsystems of a scene stepped by hand inside a test: an independent exchange of samples, with which
 // sessions are compared.
 #pragma once

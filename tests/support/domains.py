@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """DDS domains of tests in Python."""
 import fcntl
 import os

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes of input events as a 64-bit kernel writes them.
 #pragma once
 

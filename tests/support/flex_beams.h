@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Beams that the tests of libs/flex share, and short ways to their figures.
 #pragma once
 

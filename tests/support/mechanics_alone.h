@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mechanics of a scene without hydraulics, stepped by hand inside a test.
 #pragma once
 

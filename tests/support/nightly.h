@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gate (`launch_scripts/test`) runs these tests in part, `--nightly`, which sets SLEWRING_NIGHTLY, in full: rounds,
 // simulated time and seeds. A test with Nightly in its name is run by `--nightly` alone (cmake/SlewringBuild.cmake).
 #pragma once

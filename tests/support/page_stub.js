@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the script of a page without a browser: as much of the DOM as the pages of `plot` and `animate` use.
 //
 //   node page_stub.js PAGE.html DRIVER.js

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the script of a page with Node.js and a stand-in for the browser, page_stub.js.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A session played by a test: one real node on the bus of one process; the test publishes the messages of its partners
 // and sets the time.
 #pragma once

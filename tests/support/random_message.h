@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages with random contents of every length up to the caps, made by the same field lists as the codec.
 #pragma once
 

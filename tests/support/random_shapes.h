@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shapes and poses at random, for the property tests of contact.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Dense algebra of the references: vectors and matrices of any size, by value. Operations and decompositions are
 // compiled once, in reference_algebra*.cpp; Eigen's expressions would be compiled again by every test that writes them.
 #pragma once

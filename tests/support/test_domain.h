@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A DDS domain number that no other test on this host uses, as long as the object lives.
 //
 // Numbers 1 to 99, each behind a lock file in the system's directory for temporary files. Forked children share the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests in Python share: requirements, and waits with a deadline."""
 import sys
 import time

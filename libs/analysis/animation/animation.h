@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recorded motion as a page with a time slider, or as a picture of some instants: side view and top view of the
 // machine's lines.
 #pragma once

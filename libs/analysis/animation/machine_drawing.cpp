@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "analysis/animation/machine_drawing.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A machine as lines: an outline of its bodies, joints, shapes and cylinders.
 //
 // A body is a star from the joint that carries it to its centre of mass and to the points at which joints and forces

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares configurations of one scene with one input with a reference: opening of the joints, energy drift, difference
 // of the motion from the reference's, and cost.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reports of a comparison as text, JSON, CSV and a picture of error over cost.
 #pragma once
 

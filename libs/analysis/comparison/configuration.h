@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The runs of a comparison: formulations, integrators and steps of one scene.
 //
 // Names of formulations and integrators come from the field tables of the section `mechanics`; the scene's own rules

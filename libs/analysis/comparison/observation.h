@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One run of a scene: its samples at the instants that all runs of a comparison share, and its cost.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene stepped in this process with its script as input: the results of `slewring run --in-process`, bit for bit,
 // without messages and recording.
 #pragma once

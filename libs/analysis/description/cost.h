@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring describe SCENE --cost`: what each part of a scene costs, in microseconds of this machine per simulated
 // millisecond.
 //

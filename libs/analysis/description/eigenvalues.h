@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring describe SCENE --eigenvalues`: the fastest and the slowest motions of the whole machine about an instant,
 // their owners, and the steps that resolve them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "analysis/description/hydraulics_cost.h"
 
 #include "analysis/description/timed_call.h"

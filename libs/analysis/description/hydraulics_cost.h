@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The equations of a circuit and of its components, timed alone on states of a run.
 #pragma once
 

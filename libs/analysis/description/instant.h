@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene at an instant of its own manoeuvre, for `slewring describe`.
 #pragma once
 

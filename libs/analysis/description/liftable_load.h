@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring describe SCENE --liftable`: the largest payload that the machine can lift at a pose, and its limiting part.
 //
 //   F_i(m) = F_i(m_0) + s_i (m - m_0)                line force that holds port i with the payload m             (1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The calls that a step makes of a mechanism, timed alone on states of a run.
 #pragma once
 

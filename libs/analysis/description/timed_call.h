@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long one call takes when nothing disturbs it.
 #pragma once
 

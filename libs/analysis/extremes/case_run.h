@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One hard case of a scene, run in this process and judged; then the largest communication step that keeps its bounds.
 #pragma once
 

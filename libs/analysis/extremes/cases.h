@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hard cases of a scene: the changes made to it, and the bounds of its results. Built from the scene's contents,
 // never from its name.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hard cases of one or more scenes, each run in a process of its own, and the table of how they ended.
 #pragma once
 

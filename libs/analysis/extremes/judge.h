@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measurements of a run at the limits, and their check against bounds.
 //
 // Pressures are absolute. Their ceiling follows from the circuit and the motion,

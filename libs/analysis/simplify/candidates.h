@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Candidates for a simpler scene: settings that leave out parts of it or coarsen them, from the scene's contents.
 //
 // Every candidate is a list of `--set` settings. The field tables have the keys of a part: a key that this version

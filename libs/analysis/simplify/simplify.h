@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring simplify SCENE --error "Bag.position 1mm"`: the parts of a scene that can be left out while chosen
 // variables change by less than a tolerance, and the saving.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "analysis/stress/cell_watch.h"
 
 #include <time.h>

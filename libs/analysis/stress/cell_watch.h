@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs beside the session of a stress test's cell: records its response, and pauses it for slices of the yardstick.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Other work for the machine while deadlines are measured: processes of this program under normal scheduling.
 //
 //   none    nothing

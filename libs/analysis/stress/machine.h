@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Activity of the machine during a measurement.
 #pragma once
 

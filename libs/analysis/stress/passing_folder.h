@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A folder of this process for temporary files during a measurement: recordings, files of a load.
 #pragma once
 

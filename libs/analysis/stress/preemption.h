@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The preemption model of the kernel: it decides how long a thread with real-time scheduling waits for system calls of
 // others.
 #pragma once

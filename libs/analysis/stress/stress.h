@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures how well this machine keeps a scene's deadlines: the session as processes, cell by cell of a matrix of
 // scheduling, other load and work added to every step, each beside bare loops with the same work in the same minute
 // (docs/realtime.md).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reports of a stress test as text, JSON and a page.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The limit of the machine itself: bare loops that sleep with clock_nanosleep until the time of a step and burn as much
 // CPU time as the processes of the session do in it, one loop for each, all released at once. A step has ended when the
 // loops have done the nodes' computing. The other work of the session's processes (the middleware, io, the recorder) is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Many independent computations, each in a process of this program, several at once; results stay in a folder and are
 // not computed again.
 //

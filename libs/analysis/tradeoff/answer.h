@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The choice of a row: the Pareto front of cost and error, and the best row within a budget or an error.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The settings of a scene that are tried: axes of restart parameters, and rows that choose a value on some of them.
 //
 // An axis is a path as `--set` takes it ("session.step") with its values as texts. This code does not depend on the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Settings as a scene file of their own: laid over the scene by `include`.
 #pragma once
 

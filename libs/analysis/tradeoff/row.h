@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One run of a tradeoff in a process of its own: the cost of a setting, and its distance from the reference.
 //
 // The reference of a row is the whole scene as one system (libs/monolith) in the same communication step: the input is

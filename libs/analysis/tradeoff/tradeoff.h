@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error against cost of one scene's manoeuvre over many settings, each in a process of its own, against the monolithic
 // solution of the whole scene.
 //

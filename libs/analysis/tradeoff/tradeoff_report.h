@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reports of a tradeoff as text, JSON, CSV and an interactive page.
 #pragma once
 

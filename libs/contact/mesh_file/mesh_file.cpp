@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "contact/mesh_file/mesh_file.h"
 
 #include <assimp/DefaultIOSystem.h>

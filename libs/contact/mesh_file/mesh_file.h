@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes from files: .stl, .obj, .dae, .3ds, .glb and .fbx through assimp.
 //
 // These formats state units and axes incompletely, so the caller gives both. All objects of a file become one mesh;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gas accumulator with a bladder, a diaphragm or a piston.
 //
 //   V_0 f' = Q,   nu = 1 - f                                                                                    (1)

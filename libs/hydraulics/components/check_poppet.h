@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The poppet of a check valve: equations (1) to (3) of check_valves.h with their slopes, and the rules between its
 // parameters.
 #pragma once

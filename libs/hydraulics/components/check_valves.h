@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Check valves: spring-loaded, with a throttle beside the poppet, pilot-operated, and two that pilot each other.
 //
 //   p_e = p_1 - p_2 - crack_pressure + pilot_ratio ramp(p_x - p_y)                                              (1)

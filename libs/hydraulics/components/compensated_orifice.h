@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Metering orifice with an ideal pressure compensator: flow independent of the load while the supply suffices.
 //
 //   dp = min(compensator_pressure, max(0, p_P - p_A))

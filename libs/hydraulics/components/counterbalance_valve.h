@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counterbalance valve (over-centre, load-holding and lowering valve) with its check valve.
 //
 //   p_e = p_2 - p_s + pilot_ratio (p_x - p_s) - setting_pressure                                                (1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The component behind all cylinder types: two chambers, the leak between them, and the port to the mechanics. The
 // types differ in geometry only; equations in their headers.
 #pragma once

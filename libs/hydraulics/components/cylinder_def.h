@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parameters common to all cylinders, and the parameters for both sides of the power port.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rows that the field tables of all cylinders share. Def has a member `CylinderParameters common`; a type's own
 // geometry stands between the two groups.
 #pragma once

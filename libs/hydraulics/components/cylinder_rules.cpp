@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/cylinder_rules.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rules at load that every cylinder must keep.
 #pragma once
 

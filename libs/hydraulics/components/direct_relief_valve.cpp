@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/direct_relief_valve.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Direct-acting poppet relief valve, quasi-static.
 //
 //   p = p_1 - p_2,  A_p = pi/4 d^2,  w = pi d sin(alpha)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/double_acting_cylinder.h"
 
 #include <numbers>

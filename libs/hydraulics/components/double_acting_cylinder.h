@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Double-acting cylinder: two chambers, a piston, a leak between them.
 //
 //   A_A = pi/4 D^2,  A_B = pi/4 (D^2 - d^2)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/double_rod_cylinder.h"
 
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Double-rod cylinder: a rod through both ends, the same annulus on either side of the piston.
 //
 //   A = pi/4 (D^2 - d^2) on both sides

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/four_way_valve.h"
 
 #include <algorithm>

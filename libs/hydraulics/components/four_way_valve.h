@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Four-way valve with complementary edges: as one pair of edges opens, the other pair closes.
 //
 //   u = clip(neutral_opening + opening_gain signal, 0, 1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hose or pipe: a fixed oil volume with an elastic wall, no pressure loss.
 //
 //   V = pi/4 D^2 L                                        content

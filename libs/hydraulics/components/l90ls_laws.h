@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flow laws of one side (A or B) of the L90LS valve, equations (2) to (6) of l90ls_valve.h, with their slopes.
 #pragma once
 

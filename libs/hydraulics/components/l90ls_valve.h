@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // L90LS section: a proportional 4/3 directional spool with pressure compensator, lock-hold, load sensing, shock and
 // anti-cavitation valves. Closed centre; ports P, A, B, T.
 //

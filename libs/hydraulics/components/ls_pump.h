@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Variable-displacement pump with load-sensing controller, driven at a given speed.
 //
 //   p_set = max(p_standby, min(p_LS, p_LSmax) + p_margin)                     relative to port B (tank)

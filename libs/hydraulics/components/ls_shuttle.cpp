@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/ls_shuttle.h"
 
 #include "hydraulics/circuit_builder.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Load-sensing shuttle: passes the higher of two LS pressures; optionally the LS line behind it as first order.
 //
 //   p_in = max(p_1, p_2)                    relative to tank

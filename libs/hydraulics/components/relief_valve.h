@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pilot-operated relief valve, closed without piloting.
 //
 //   tau u' = clip((p_pilot - p_2 - setting) / opening_pressure_rise, 0, 1) - u,   tau = step_response / 3

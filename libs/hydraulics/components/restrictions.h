@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Restrictions between two volumes: bleed, orifice, laminar restriction. Flow goes both ways.
 //
 //   bleed                Q = K root(p_1 - p_2),  K = nominal_flow / sqrt(nominal_pressure_drop)

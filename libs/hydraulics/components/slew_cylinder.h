@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Slew cylinder: a double piston with a rack that turns a pinion.
 //
 //   x = stroke_offset + r phi                           piston position from the pinion's angle phi

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Start positions and speeds that fit all joints, and the rows of cut joints that are independent. Internal to the
 // library.
 #pragma once

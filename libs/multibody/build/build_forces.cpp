@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Force elements and the masses that they and bodies carry: parts of build_model().
 #include "multibody/build/build_forces.h"
 

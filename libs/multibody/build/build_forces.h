@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts of build_model(): force elements, and dummies. Internal to the library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Start pose of a joint's second frame in the tree. Internal to the library.
 #pragma once
 

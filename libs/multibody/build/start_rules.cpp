@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "multibody/build/start_rules.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rules for joints, spring-dampers and force dummies in the start poses of a scene. Internal to the library:
 // validate.cpp calls it.
 #pragma once

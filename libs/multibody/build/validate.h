@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All problems of a scene's mechanics, found before the model is built.
 //
 // Checked: names, masses, inertia (triangle rule, positive definite), directions, limits, that the joints lead to

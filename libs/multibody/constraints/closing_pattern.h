@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coupling of the closing rows and ports of a mechanism. Internal to the library.
 //
 // The tree passes the force of a row on to the links between its bodies and Ground alone. So an entry of the rows'

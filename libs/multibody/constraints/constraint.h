@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The constraints of a joint as scalar rows between two links: value, gradient and the part of the second derivative
 // that does not depend on accelerations.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gears in the model, and their rows in joint and body coordinates. Internal to the library.
 //
 //   g = q_2 - r q_1 - b,   g' = u_2 - r u_1,   g'' = u_2' - r u_1'                                       (1)

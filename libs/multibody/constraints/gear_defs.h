@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Definition of gears: a linear row between the coordinates of two joints with one coordinate each.
 //
 //   gear             angle of joint 2        = ratio * angle of joint 1 + offset         gear pair, belt, chain

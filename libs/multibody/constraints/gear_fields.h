@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Field tables of gears. Internal to the library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cut joints and gears: their forces in the recursion, and the projection onto them. Internal to the library.
 //
 //   u' = u'_0 + M^-1 J^T f,   J u' + b = 0   ->   W f = -(b + J u'_0),   W = J M^-1 J^T                (1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rows: Jacobian, coordinate, speed, free acceleration and mobility at one instant. Internal to the library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rows of a mechanism over a whole step H: free acceleration and mobility with the springs and dampers inside.
 //
 // At an instant (dynamics.h) a row responds with its rigidly connected mass, M^-1. Over a step all soft elements behind

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "multibody/constraints/validate_gears.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the scene's contact Defs to those of libs/contact.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Definition of contact: shapes on bodies, the pairs of shapes that are tested, and named sets of friction.
 //
 // A shape has a pose in its body's frame; its own axes are those of contact/contact_def.h (a plane is solid below its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The contacts of a mechanism, ready for searches: frames on links, and pairs.
 //
 // Immutable and shared by all copies of a Model (live parameters do not reach it). A pair of shapes that cannot move

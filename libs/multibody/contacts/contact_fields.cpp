@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "multibody/contacts/contact_fields.h"
 
 #include <algorithm>

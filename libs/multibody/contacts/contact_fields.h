@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Field tables of the contact Defs. Internal to the library.
 #pragma once
 

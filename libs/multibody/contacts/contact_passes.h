@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contact within a sub-step. Internal to the library.
 //
 // Impact speeds and bristles (contact/contact_memory.h) are state: they change when a sub-step is accepted. An

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rate of the contacts at an instant, which an explicit step must resolve. Internal to the library.
 //
 // With slopes k, c of the laws along the directions d of all contact points (normal: spring and damping at the present

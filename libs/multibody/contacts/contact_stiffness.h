@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stiffness and damping of contacts over the speeds of the links (link_stiffness.h). Internal to the library.
 //
 // For the points i of one pair, with depths d, shares w = d/S, S = sum d, and normal forces F(w, d): along their

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Results of a search for contacts and their forces, and the data that a sub-step needs to advance contacts.
 #pragma once
 

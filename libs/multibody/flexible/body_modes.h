@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Modes in body coordinates: modal coordinates follow those of the links in BodyState, and a node's link has six speeds
 // of its own, which rows tie to the deformed place of the node. Internal to the library.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The flexible parts and nodes of a model. Internal to the library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The elastic forces of a flexible body's modes: from its files, or from a partner.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nodes of flexible bodies and lumps of segmented ones as bodies of their own. Internal to the library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flexible bodies in the mechanism: modes that ride on a link, and the links of their nodes.
 //
 // The link of a flexible body is its frame; the modes are coordinates q, u = q' of their own, after those of the joints

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Modal description of a flexible body: the modes of its deformation with their inertia, as constant numbers.
 //
 // A material point x of the undeformed body stands, in the body's frame, at

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The modes in the recursion: equation (7) of flexible_part.h.
 #include <cstddef>
 

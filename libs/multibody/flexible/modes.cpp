@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shape, inertia and energy of a flexible part: equations (1) to (6) of flexible_part.h.
 #include <cstddef>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cylinder and piston on a line of force (CoupledMass) of which an end rides on modes, in the recursion. Internal to
 // the library.
 //

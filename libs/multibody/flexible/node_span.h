@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Connection between the two points of a force in the tree: modes only, or one joint. Internal to the library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Natural frequencies of bodies of finite segments. Internal to the library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Definition of bodies made of finite segments, and the data of such a body.
 #pragma once
 

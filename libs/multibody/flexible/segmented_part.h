@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A body of finite segments in the mechanism: links that move independently, and the beams between them.
 //
 // The lumps' links are floating ones, with the pose in Ground as coordinates, except the root's and those held by

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Static equilibrium of bodies of finite segments at the start.
 #include <algorithm>
 #include <cmath>

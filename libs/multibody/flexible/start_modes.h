@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Modal coordinates at the start. Internal to the library.
 #pragma once
 

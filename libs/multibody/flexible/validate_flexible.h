@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Problems of flexible bodies before the model is built. Internal to the library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "multibody/flexible/welded_start.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Start poses and speeds of segmented bodies in a mechanism whose joints hold more of them than their roots, or that
 // has loops. They start undeformed, with the poses and speeds of the mechanism in which every segmented body is rigid.
 // Its loops close by rigid motion alone; the lumps follow. Internal to the library.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A massless beam between a frame on one body (its near end) and a frame on another (its far end), x along the beam.
 //
 // x of frame_pair.h with d_0 = [l 0 0]: the far end seen from the near end. With the transverse shear numbers

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the Defs of force kinds and dummies to the model's arrays. Internal to the library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An elastic bearing between a frame on one body and a frame on another: six springs and dampers, coupled or not.
 //
 //   Q = P - (K + k) x - (D + d) x' - s(x) - b(x')                                                     (1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What kinds of elements between two frames share: the frames that a scene states, and most of their row.
 //
 // A Connector has a member `FramePair frames` and the functions force_of(connector, deflection), slopes_of(connector,

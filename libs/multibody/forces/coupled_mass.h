@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Forces that cylinder and piston on a line of force need at its two points. Internal to the library.
 #pragma once
 

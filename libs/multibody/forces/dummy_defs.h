@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Masses that parts and joints carry, as a scene states them. Frames as in model/defs.h.
 #pragma once
 

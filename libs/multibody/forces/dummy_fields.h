@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Field tables of dummy_defs.h. Internal to the library: field_tables.cpp puts them into the sections.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spring, damper and end dampers of a force element along its coordinate x (length or angle). Internal to the library.
 //
 //   F = -k (x - x_0) - d v - s(x - x_0) - b(v) + max(0, k_e (x_min - x) - d_e v) - max(0, k_e (x - x_max) + d_e v) (1)

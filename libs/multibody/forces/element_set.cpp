@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "multibody/forces/element_set.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The force elements of a mechanism beyond spring-dampers, as flat arrays by kind (force_kinds.h).
 //
 // No element has a state: all are functions of the links' motions and of time.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether an explicit integrator follows what springs, dampers and linear force kinds do to the masses they act on.
 //
 // The equations about the start, at rest and linear in displacement x and speed v of the joint coordinates,

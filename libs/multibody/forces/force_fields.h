@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rows that the field tables of several kinds of forces and dummies share. Internal to the library.
 #pragma once
 

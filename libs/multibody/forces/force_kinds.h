@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table of force kinds beyond spring-dampers, and the loops over it. A new kind is a line here: its row.
 //
 // Kinds are walked in the order of the table, each in the scene's order: so are wrenches summed, parameters hashed and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A row of the table of force kinds (force_kinds.h): all that the library needs of one kind of force element.
 //
 // A kind has a Def that a scene fills, an element that the model holds, and a row: a struct that derives from

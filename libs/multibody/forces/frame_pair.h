@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Deflection of a frame on one link against a frame on another, and the wrenches of a generalised force on it.
 //
 //   x = [d; theta],   d = R_1^T (P_2 - P_1) - d_0,   theta: rotation vector of R_12 = R_1^T R_2       (1)

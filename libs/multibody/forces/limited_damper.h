@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A damper beside a spring that only pushes, or only pulls: it carries at most what the spring does.
 //
 //   F = F_s + min(F_s, max(-F_s, F_d)) while F_s > 0, else 0                                          (1)

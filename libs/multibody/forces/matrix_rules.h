@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rules of a bushing's 6 x 6 matrices, row by row. Internal to the library; for checks at load.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A force at a point of a body, or a torque on it, of given magnitude and direction.
 //
 //   F(t) = s (F_0 + F_table(t)) d,   d unit, fixed in the body or in Ground                          (1)

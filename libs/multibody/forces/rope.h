@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A wire rope over points on bodies: one tension all along it, over frictionless pulleys without radius.
 //
 //   L = sum |P_k+1 - P_k|,   s = L - L_0,   T = T_s + min(T_s, max(-T_s, T_d)) while s > 0, else 0    (1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a force kind adds its stiffness and damping to: an implicit step's matrix over the speeds of all links.
 //
 // What an element's force loses by a change u of the speeds, A u = (position K + rate D) u, is added between points and

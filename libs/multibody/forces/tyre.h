@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Forces of a plane on a wheel: a thin disc of radius R with its centre C and its axle on a body.
 //
 // n: normal of the plane n . x = h, a: axle, b = n . a, s = sqrt(1 - b^2). The disc's lowest point and its depth are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "multibody/forces/validate_elements.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rules of force kinds and dummies. Internal to the library: build/validate.cpp calls them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a force element does to a link: force and moment about the link's origin, Ground axes.
 //
 // Every kind of element in this folder is a pure function from the motions (pose and velocity) of the links it touches

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Articulated-body recursion (Featherstone 2008, chapter 7), in Ground axes about each link's origin.
 //
 // The bias wrenches are those of the accelerations with u' = 0, so that the recursion solves for u' alone:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The step of the formulation `augmented`: equations (5) to (8) of body_penalty.h.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solutions with the factors of articulated.cpp: forward for accelerations, backward for generalised forces.
 #include <cstddef>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Attitudes in the coordinates of BodyState: reading, writing, rates, turns. Internal to the library.
 #pragma once
 

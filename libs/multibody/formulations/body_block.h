@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Blocks of links in the saddle-point matrix of body coordinates, beside the rows of their joints. Internal to the
 // library.
 #pragma once

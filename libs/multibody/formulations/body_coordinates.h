@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mechanism in body coordinates (formulation `lagrange`): every link has six speeds of its own, and the joints are
 // constraints whose multipliers are found with the accelerations.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The saddle-point matrix of body coordinates, block by block.
 #include <array>
 

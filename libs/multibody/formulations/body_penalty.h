@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mechanism in body coordinates with joints that are held by penalties (formulations `penalty` and `augmented`):
 // six speeds a link as in body_coordinates.h, and one matrix that is positive definite for any rows,
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/index.h"
 #include "multibody/constraints/rows.h"
 #include "multibody/formulations/body_passes.h"

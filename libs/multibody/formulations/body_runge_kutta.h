@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fourth-order Runge-Kutta step of body coordinates, for every method to find their accelerations. Internal to the
 // library.
 #pragma once

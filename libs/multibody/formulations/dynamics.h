@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Forward dynamics of the tree, its reduced model at the rows, and the integrator.
 //
 // A row is a scalar coordinate x of the mechanism with speed v = J u, through which a force f acts (positive f pushes

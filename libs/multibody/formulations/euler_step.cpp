@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Semi-implicit Euler in joint coordinates, (1) of integrators.h: the cheapest step, with the minimum of passes.
 #include <cstddef>
 

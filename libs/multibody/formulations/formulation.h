@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mechanism under the formulation that its scene chose, behind the calls of dynamics.h: the recursion in joint
 // coordinates (`recursive`), body coordinates with multipliers (`lagrange`, body_coordinates.h), or body coordinates
 // with joints held by penalties (`augmented`, `penalty`, body_penalty.h).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The integrators of a sub-step beside Runge-Kutta, for both formulations: `recursive` in joint coordinates, `lagrange`
 // in body coordinates.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Symmetric matrices over the speeds of all links, filled block by block into any storage. Internal to the library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stiffness and damping of the force elements over the speeds of the links, which an implicit step adds to the masses.
 // Internal to the library.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The passes of one evaluation, in the order in which dynamics.cpp calls them. Internal to the library.
 #pragma once
 

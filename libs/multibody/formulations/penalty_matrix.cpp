@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The matrix of the penalty formulations, block by block: equation (1) of body_penalty.h, and A_h of (7).
 #include <array>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The passes of the penalty formulations. Internal to the library.
 #pragma once
 

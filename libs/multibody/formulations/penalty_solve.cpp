@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Right-hand sides of the penalty formulations, and solutions with the factors of their matrix.
 #include <algorithm>
 #include <cmath>

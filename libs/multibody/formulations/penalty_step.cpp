@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Runge-Kutta step of the formulation `penalty`, in parts near singular positions: (9) of body_penalty.h.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detection of singular joints: a part without inertia about a free axis. Internal to the library.
 #pragma once
 

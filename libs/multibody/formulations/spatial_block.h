@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Blocks of matrices over the six speeds of links: velocity of the origin, then angular velocity. Internal to the
 // library.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The left side of an implicit stage: masses, joints, and the stiffness and damping of force elements.
 #include <algorithm>
 #include <set>

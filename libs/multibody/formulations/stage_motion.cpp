@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From speeds to coordinates, motion and accelerations in an implicit stage, and back from body coordinates to joints.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The passes of an implicit stage (integrators.h, equations (2) and (4)). Internal to the library.
 #pragma once
 

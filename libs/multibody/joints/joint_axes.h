@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers and suffixes of joint coordinates for friction, limits and variables.
 //
 // Number 0 or 1: revolute and prismatic 0; universal about z of frame 1, of frame 2; cylindrical angle, displacement.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts of the recursion that its two files share: entries of vectors by u, and free directions. Internal to the
 // library.
 #pragma once

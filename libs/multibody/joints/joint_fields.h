@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Field tables of the thirteen joints, in the order of JointType. Internal to the library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Violation of a mechanism's joints, measured on the poses and velocities of its links.
 //
 // Every joint of the scene demands g = 0 and g' = 0 for its rows (constraint.h). The gauge evaluates all rows, also of

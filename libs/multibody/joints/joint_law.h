@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Friction and limits along one coordinate of a joint, as a force law along that coordinate; friction of a ball.
 //
 //   F     = -F_c tanh(v / v_c) - d v + F_min - F_max                                               (1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inertia of a body of the scene about its centre of mass, and its validity.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Definitions of mechanics: bodies, joints, forces and dummies, as plain structs.
 //
 // Frames. Right-handed. A body's pose is given relative to another body (or Ground): position of its origin, and

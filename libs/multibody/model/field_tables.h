@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Field tables of the mechanics Defs: what a scene may set, by section and element type.
 #pragma once
 

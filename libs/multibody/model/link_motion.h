@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pose and motion of a link at one instant.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mechanism as flat arrays in depth order, ready for the recursion.
 //
 // A link is one or more bodies merged by fixed joints; link 0 is Ground. A link's frame sits at the child side of its

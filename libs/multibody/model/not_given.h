@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers that a scene may leave open and that then follow from others: no scene can write this value.
 #pragma once
 

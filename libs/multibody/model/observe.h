@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Results of a mechanism at an instant: energies, joint reactions, variables, a description.
 #pragma once
 

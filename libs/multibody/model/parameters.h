@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parameters that may change between two steps. Finding and setting one does not allocate.
 //
 //   "Bag.mass"                     body: inertia scales with the mass, the centre of mass stays

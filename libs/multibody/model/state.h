@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mutable data of a mechanism: the state itself, and the workspace of a step.
 #pragma once
 

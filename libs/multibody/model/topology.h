@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Topology of the bodies: a tree of joints rooted in Ground, the cut joints, and the start poses.
 //
 // Joints with coordinates (fixed, revolute, prismatic, spherical, universal, cylindrical, floating) span the tree. In a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prescribed motion as parts of build_model(). Internal to the library.
 #pragma once
 

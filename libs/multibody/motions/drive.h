@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A joint coordinate that follows a law over time, in the model and in its passes.
 //
 // If the joint has coordinates of its own, the recursion takes q, u and u' from the law; the joint has no free

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names of the variables of a prescribed motion. Internal to the library.
 #pragma once
 

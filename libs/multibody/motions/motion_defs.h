@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Definition of prescribed motion: a joint's coordinate as a given function of time.
 //
 // `rotation_*` types drive an angle (revolute, cylindrical, universal), `translation_*` types a displacement

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "multibody/motions/motion_fields.h"
 
 #include <array>

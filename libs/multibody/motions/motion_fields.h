@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Field tables of prescribed motion. Internal to the library.
 #pragma once
 

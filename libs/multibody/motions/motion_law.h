@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A coordinate as a function of time, with its speed and its acceleration.
 //
 //   table     x = cubic spline through the points (math/cubic_spline.h)                              (1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rules of prescribed motion. Internal to the library: validate.cpp calls them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes of the messages: the one encoder and the one decoder, whatever carries them.
 //
 // The bytes are plain XCDR1, little endian, as idl/slewring.idl defines: 4 bytes of encapsulation header (00 01 00 n),

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fields of every message in the order of idl/slewring.idl, once for both directions.
 //
 // An archive A is called with the fields of a struct; A::Of<T> is `const T` when it reads the struct (encoder) and `T`

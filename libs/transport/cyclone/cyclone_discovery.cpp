@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writers and readers of topics, from Cyclone's builtin topics.
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_sertype.h>

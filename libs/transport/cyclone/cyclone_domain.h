@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A DDS domain of this process: the one place that configures Cyclone.
 //
 // Unicast only, on one interface; nothing is sent beyond loopback unless another interface is named. On loopback the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cyclone's messages. Cyclone has one sink per process: the last one installed is in force; its destructor restores
 // Cyclone's own.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Qualities of service of Cyclone, deleted when they are no longer held.
 #pragma once
 

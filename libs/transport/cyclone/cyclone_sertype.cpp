@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "transport/cyclone/cyclone_sertype.h"
 
 #include <dds/ddsi/ddsi_keyhash.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Cyclone type whose samples are our encoded bytes, passed on as they are.
 //
 // It carries the type information of the generated type, so that typed readers and writers of other programs match

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "transport/cyclone/cyclone_transport.h"
 
 #include <dds/dds.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The transport over Cyclone DDS: one participant with one writer or reader per topic, QoS as in topics.h.
 //
 // Every endpoint is in the partition slewring/<session>. The participant does not receive its own messages. Cyclone's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "transport/fastdds/fastdds_discovery.h"
 
 #include <fastdds/rtps/participant/RTPSParticipant.h>

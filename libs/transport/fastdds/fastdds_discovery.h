@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writers and readers of other participants, as they are discovered.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A participant of Fast DDS: the one place that configures it.
 //
 // Unicast only, on one interface: sockets receive and send on its address alone, so that on loopback nothing reaches or

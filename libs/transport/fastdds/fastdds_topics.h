@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One topic's writer and reader of a Fast DDS participant, for messages of bytes.
 //
 // They stand on the RTPS layer of Fast DDS, which the layer of DDS above it uses in the same way: there the histories

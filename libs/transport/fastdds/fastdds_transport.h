@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The transport over Fast DDS: one participant with one writer or reader per topic, QoS as in topics.h.
 //
 // Every endpoint is in the partition slewring/<session>. A thread of Fast DDS receives a message and rings a doorbell;

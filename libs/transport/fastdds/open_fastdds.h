@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one function of the library of Fast DDS. It is built with the programs and lies beside them.
 #pragma once
 

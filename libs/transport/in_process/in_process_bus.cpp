@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "transport/in_process/in_process_bus.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The transport of one process: endpoints of one bus hand each other copies of the encoded bytes.
 //
 // Messages of all writers reach every endpoint in the order in which they were published; an endpoint does not receive

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring animate`: the page against the recording.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs run by tests: to their end with their output, or in the background.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring compare`: the program around the comparison.
 #include <gtest/gtest.h>
 

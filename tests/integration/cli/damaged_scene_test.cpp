@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A flipped bit in the attached scene or in the list of its files: the recorded description of the session has the same
 // text, and every verb warns and uses that one.
 #include <gtest/gtest.h>

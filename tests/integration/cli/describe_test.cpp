@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring describe` with its parts, `check` of a payload that cannot be lifted, `simplify`.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sessions as processes, and the verbs that look at them and change them.
 #include <gtest/gtest.h>
 #include <signal.h>

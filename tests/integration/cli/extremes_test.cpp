@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hard cases of a small scene: processes, verdicts, kept results, exit codes.
 #include <gtest/gtest.h>
 

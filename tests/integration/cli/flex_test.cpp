@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring flex build` and `slewring flex report`: files, texts, figures and errors.
 #include <gtest/gtest.h>
 

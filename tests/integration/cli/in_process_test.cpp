@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sessions in one process: run, record, look, replay.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Key stores: made, checked, exported, revoked; sessions with keys, and those who have none.
 #include <gtest/gtest.h>
 

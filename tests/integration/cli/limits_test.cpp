@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs under limits of files, memory and threads: whole, or refused with code 7 and the limit, never something
 // else.
 #include <gtest/gtest.h>

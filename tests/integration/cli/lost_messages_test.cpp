@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recordings in which blocks of variables or a tick are missing, as a slow disk or a network leaves them: nothing is
 // drawn over the gap, no value comes to another instant, and the gap is named. Nodes come in any order.
 #include <gtest/gtest.h>

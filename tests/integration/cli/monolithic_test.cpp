@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs with all physics as one system: the same summary, recording, replay and parameters as other runs.
 #include <gtest/gtest.h>
 

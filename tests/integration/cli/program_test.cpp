@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line of every program: help, versions, exit codes, texts of errors.
 #include <gtest/gtest.h>
 

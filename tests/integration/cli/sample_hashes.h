@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state hashes of a recording, by epoch, step and role: equal maps mean equal sessions, bit for bit.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loaded in front of the C library (LD_PRELOAD): a disk that confirms writes only after a time in s from the
 // environment.
 #include <sys/syscall.h>

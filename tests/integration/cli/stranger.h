@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process without keys on the network of a session: it sees the packets of one DDS domain on loopback and sends its
 // own (RTPS 2.5, 8.3 and 9.4). Needs CAP_NET_RAW.
 #pragma once

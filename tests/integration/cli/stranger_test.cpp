@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process without keys that sends packets in the names of processes with keys: it has no effect on them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measured tables of users: long ones travel with the session, exports are played back, unusable ones are refused
 // before anything starts.
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The status line of a run on terminals of 80, 120 and 200 columns: whole values, no line longer than the terminal,
 colours only without NO_COLOR.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error against cost of a small scene: rows as processes, refusals, resumption, questions.
 #include <gtest/gtest.h>
 

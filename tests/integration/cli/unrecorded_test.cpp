@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Variables that recording.variables leaves out: the warning before a run, and the message when a recording lacks one.
 #include <gtest/gtest.h>
 

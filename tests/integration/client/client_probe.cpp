@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A controller that prints the library's results, a line each, for tests that stop it, kill it and start it twice.
 //
 //   client_probe SESSION DOMAIN NAME CHANNEL STEP_TIME_OUT acquire|take_over

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The client library against sessions of real processes: several controllers on different channels, digital inputs,
 // taking over, a reset, the end, every refusal, and controllers that stand still, die or are there twice.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A session of which only the words are there: io's variables from the start, those of the mechanics when it gets
 // SIGUSR1, its end with SIGTERM.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Simulink block of the examples, called as Simulink calls it, against a session of real processes.
 #include <gtest/gtest.h>
 

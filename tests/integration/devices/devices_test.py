@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A live crane and its devices, with other programs on the other side:
 
 devices_test.py SOURCES SLEWRING CASE

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The legs of a motion platform under the driver of a live crane, against computations of this file alone:
 
 platform_test.py SOURCES SLEWRING

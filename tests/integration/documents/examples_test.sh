@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # The whole scenes printed in docs/howto/write-a-scene.md and contact.md are accepted, and the beams of flexible-model.md:
 #   examples_test.sh SOURCE_TREE SLEWRING
 #

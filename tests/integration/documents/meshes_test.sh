@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # scenes/meshes/make_meshes.py writes the committed meshes byte for byte, and no others:  meshes_test.sh SOURCE_TREE PYTHON
 set -euo pipefail
 

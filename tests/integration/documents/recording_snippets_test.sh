@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # The programs printed in docs/howto/read-a-recording.md read a recording as `slewring export` writes it:
 #   recording_snippets_test.sh SOURCE_TREE BIN_FOLDER csv|scipy|matlab
 #

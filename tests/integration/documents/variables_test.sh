@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # docs/variables.md against what the program names:  variables_test.sh SOURCE_TREE SLEWRING
 #
 # Every variable of the scenes, which together have every type of docs/scene-format.md, needs a row with its quantity and

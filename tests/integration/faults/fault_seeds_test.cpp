@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random faults between the nodes of a session, by seed. Safety: with any losses on the way, all nodes reach the bits
 // of the session without faults, and no node publishes two different messages of one step. Liveness: when the faults
 // have ended, ticks go on within 100 ms, and the session ends in order.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults between the nodes of one process, drawn from a seed: faults of a transport and of a scheduler. Times are those
 // of a clock that is a number.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A whole session in one thread on a clock that is a number: the nodes' own code, their real subsystems, the bus of one
 // process, and a plan of faults between them. An auditor checks all published messages.
 #pragma once

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # completion_test.sh bash|zsh|fish SOURCE PROGRAMS: completion of `slewring` in that shell. SOURCE: root of the sources;
 # PROGRAMS: folder with the programs.
 set -euo pipefail

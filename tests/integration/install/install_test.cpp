@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An installation: moved after it was made, it runs the crane from any folder; uninstalled, it leaves nothing.
 #include <gtest/gtest.h>
 

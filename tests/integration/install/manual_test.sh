@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # manual_test.sh FOLDER SLEWRING: every manual page in the folder is shown without a warning, and every verb has one.
 set -euo pipefail
 folder=$1 slewring=$2

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # packages_test.sh BUILD: the Debian packages of this build. They install on a bare Debian 12 (debootstrap, as root, with
 # a mirror), run and replay the crane there, complete, show a manual page, and leave nothing when they are purged. Where
 # that system cannot be made, their contents alone are checked, and the crane runs from the unpacked folder.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # unit_test.sh SOURCE: systemd accepts the unit of the nodes.
 set -euo pipefail
 command -v systemd-analyze > /dev/null || { echo "SKIPPED: there is no systemd-analyze"; exit; }

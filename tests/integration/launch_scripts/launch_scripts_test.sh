@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # One claim about the launch scripts:  launch_scripts_test.sh CASE SOURCE_TREE SLEWRING
 #
 # The scripts are copied into a scratch tree whose package lists are the test's own. Folder `bin` in front of PATH holds

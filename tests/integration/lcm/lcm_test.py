@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A live crane on LCM, with the programs of the LCM package on the other side:
 
 lcm_test.py SOURCES BUILD SLEWRING 1|0 short|long

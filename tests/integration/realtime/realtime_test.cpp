@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `--rt`, `--cpu`, the overrun policies and the heap of the real nodes, seen from outside.
 #include <gtest/gtest.h>
 #include <sched.h>

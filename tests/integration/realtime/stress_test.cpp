@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `slewring stress`: its output and exit codes. Bounds are such that they are always or never kept.
 #include <gtest/gtest.h>
 #include <sched.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Recordings of sessions of every protocol version from 3 on, kept in golden/: this and every later program reads the
 # same values from them as the one that wrote them did.
 #   golden_session_test.sh BIN_FOLDER values|bits

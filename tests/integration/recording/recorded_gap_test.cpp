@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `slewring` makes of a recording with a gap.
 #include <gtest/gtest.h>
 

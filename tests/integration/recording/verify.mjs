@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a recording with libraries that are not ours and compares it with what was written.
 //
 //   node verify.mjs RECORDING [EXPECTED.json]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -DWRITER=program -DSOURCE=folder -DWORK=folder -P verify_known.cmake
 #
 # Writes a recording of every topic and lets verify.mjs read it with @mcap/core and @foxglove/omgidl-*. The packages go

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages of a session as JSON, with the names of idl/slewring.idl: the expected result of an independent decoder.
 //
 // Written from the structs, not from the bytes. Integers of 64 bits and numbers that JSON lacks become strings.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes DIR/known.mcap with messages of every topic and DIR/known.json with their contents.
 #include <cstdio>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The wall clock of the nodes is wrong by hours, differs between them, or jumps while they run: nothing changes but the
 // time stamps.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pause, step, resume, reset, parameters and controllers, spoken to a running session over the middleware.
 #include <gtest/gtest.h>
 

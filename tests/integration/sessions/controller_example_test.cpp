@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The example controllers, built as a user builds them (projects of their own), close their loop on a real session.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same scene and the same ticks give the same bits in every state at every step, however the nodes are laid out.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hash chain of a scene computed inside the test: by hand over the subsystems, or by the nodes on one thread.
 #pragma once
 

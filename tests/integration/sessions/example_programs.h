@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The example controllers, built beside the tests as a user builds them: projects of their own.
 #pragma once
 

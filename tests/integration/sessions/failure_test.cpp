@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults in a session: the fault is named at once, all nodes end with the right code, and the recording is valid.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Free-running sessions of real processes, and counts of their recordings.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Free-running sessions of real processes: no node waits longer than the budget.
 #include "free_running.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loop of a node's process, its main thread, held as by a debugger: the other threads go on.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nodes that stand still for a while, or until the others give them up: as processes, and by their loop alone.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loops that are closed from outside in lockstep: the same bits in every run, and the faults of a controller that never
 // comes, dies or is too late.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A session sends nothing to a network that it is not configured to use.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

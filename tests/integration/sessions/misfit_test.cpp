@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The nodes' messages about a program that takes part in their session in the wrong way.
 #include <dds/dds.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sessions whose nodes have different middlewares: the bits are those of one process.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two network namespaces joined by a veth pair: two machines as far as the network is concerned.
 //
 // Datagrams are lost by filters of nft at the side they come to.

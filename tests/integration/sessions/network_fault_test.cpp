@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A session over a cable that loses datagrams, is out for a while, or carries in one direction only.
 #include <gtest/gtest.h>
 

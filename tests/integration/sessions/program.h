@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program of the build started as a process of its own: own process group, output in files, killed when the test
 // dies.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recording's contents for tests: the hash of every state by epoch and step, the nodes' statuses, losses.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Physics nodes that are killed in mid-motion, and others that take their places: the session goes on to the same bits.
 #include <gtest/gtest.h>
 

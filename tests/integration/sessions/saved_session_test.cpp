@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sessions that are saved at a step and go on from there: the same bits as if they had never stopped.
 #include <gtest/gtest.h>
 

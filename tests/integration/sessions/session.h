@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A session of real node processes on a DDS domain of its own, and an observer inside the test that receives all
 // topics.
 #pragma once

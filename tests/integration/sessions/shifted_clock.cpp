@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "shifted_clock.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The wall clock of a program under test: hours off, and it may jump while the program runs.
 //
 // shifted_clock.cpp is loaded into the program in front of its libraries and replaces the kernel's clock. Both read one

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs that cannot take part in a session: nothing is started; the message has the cause and the remedy.
 #include <gtest/gtest.h>
 

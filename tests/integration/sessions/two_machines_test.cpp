@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A session over a cable: mechanics and recorder in one network namespace, hydraulics and io in another.
 #include <gtest/gtest.h>
 

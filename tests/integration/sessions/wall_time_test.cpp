@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Promises of the design in wall time. Any other load counts against it: judged alone on the machine, by `--nightly`.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A forked process that runs a function and reports success by its exit code; killed when the test leaves early.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Our encoder and decoder against Cyclone's own serialisation of the generated types: two independent ways to the same
 // bytes.
 #include <dds/dds.h>

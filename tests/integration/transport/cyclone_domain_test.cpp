@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Effects of a domain on the program that opens it.
 #include "transport/cyclone/cyclone_domain.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The doorbell without the middleware: the thread sanitizer cannot see behind libddsc.
 #include "transport/doorbell.h"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # fastddsgen_test.sh BUILD CXX   fastddsgen makes C++ of the installed slewring.idl, and CXX compiles it. BUILD: the
 # build's folder. Bounds of strings must be numbers there; they are the two named ones.
 set -euo pipefail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The generated C type that belongs to each of our messages.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs that depend only on idl/slewring.idl and Cyclone, in a process of their own, against every middleware.
 #include <dds/dds.h>
 #include <gtest/gtest.h>

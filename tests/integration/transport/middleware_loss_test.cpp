@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A stream whose reader, in another process, does not run for a while.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Claims about every middleware, and those about the configuration of Cyclone.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests that hold for every middleware of this build.
 #pragma once
 

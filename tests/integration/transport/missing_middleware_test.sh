@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # missing_middleware_test.sh SLEWRING   the program is not linked with Fast DDS; without the library of Fast DDS
 # beside it the option is an error with the remedy, and everything else works.
 set -euo pipefail

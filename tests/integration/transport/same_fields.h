@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares a generated C struct with one of our messages, field by field.
 #pragma once
 

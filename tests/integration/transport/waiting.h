@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Waiting for a message or a condition with a deadline.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A client of the window by @foxglove/ws-protocol:  client.mjs live|recording ADDRESS SLEWRING [ARGUMENT...]
 //
 // live: ARGUMENT are those with which `slewring` finds the session. recording: ARGUMENT is the recording. Ends with an

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The window of a session and of a recording, from outside:
 
 window_test.py SOURCES SLEWRING PACKAGES CASE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/peers/multibody/agreement.h"
 
 #include <fmt/format.h>

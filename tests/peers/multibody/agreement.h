@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cases for peers, and differences between their results and ours, each relative to a stated scale.
 //
 // A peer is a class with

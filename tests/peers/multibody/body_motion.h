@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motion of a mechanism's bodies and the wrenches on them, in Ground axes: results that every program has for the same
 // mechanism, in any coordinates.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Masses, force elements and rows of a MechanicsDef, written from docs/models for bodies whose motion another program
 // computes. Shares no code with the library but the Def.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/peers/multibody/mujoco_peer.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A MechanicsDef as a model of MuJoCo (Todorov, Erez, Tassa 2012), written as its XML and compiled by it.
 //
 // Every body of the Def is a body there, fixed joints are bodies without a joint, static dummies nested bodies. No

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case P02: the same mechanisms in MuJoCo 2.2.2 (mujoco_peer.h), which assembles the mass matrix from composite bodies
 // and factorises it: the states of case P01 with dummies on forces taken away from both.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors, rotations and masses of ours as Simbody's and back.
 #pragma once
 

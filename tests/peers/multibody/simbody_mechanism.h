@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies and joints of a MechanicsDef in Simbody: a mobilizer for every joint of the tree, constraints for every joint
 // that is cut, under gravity alone.
 //

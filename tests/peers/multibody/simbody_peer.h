@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A MechanicsDef as a mechanism of Simbody (Sherman, Seth, Delp 2011).
 //
 // Every body of the Def is a body there (simbody_mechanism.h), fixed joints are welds, joints that are cut are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case P01: the same mechanisms in Simbody 3.7, built from the same definitions through its own interface
 // (simbody_peer.h): the crane of scenes/truck_crane.yaml at 12 random states, seeds 1 to 12, and 48 random trees of 2
 // to 10 bodies, seeds 1 to 48 (revolute, prismatic, spherical, floating and fixed joints in both directions, springs,

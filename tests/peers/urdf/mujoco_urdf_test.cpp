@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case P03: a URDF file read by MuJoCo 2.2.2 itself, and by `slewring import urdf`: accelerations at random states.
 //
 // A branching tree of six joints that move: skew axes, turned origins, turned inertial frames, each product of inertia

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The memory of separated pairs saves searches and does not change the contacts found.
 #include <gtest/gtest.h>
 

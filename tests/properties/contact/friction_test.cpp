@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bristle friction stays in its cone, dissipates, is the same in every frame and has exact slopes, at any sub-step.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangle meshes and height fields against planes and boxes, whose contacts are known in closed form.
 #include <gtest/gtest.h>
 

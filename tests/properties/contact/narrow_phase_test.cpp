@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Own kernels against FCL, contacts from every frame and from both sides, no heap in own kernels.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The normal law pushes, dissipates, and has exact slopes.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shortest way out of convex shapes against a search over all directions, and where the polytope is degenerate:
 // shapes whose faces, edges and middles are in line.
 #include "contact/overlap.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes that differ from the saved ones are refused, without reads beyond their end.
 #include <gtest/gtest.h>
 

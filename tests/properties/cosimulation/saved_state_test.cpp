@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A session continues from its saved state without a difference: samples, reports, hashes and variables of every later
 // step are the same bits.
 #include <gtest/gtest.h>

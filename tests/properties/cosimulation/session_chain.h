@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The physics of a scene stepped by hand under inputs that move, to be saved and continued by another chain.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One mass on one oil spring, split at the spring: the linear system on which coupling levels are analysed
 // (coupling study, section 3).
 //

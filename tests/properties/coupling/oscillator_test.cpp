@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stability of the levels on the linear oscillator, against the coupling study's analysis.
 #include "tests/properties/coupling/oscillator.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files with random damage are read or refused in words, never anything else.
 #include <gtest/gtest.h>
 

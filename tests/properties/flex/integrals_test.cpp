@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integrals of reduced bodies: those of the solid, alike in every frame and mesh, and the same by two ways.
 #include <gtest/gtest.h>
 

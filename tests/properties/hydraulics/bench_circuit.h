@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A circuit that holds one of every component type that the truck crane does not use, for tests.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The truck crane's hydraulic circuit as a Def, for tests: every number of its tables.
 #pragma once
 

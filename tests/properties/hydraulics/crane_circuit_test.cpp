@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requirements of the truck crane's circuit: metering, limits, balances, dissipation, extremes.
 #include <gtest/gtest.h>
 

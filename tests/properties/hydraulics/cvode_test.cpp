@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The circuit with masses on its pistons, integrated by RODAS3 and by SUNDIALS CVODE from the same right-hand side.
 #include <cvode/cvode.h>
 #include <gtest/gtest.h>

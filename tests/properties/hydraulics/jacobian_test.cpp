@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stamped Jacobian against central differences of the right-hand side, at many random states.
 #include <gtest/gtest.h>
 

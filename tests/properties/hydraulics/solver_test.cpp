@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The solvers that a circuit may choose, against each other, and volumes without storage against small ones.
 #include <gtest/gtest.h>
 

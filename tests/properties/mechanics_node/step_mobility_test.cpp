@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A second mass on a spring behind the port of a mechanism: its part in the published mobility.
 //
 //   oil spring K, lambda -- port -- m1 -- k_s -- m2,   omega = sqrt(K / m1),   Omega = omega H,   d = 2 zeta omega m1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The recursion against the assembled equations of motion (assembled.h) on random trees.
 #include <gtest/gtest.h>
 

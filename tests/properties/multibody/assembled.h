@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A second formulation of the same equations, for agreement tests: Jacobians of every mass assembled into M u' + h = Q
 // in long double, velocity terms by differentiating the Jacobians numerically along the motion. It starts from the
 // Def and shares no dynamics code with the library.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Body coordinates with multipliers against the recursion in joint coordinates, on random trees.
 #include "multibody/formulations/body_coordinates.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same mechanism somewhere else, or written in other units: what physics must not notice.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every element with two ends or more keeps, over random motions of its links: forces and moments balance, a
 // motion of all bodies as one does not deform it, springs return their energy, dampers only dissipate.
 #include <gtest/gtest.h>

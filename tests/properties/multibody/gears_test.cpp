@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gears on random trees, against the assembled equations of motion (assembled.h) with multipliers in long double:
 //   M u' = Q + J^T f,   J u' = 0,   J = e_2 - r e_1 for each gear.
 #include <gtest/gtest.h>

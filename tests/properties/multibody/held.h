@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mechanism in body coordinates whose joints are held by penalties, for tests.
 #pragma once
 

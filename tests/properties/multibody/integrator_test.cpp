@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integrators: order of convergence, energy, and agreement with each other, in both formulations.
 #include "multibody/formulations/integrators.h"
 

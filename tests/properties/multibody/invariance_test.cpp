@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random trees and loops move alike wherever they stand, however they are turned, and in whichever units they are
 // written, in every formulation.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every mechanism keeps: momentum, energy, dissipation, power at the rows, frames, order of the integrator.
 #include <gtest/gtest.h>
 

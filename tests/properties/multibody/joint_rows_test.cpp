@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rows along every coordinate of the joints of random trees, and about the axes of balls: with J the unit vector of the
 // coordinate's speed, or the axis in the speeds of the ball, W equals J M^-1 J^T there, in every formulation.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Graphs of loops: trees of links that closing rows connect at random, beside each other, in rows, rings and nets. The
 // entries that the sparse closing system omits are zero, its bits are those of the dense one, and body coordinates,
 // which use no tree, find the same motion and the same rows.

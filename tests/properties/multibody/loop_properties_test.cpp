@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What random trees and loops keep in every formulation: degrees of freedom, momentum, rates that are derivatives, and
 // the same motion under each.
 #include "multibody/constraints/constraint.h"

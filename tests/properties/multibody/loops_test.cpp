@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random mechanisms with loops, every joint type among those that close them, against the equations assembled from the
 // Def in long double: M u' + J^T lambda = Q, J u' = -J' u, solved by least squares so that redundant rows do no harm.
 #include "multibody/constraints/loops.h"

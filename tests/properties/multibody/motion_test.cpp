@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prescribed motion on random trees, against the assembled equations of motion (assembled.h) with the prescribed u'
 // put in: M_ff u'_f = Q_f - M_fd p'' for the free speeds, and the drives' forces from the rows that are left.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Order of convergence of the rules that `augmented` (trapezoid, 2) and `penalty` (Runge-Kutta, 4) bring with them, on
 // a tree and on loops. A penalty's motion is compared with its own in shorter steps: what its factor leaves does not
 // fall with the step.

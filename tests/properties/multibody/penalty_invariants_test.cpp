@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What mechanisms keep under the formulations `augmented` and `penalty`: momentum, energy, stability under stiff
 // elements, the motion through positions in which constraints become dependent.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Body coordinates whose joints are held by penalties, formulations `augmented` and `penalty`, against the recursion in
 // joint coordinates on random trees.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random mechanisms with loops for property tests and peers, the same for a seed on every run.
 #pragma once
 

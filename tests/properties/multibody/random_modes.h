@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flexible bodies made of points with mass, of which every integral is a sum: for property tests.
 #pragma once
 

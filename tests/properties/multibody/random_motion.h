@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A random mechanism in motion under any formulation: a tree for every third seed, one with loops for the others.
 #pragma once
 

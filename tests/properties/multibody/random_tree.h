@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random mechanisms for property tests, the same for a seed on every run.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reactions of random trees and loops: they do no work through any velocity that the joints allow, they and the weight
 // are what every body's momenta gain, and where rows are redundant they are the smallest ones, against a
 // pseudo-inverse. Redundant rows do not change the motion.

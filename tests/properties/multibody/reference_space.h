@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors, turns and quaternions of space in long double, for the assembled reference: no code of libs/math.
 #pragma once
 

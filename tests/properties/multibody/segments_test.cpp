@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chains of finite segments: conservation laws, and agreement of the formulations.
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The matrix of an implicit stage holds the derivatives of stiff force elements: where a law is linear and the motion
 // small, Newton's method settles in one correction and sees so in the next, however stiff the element is and however
 // the bodies lie. A derivative that is wrong by a per cent would need several more.

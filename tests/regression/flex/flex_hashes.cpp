@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints hashes of reduced bodies, dense and by Lanczos steps, clamped and free. Two builds of one compiler print the
 // same:
 //   diff <(build/release/bin/flex_hashes) <(build/dev/bin/flex_hashes)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fixed manoeuvre of the crane's circuit with cylinder friction: its cost and its end state.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Counts the instructions of one call of forward_dynamics() with callgrind and compares them with a bound. Unlike a time
 # the count depends on neither load nor clock, but on compiler and -march.
 #   cmake -DVALGRIND=... -DPROGRAM=.../bin/counted_dynamics -DMECHANISM=crane -DMOST=4000 -P count_instructions.cmake

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calls the forward dynamics of a mechanism often enough that an instruction counter sees nothing else.
 //
 //   counted_dynamics crane | crane_loops | chain10 | loops10 | loops40

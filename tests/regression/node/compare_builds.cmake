@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Runs hash_chain of this build and of the other one beside it and compares every line.
 #   cmake -DOWN=.../bin/hash_chain -DOTHERS="a;b" [-DONLY_NEWER=ON] -P compare_builds.cmake
 # Prints SKIPPED when there is no other build, or with ONLY_NEWER one that is older than this: launch_scripts/test builds

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints the hash of both subsystems' states of the truck crane at each of 500 steps, and one of the whole chain. Two
 // builds of one compiler print the same:  diff <(build/release/bin/hash_chain) <(build/dev/bin/hash_chain)
 #include <cinttypes>

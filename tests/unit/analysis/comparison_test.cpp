@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Figures of a comparison, on mechanisms whose answers are known otherwise.
 #include "analysis/comparison/comparison.h"
 

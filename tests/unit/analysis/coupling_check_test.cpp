@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Warnings about the step and the coupling levels before a run.
 #include "analysis/coupling_check.h"
 

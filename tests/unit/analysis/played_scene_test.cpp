@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes played in this process: those of the validation's loops, and a script's part in the motion.
 #include "analysis/comparison/played_scene.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the kernel's preemption model is read, and in which order, on files of the test.
 #include "analysis/stress/preemption.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Verdicts of a stress test on a cell, against stated bounds and a yardstick.
 #include <gtest/gtest.h>
 

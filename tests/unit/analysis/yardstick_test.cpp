@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bare loops of a stress test: which of their steps are judged. No claim about their speed.
 #include "analysis/stress/yardstick.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inputs on their way into a session: leases are requested, values go only through a held one, losses are reported.
 #include <gtest/gtest.h>
 

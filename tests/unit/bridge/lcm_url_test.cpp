@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // LCM's address: multicast only, and nothing beyond this machine without a word for it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a session publishes, as LCM messages: values in order, lists whole or not at all.
 #include <gtest/gtest.h>
 

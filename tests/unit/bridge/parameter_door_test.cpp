@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parameter requests from LCM: each is done once, repeated until it is answered, and answered again.
 #include <gtest/gtest.h>
 

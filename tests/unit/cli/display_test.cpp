@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names of pictures, and the colours of the lamps.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts of what samples report.
 #include "node/flag_counter.h"
 

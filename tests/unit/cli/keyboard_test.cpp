@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Effects of keys on the levers.
 #include "cli/keyboard.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contact points of simple positions, against a drawing.
 #include <gtest/gtest.h>
 

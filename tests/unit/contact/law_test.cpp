@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The laws' definitions and the memory of a contact.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mass properties of meshes against the formulas of the solids.
 #include "contact/mass_properties.h"
 

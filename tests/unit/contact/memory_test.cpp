@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contacts are found again by place.
 #include <gtest/gtest.h>
 

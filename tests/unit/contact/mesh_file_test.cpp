@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One block in four file formats becomes the same solid; other files are refused with the reason.
 #include "contact/mesh_file/mesh_file.h"
 

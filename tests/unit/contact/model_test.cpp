@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Definitions are checked, contacts come in the order of the pairs.
 #include <gtest/gtest.h>
 

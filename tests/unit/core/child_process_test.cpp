@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program started beside this one: its end, its output, its death.
 #include "core/child_process.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Quantities and times as people read them.
 #include "core/display.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A JSON value: it is written as built, and read as written.
 #include "core/json.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A table of a report: the same columns as text, CSV, JSON and HTML.
 #include "core/report_table.h"
 

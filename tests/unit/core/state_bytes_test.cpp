@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one writes the other reads, and nothing else.
 #include <gtest/gtest.h>
 

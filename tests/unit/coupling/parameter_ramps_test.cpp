@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Live changes over a time: every one that begins is carried out, however many there are.
 #include "coupling/parameter_ramps.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Levels of the ports: a port's own or the session's, changed by the paths of the scene.
 #include "coupling/port_levels.h"
 

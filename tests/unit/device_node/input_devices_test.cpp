@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Devices that move inputs, on sockets of the loopback and on recorded events.
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inputs of a device on their way into a session: neutral until enabled, repeated while they stay, neutral when silent.
 #include "device_node/input_driver.h"
 

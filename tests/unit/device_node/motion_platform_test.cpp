@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A motion platform as a device: packets by the wall clock, from variables of a session.
 #include <gtest/gtest.h>
 

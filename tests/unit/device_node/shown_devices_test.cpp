@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Packets and frames with variables of a session and outputs of its scene.
 #include "device_node/shown_device.h"
 

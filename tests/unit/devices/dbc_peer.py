@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Peers of the DBC reader and the signals.
 
 dbc_peer.py FILE                 by a regular expression and whole numbers of Python

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Peer of the byte layouts, by ctypes and struct: the layout of byte_layout_test.cpp written a second time.
 
 layout_peer.py ORDER PACKING unpack HEX     prints size, offsets, then the raw values; exit code 1 for a wrong checksum

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs of others as peers in tests: a shell command, its output and its exit code.
 #pragma once
 

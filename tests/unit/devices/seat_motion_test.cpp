@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Specific force and angular velocity of a seat against closed forms.
 #include "devices/seat_motion.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Elements and assembly against the equations of their headers.
 #include "flex/beam.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The steps of the reduction, choices of modes and signs, and refused input.
 #include "flex/craig_bampton.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lumps and connectors of finite segments against the finite element model that they are made of.
 #include "flex/finite_segments.h"
 

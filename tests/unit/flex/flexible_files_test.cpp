@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flexible files: the same bits back, and every fault named with file and line.
 #include "flex/flexible_files.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Matrices from files: accepted files, and refused ones with their messages.
 #include "flex/imported_model.h"
 

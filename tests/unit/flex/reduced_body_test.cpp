@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selection, evaluation and recovery of reduced bodies.
 #include "flex/reduced_body.h"
 

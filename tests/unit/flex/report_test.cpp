@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report's figures and its text, and the picture of mode shapes.
 #include <gtest/gtest.h>
 

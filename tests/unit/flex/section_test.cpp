@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sections against closed forms, tables and energies computed another way.
 #include "flex/section.h"
 

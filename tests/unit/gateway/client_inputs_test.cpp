@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inputs that clients move: one holder, neutral after silence, and given back when a client leaves.
 #include "gateway/client_inputs.h"
 

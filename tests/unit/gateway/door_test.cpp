@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests that the gateway's door lets in, and those that it refuses.
 #include "gateway/door.h"
 

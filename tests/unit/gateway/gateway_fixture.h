@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A gateway between a session that is played from messages and clients without sockets.
 #pragma once
 

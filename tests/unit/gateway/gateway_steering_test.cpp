@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What clients of a gateway change in a session: parameters, services and inputs.
 #include "gateway_fixture.h"
 

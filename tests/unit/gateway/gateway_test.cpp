@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What clients of a gateway receive.
 #include "gateway_fixture.h"
 

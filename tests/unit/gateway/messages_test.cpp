@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes and texts of the Foxglove protocol, against its published layout.
 #include <gtest/gtest.h>
 

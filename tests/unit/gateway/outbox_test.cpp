@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What waits for a client: every event in its order, of a state the newest value.
 #include "gateway/outbox.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Named signals: the channels of a session's variables, and their values at one step.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Laws of the check valves at numbers worked out by hand, and their own rules.
 #include "hydraulics/components/check_valves.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts of the circuit, one by one.
 #include "hydraulics/circuit.h"
 

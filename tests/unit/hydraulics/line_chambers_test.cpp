@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chambers as transmission lines: the oil stays constant in any state of the line and at every conversion.
 #include "hydraulics/line_chambers.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that is wrong with a circuit is found at load and named.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sources of raw values and timed changes, without a node.
 #include "io_node/input_sources.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The owner of a session: its name, its time, its overruns and its end.
 #include "tests/unit/io_node/played_io.h"
 

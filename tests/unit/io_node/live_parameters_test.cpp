@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The values that io_node publishes of a parameter are those with which the nodes compute.
 #include "io_node/live_parameters.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Controllers that the ticks wait for.
 #include "tests/unit/io_node/played_io.h"
 

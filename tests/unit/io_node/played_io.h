@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The owner of a session; the test plays the physics nodes and the clock.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The role of a lost physics node; the test plays the nodes and the clock.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A session that is saved, continued or loaded; the test plays the nodes and the clock.
 #include <gtest/gtest.h>
 

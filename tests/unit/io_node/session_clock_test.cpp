@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Books of a paced session, with a number as the clock.
 #include "io_node/session_clock.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Saving, loading and holding of roles, with a member of a session and no node around it.
 #include "io_node/state_keeper.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conditions under which a tick can go out, and its times, without a node.
 #include <gtest/gtest.h>
 

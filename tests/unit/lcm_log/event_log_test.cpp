@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Event logs: liblcm reads what is written and the reverse; cut logs.
 #include <gtest/gtest.h>
 

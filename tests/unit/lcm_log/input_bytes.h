@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An input_t as the code that lcm-gen generates encodes it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What may reach the session: every cause of a refusal, gaps of the sequence, senders that take turns.
 #include <gtest/gtest.h>
 

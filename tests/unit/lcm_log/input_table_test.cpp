@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A log's inputs as a time table: values hold, silence is neutral, and what a session would refuse is left out.
 #include <gtest/gtest.h>
 

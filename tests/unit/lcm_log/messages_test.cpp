@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inputs and requests, decoded from bytes of the generated encoders, and damaged ones.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Signal lists: the bytes are those of the struct that lcm-gen makes of the written types.
 #include <gtest/gtest.h>
 

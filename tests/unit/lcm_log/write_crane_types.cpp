@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the types of the signal list of signal_list_test.cpp for lcm-gen.
 #include <cstdio>
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Saddle-point systems of blocks against a dense solution by another library.
 #include "math/block_ldl.h"
 

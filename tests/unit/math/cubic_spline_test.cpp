@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "math/cubic_spline.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Semidefinite systems against the definition, with dependent rows at known places.
 #include "math/semidefinite.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runge-Kutta, implicit Euler and CVODE as integrators of an abstract system, and algebraic rows.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The linear solvers and the Rosenbrock method that the circuit stands on.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rows of joints: against the motions that a joint allows, finite and exact, and against difference quotients.
 #include "multibody/constraints/constraint.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rules of force elements and of the masses that elements carry: path and first words; live constants and their hash.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gauge of open joints: its values for prepared motions.
 #include "multibody/joints/joint_gauge.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // State, hash, live parameters, variables, joint law: the mechanism as its owner sees it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every rule of validate(): the path and the first words of the message.
 #include "multibody/build/validate.h"
 

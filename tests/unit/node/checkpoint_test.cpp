@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // States in parts, and a node that takes one over, with io, the partner and the clock played by the test.
 #include "node/checkpoint.h"
 

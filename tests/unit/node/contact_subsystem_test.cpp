@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contact inside the mechanics subsystem: part of its hash, of reset and of the state that a failed step goes back to,
 // and nothing at all while nothing touches.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The flex node's subsystem alone: elastic forces, strain energy, deflection and stress of given modal coordinates.
 #include "flex_node/flex_subsystem.h"
 

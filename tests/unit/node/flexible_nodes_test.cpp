@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mechanics and flex node in a session with flexible bodies: when each waits for the other.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // F_dot of the hydraulics' sample holds under the signal that the coming step is expected to have
 // (docs/models/coupling_levels.md, "An input that moves within a step"): the crane with two degrees of freedom, whose
 // valve opens at once.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The crane's mechanics under another formulation, with unchanged hydraulics.
 #include <gtest/gtest.h>
 

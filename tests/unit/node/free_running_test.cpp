@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A free-running node without its partner's samples and without io's ticks; the test plays both.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The health message, and that nodes on one thread send it as well.
 #include "node/health_report.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A live parameter that the directory accepts is one that a subsystem takes: nothing is accepted and then ignored.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The node around a subsystem, with io, the partner and the clock played by the test.
 #include "node/physics_node.h"
 

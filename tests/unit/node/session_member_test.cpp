@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which processes belong to a session, over the bus of one process.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same bits wherever the subsystems lie in memory: every block of the heap is shifted by 16 bytes within the 32
 // that vector instructions care about, and the sizes in front of them differ. (8 bytes would break what operator new
 // promises; reductions of run-time size have their own test with 8 bytes in core.)

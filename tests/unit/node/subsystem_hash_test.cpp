@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hash of a subsystem's state covers every bit that its future depends on.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts of ticks that a recorder updates while it writes.
 #include "node/tick_counter.h"
 

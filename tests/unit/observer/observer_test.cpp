@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests that are lost on their way, or whose session ends.
 #include "observer/observer.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An observer's view from a session's messages.
 #include "observer/session_view.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Words that may stand at the cursor, and manual pages, from a small tree of commands.
 #include "options/completion.h"
 

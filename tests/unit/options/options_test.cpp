@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Accepted command lines, and the errors for others.
 #include "options/options.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The script of a plot's page, run: values under the pointer, zoomed ranges, and gaps of lines.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Marks over logarithmic axes: their positions, and omitted values.
 #include "plotting/scatter_svg.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recorder whose session, other nodes and clock are played by the test.
 #pragma once
 

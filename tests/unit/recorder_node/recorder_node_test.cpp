@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The recorder of a session, with every other node and the clock played by the test.
 #include "recorder_node/recorder_node.h"
 

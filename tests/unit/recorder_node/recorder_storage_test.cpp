@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recorder whose disk fails, is full or is slow.
 #include <gtest/gtest.h>
 

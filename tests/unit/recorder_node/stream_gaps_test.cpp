@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "recorder_node/stream_gaps.h"
 
 #include <gtest/gtest.h>

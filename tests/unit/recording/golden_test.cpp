@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recordings of every format version that was ever written, kept in tests/unit/recording/golden: this and every later
 // reader must give the same values. A file is added with each new version, and none is ever changed.
 #include <fmt/format.h>

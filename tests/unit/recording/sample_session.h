@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small recording with known content and its read-back, for comparison in the tests of the format.
 #pragma once
 

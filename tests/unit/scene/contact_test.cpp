@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shapes, meshes, pairs and frictions of a scene: reading them, and the published text of a session.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The crane's meshes in scenes/meshes: closed, right side out, convex where they are for contact, and where the crane's
 // joints and masses are.
 #include <gtest/gtest.h>

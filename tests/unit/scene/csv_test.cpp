@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CSV files of scripts and tables: common notations, and refused files.
 #include <gtest/gtest.h>
 

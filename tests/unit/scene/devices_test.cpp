@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sections `devices` and `outputs` of a scene: reading them, the published text, what is refused.
 #include "scene/devices.h"
 

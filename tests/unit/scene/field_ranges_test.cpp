@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every field of every table refuses a value outside its range, with its path and the range in the message. The cases
 // are made from the field tables, so that a new field is tested as soon as it is there.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // the generic reader against a Def that no library owns
 #include "scene/field_reader.h"
 

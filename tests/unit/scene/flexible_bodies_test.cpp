@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flexible bodies of a scene: their files, the selection from them, and all mismatches.
 #include "scene/flexible_bodies.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Descriptions of flexible bodies: every key reaches its place, and every fault is reported with line and column.
 #include "scene/flexible_model.h"
 

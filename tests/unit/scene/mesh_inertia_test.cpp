@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies whose inertia comes from a mesh, against the formulas of the solids; what encloses no solid is refused.
 #include "scene/mesh_inertia.h"
 

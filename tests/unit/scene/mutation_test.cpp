@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes damaged at random are refused with a LoadError or read; nothing else happens. A scene that is read has a
 // canonical text that reads back to itself. Descriptions of flexible bodies alike.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Choosing variables by names and patterns.
 #include "scene/name_pattern.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every file of tests/scenes_negative is refused with exactly the text beside it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motion platforms of a scene: reading them, the published text, what is refused.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reading scenes from strings in tests.
 #pragma once
 

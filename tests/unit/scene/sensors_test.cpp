@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The section `sensors` of a scene: reading it, the published text, what is refused.
 #include <gtest/gtest.h>
 

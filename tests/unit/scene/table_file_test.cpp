@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tables that are too long for a scene's text stay in their files, which nodes, recordings and saved sessions identify
 // by their content.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // scenes/truck_crane.yaml holds the numbers of its sources in SI.
 #include <gtest/gtest.h>
 

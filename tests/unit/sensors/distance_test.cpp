@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distances, nearest points and closing speeds against closed forms and an independent search over triangles.
 #include <gtest/gtest.h>
 

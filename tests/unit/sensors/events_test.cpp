@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Events and memory of sensors: limits, zones, hits, continuous search, saved state.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames A and B with shapes, and one sensor that looks at them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a definition of sensors is refused for.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Output of `info --events` for requests, answers and leases in a recording.
 #include "session/recorded_events.h"
 

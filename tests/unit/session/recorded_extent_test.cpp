@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Extent of a recording without a gap, and its missing messages.
 #include "session/recorded_extent.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which of the nodes' messages a person gets to see.
 #include "session/run.h"
 

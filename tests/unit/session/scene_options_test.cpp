@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options that change a scene, and input files in the place of its script.
 #include "scene/scene_options.h"
 

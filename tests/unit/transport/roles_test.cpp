@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table of roles against the needs of a session: one writer of each sample, a partner for each reader.
 #include "transport/roles.h"
 

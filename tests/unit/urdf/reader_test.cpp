@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Invalid contents of a URDF file are refused with their line; omitted contents are noted with their line.
 #include "urdf/reader.h"
 

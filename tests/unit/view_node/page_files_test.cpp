@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of the page: those of its folder, and no others.
 #include "view_node/page_files.h"
 

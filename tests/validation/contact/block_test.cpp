@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case D03: a block on an incline sticks or slips, stops on the flat, rests at the depth of its weight. Backward Euler
 // on depth and slide with both laws at the end of the step; tolerances of the case: 1e-3 relative.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case D02: the rebound of the normal law is the wanted restitution. A mass thrown at a wall without gravity,
 // fourth-order Runge-Kutta with some thousand steps per impact; tolerance of the case 1e-3, what the law is exact to by
 // derivation.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cases D02 and D03 with a whole body: shapes, contact points, memory and both laws together on a rigid body that moves
 // in space. Explicit steps of 10 us, small against every rate in the contact (1e3 1/s).
 #include <gtest/gtest.h>

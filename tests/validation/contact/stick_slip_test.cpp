@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case D01: a mass dragged by a spring sticks and slips (Canudas de Wit et al. 1995, fig. 5); reference of
 // data/lugre_stick_slip.csv, whose end is the published one of EXUDYN's lugreFrictionODE1. Tolerances of the case: x
 // 1e-3, onset of slip 0.02 s. The reference has a constant sigma_1; ours is limited above 3 mm/s, which moves x

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The classic explicit co-simulation schemes on two masses and three springs, which levels are judged beside: held
 // values, each half exact within the step (Gonzalez et al., benchmark of two oscillators; cases E01 and E02).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case E02: stability and energy error of explicit schemes, and E01's exact solution that they are judged by.
 #include "tests/validation/cosimulation/explicit_schemes.h"
 

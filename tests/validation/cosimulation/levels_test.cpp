@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case E01 with the coupling levels: two masses, the spring between them an oil column on the other side of the cut.
 #include <gtest/gtest.h>
 

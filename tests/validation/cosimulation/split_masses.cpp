@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/validation/cosimulation/split_masses.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two masses with an oil column between them, in the place of the coupling spring of explicit_schemes.h: the mechanics
 // with PortDynamics and sub-steps as the node has them, the oil exact, coupled by levels.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The alarm of the coupling: it ends what diverges and nothing else. Errors and the alarm's measure over all machines,
 // levels, steps and moving valves: docs/coupling-alarm.md.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case C07: a cylinder with closed ports is pulled until a chamber cavitates, and let go. Nothing can leave its
 // chambers, so that it comes back to where it began: 0.5 m, 20 bar in B, and in A what balances it, 20 bar (1 -
 // (45/80)^2). Twenty pulls make any oil that is lost or made twenty times visible.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mechanics and hydraulics of a scene stepped side by side in one process, as two nodes would, and the same scene as a
 // monolith; controls come from the scene's script, sampled on a grid that all communication steps divide, so that all
 // runs receive the same signals.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole crane with its six pairs: the bag is set down on the ground, and swung against the truck's body.
 #include <gtest/gtest.h>
 

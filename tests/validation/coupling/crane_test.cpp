@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The truck crane in level two against the monolith: default manoeuvre, start from 1 bar, and a live change of mass.
 #include <gtest/gtest.h>
 

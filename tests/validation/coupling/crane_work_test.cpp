@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole crane at work: what docs/crane.md states of lifting, holding, slewing and lowering.
 //
 // Expected (computed apart from this program, from the thesis's tables): 33.5 l/min through the section, which is 17.8

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A load that runs a cylinder into its end: the speed that it comes back with against the closed form of a spring and a
 // damper that only push (tests/validation/mechanics_node/limits_test.cpp), through mechanics and hydraulics together.
 // The bore is so small that its oil weighs nothing against the blow.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The truck crane from 1 bar in every volume (thesis table 13) against a planar crane computed without the libraries:
 // the booms fall onto oil and air, are caught, bounce against rod sides that were filled on the way, and come to rest.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lost and delayed samples, and exchanges at every k-th step only, against the monolith. Figures of the coupling study,
 // section 6 (boom, about 100 kN, H = 1 ms, level two, the copy continued): losing 1, 5, 10 samples in a row every 100
 // steps 0.024, 0.15, 1.1 kN with friction, 10 of them 1.1 kN without; a constant delay of 1, 2, 3, 5 steps with time

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The levels against the monolith, alone, mixed, and changed while the machine moves. Bounds are about twice what
 // docs/coupling-results.md has measured.
 #include <gtest/gtest.h>

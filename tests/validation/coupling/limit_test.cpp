@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A boom inside a joint limit behind the port: what the mechanics publishes about it, and what the coupling makes of
 // it.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The truck crane in the plane of its booms, written from the machine's published numbers alone: no code, no table and
 // no integrator of the libraries, so that agreement supports both.
 //

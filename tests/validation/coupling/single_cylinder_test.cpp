@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coupling errors on the frictionless boom with one cylinder (omega = 60 rad/s), against the monolith. Figures of the
 // coupling study, section 4.1 (b): level two 0.024 kN at 1 ms, 2.6 kN at 10 ms of about 85 to 125 kN; hold unstable
 // above 0.2 ms.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A valve whose signal moves all the time, as a script of straight lines through the scene's input, against the
 // monolith under the same lines (docs/models/coupling_levels.md, "An input that moves within a step"). Two machines:
 // the boom on one cylinder with friction, whose valve has a spool with states, and the crane with two degrees of

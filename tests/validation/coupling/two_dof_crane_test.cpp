@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cases C06 and E03: the hydraulic crane with two degrees of freedom, as a monolith, in co-simulation, and in the
 // coupling of the published benchmark code. Reference: crane2dof_scenario0.csv, an independent solution; tolerances of
 // the case: stroke 1e-4 m, pressures 0.5 %.

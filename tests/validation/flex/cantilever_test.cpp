@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case B01: statics and frequencies of a steel cantilever of 2 m and 0.1 m square.
 //
 // Closed forms of Euler's and Timoshenko's beam; frequencies by Timoshenko's from an exact transfer matrix. Statics

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case B06: accuracy of Craig and Bampton's reduction of a beam of 19 elements, 20 nodes, both ends interfaces.
 //
 // Reference: an independent computation of one bending plane of Euler's beam with consistent mass

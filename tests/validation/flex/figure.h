@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A measured figure against its tolerance; with SLEWRING_FIGURES=1 as a row of a card's table.
 #pragma once
 

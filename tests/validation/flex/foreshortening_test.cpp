@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shortening against closed forms: Euler's buckling load, frequencies of a turning beam, a hanging one.
 #include "flex/decompositions.h"
 #include "tests/support/flex_beams.h"

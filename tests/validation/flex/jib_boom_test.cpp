@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The crane's jib boom as a beam (thesis, chapter 3.2; section chosen): frequency, mass, and what few modes reach.
 #include "flex/reduction_report.h"
 #include "tests/support/flex_beams.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loads far beyond what small-deflection theory carries: flagged or refused by name, never silent; and what modes
 // cannot do at all. Figures: docs/extremes.md.
 #include "multibody/build/validate.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case B01 in the floating frame: tip deflection under 1 kN and bending frequencies of the steel cantilever of 2 m,
 // over the modes that the body takes. Closed forms of Timoshenko's beam, frequencies from an exact transfer matrix
 // (validation/flex/cantilever_test.cpp has the model itself, segments_test.cpp the segments).

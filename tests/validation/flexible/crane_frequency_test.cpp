@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frequencies of the jib boom with its load and of the whole crane, against an exact transfer matrix and a linear model
 // that shares no code with the one under test (linear_crane.h). Card: docs/validation/crane_frequencies.md.
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies without damping, and with next to none, for a minute: what is left of the energy is what the integrator's own
 // theory leaves of it. A mode of omega in steps of h, z = omega h, keeps |R(i z)|^2 of its energy a step:
 //   rk4 1 - z^6/72 + z^8/576;  trapezoidal 1;  sdirk2 |1 + (1 - 2 g) i z|^2/(1 + g^2 z^2)^2, g = 1 - 1/sqrt 2      (1)

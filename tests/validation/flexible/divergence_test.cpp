@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs whose motion is the mechanism's no longer, finite as it is: they end with the name of the body, whatever
 // computes them; and what is bent far or fails to converge for a while goes on.
 #include <gtest/gtest.h>

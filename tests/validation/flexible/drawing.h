@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of the cards: written into the folder that SLEWRING_FIGURE_FOLDER names, or not at all.
 #pragma once
 

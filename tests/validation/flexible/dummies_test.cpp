@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The truck crane with a lift boom that bends: its cylinders push at nodes of the boom, one from the pillar at a node
 // that is not the joint's, one from another such node at the body that the tip carries. Their masses on the line of
 // force against tubes and rods as bodies of their own, which loops hold there.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Elastic forces that a flex node states (coupling study, section 5, scheme A1), in one process: the same motion as
 // without it, at every communication step; accepted and refused samples of a partner.
 #include <gtest/gtest.h>

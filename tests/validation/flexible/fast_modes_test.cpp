@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A thick bar with a heavy tip: 3.6 Hz, and modes of up to 12.6 kHz (33 kHz in segments), far above 1/(2 H) of any
 // communication step. Explicit rules are refused by name, implicit ones keep the slow motion and the sag. Figures:
 // docs/extremes.md.

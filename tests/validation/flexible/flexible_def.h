@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mechanisms with one flexible beam, made of libs/flex as a scene makes them.
 #pragma once
 

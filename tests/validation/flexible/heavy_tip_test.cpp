@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mass at the tip of a cantilever, a million times that of an element: static sag and frequency, by modes and by
 // segments. The strip is let go straight: w = -w_s (1 - cos(omega t)), 3 E I/(m L^3) = omega^2 = g/w_s to 5e-6.
 #include <span>

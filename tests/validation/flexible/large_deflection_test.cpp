@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What small-deflection theory is worth for the jib boom: tip of the level boom under its load by linear beam theory,
 // by large deflections (shear and stretch included), and by the floating frame. Card:
 // docs/validation/jib_static_deflection.md.

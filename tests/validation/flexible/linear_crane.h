@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The truck crane with its slewing locked, linearised about its start pose: rigid bodies and a jib boom of Timoshenko
 // beam elements with all their freedoms, cylinders as springs. Assembled from positions alone, by differences: it
 // shares no code with the models that it judges, not even the elements. Numbers: scenes/truck_crane.yaml, scenes/beams.

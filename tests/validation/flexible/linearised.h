@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frequencies of a mechanism about a state of rest, from its accelerations at displaced coordinates.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Starts of flexible bodies in moving loops against the kinematics of the rigid mechanisms: slider-crank and four-bar.
 #include <gtest/gtest.h>
 

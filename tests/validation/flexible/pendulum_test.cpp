@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // B03: flexible pendulum. Tolerance 5 % of the largest distance of the middle from the chord. Card:
 // docs/validation/B03_pendulum.md.
 #include "tests/support/nightly.h"

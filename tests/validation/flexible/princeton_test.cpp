@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // B05: the Princeton beam, a slender cantilever under a dead load at its tip that bends it about both axes. Tolerance
 // 1 % of the largest of each displacement at the load for segments; linear theory must give its own answer.
 #include <algorithm>

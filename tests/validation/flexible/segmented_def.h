@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mechanisms with one beam in segments, made of libs/flex as a scene makes them.
 #pragma once
 

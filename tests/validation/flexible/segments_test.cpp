@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // B01 to B03 in finite segments: statics, frequencies, spin-up and pendulum, and how they converge over the segments.
 #include <algorithm>
 #include <cmath>

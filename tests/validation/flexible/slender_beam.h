@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cantilever of Euler's theory with the loads of a limit case, by shooting: the reference of the extremes. Independent
 // of the libraries.
 //

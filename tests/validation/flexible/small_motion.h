@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small motion of a mechanism, for frequencies of references.
 #pragma once
 

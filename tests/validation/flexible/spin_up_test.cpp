@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // B02: spin-up of a rotating beam (Simo and Vu-Quoc 1988). Tolerances 1 % of v with geometric stiffening, 0.2 % in the
 // slow case, where linear theory must give its own wrong answer; in the fast one it must run away. Card:
 // docs/validation/B02_spin_up.md.

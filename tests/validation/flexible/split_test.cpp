@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ways to split a flexible body from the mechanics, as linear maps of one exchange: why the mechanics owns the modal
 // coordinates. Coupling study, section 5: a jib of 6.5 m and 127.6 kg, EI = 8e6 Nm2, two clamped modes, on a hinge with
 // a spring of 3e7 Nm/rad, in one plane; spectral radius of one exchange, 1 is neutral.

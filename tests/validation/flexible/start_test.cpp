@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flexible bodies at the start: static deflection against beam theory, bodies without modes, modes that are too fast.
 #include <gtest/gtest.h>
 

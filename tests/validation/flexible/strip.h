@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The strip of the extremes: a steel bar of 1 m and 10 mm x 10 mm along x, so slender that shear and stretch are below
 // 1e-4 of bending, clamped at its root; by modes that bend along y, or by segments.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A rod with modes of torsion and of bending in both planes between two hinges of a planar loop: every coordinate out
 // of the plane that the modes give has a row of the loop that holds it, however slender the rod is.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A base that turns ten times with a flexible body on it: attitude and deflection after it are those of no turn; while
 // it turns, the beam bends as theory has it under centrifugal tension.
 #include "tests/support/nightly.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Accumulator against closed forms of the gas: discharge, energy, oscillation, heat exchange.
 #include "hydraulics/components/accumulator.h"
 

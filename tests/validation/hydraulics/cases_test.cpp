@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cases C01 to C04: closed forms of textbook hydraulics. Source, numbers and tolerances in each card comment.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Check valves in circuits with closed forms, in oil of constant bulk modulus.
 #include "hydraulics/components/check_valves.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counterbalance valve: its law by hand, and the limit at which it lowers a stiff load without oscillation, from the
 // linear model of docs/models/hydraulics_counterbalance_valve.md, which does not use the circuit's equations.
 #include "hydraulics/components/counterbalance_valve.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Friction of a joint that turns about a point: one law for all directions, in every formulation. A ball about its own
 // centre has M = I 1: Coulomb friction slows it down along its own direction by F_c/I, wherever that points.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All ways to compute the mechanics of a scene: each formulation with each of its integrators.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scenes of scenes/forces move as their comments predict, in both formulations: figures by hand.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // scenes/joints/gears.yaml: a motor, a pair of gears, a drum and two slides that go out together, in every formulation.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A damper as a joint's friction, under forces that inputs change from step to step and hold in between: against
 //   v(t + h) = F/c + (v(t) - F/c) exp(-c h/m),  x(t + h) = x(t) + F h/c - (v(t) - F/c) (exp(-c h/m) - 1) m/c
 // step by step. The rows' problem takes micro-steps of 0.25 ms of order 2 and stiffly accurate.

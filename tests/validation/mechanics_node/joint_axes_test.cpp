@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Friction and limits along the coordinates of universal and cylindrical joints, and of joints that close a loop, in
 // every formulation. A ball about the centre of a universal joint has M = I 1: its two axes are independent.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Joint friction by bristles: case D01 (stick-slip of Canudas de Wit 1995) on a rail, and what regularised friction
 // cannot do: hold.
 //

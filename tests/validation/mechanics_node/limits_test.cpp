@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Joint limits that a body runs into, from soft to far beyond what a sub-step resolves: the speed that it leaves with
 // against the closed form of m d'' = -max(0, k d + c d'), and no energy that the spring did not hold.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // scenes/joints/prescribed.yaml follows its laws in every formulation, and its clock starts again with a reset.
 #include <gtest/gtest.h>
 

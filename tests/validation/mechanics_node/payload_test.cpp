@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which body a machine lifts: the one at the end of its longest chain, in whatever order the file has its bodies, or
 // the one that the scene names.
 #include "mechanics_node/payload.h"

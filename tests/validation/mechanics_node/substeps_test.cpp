@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sub-steps inside of the communication step: every integrator of every formulation.
 #include <gtest/gtest.h>
 

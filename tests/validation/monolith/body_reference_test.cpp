@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two references of the mechanics against each other: joint coordinates under CVODE, body coordinates with
 // multipliers under IDA. They share the laws of elements and rows, and neither coordinates nor equations nor solver.
 #include "monolith/body_reference.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Eigenvalues of the whole flexible crane, valves and oil included, against the linear model that shares no code with
 // it (linear_crane.h). Card: docs/validation/crane_frequencies.md.
 #include <gtest/gtest.h>

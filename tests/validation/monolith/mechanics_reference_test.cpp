@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mechanics alone under CVODE against cases A05 and A08: the last digits that the references print.
 #include "monolith/mechanics_reference.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far the reference may be trusted: its difference from itself at tolerances ten times tighter. Coupling errors are
 // newtons and tenths of a micrometre, so the reference must be better by an order of magnitude (the coupling study
 // found 6e-10 m and 0.09 N between 1e-9 and 3e-10).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Angles of given rotations, as scenes write them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chains of rods on hinges: case A11 and the extremes.
 #pragma once
 

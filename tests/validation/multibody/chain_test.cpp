@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case A11: chains with extreme mass ratios, in every formulation.
 //
 // Ten rods of 1 kg and 0.5 m on hinges fall from the horizontal, alone and with 1000 kg at the tip: minimal-coordinate

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integrators under the formulations that have a choice of them. The gate takes each rule in joint coordinates and some
 // in body coordinates; the instantiation `Nightly` takes the rest.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The truck crane with a rigid jib (scenes/truck_crane.yaml has the same numbers), for tests of the mechanics alone.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The truck crane without hydraulics, and case F01.
 //
 // Static line forces: a planar rigid calculation made apart from any simulator (dummies off, bag plumb): 0.5 %.

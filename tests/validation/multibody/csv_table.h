@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reference tables of tests/validation/data: comma separated numbers, lines starting with # are text.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cylinders as two bodies each instead of masses on their line of force: a tube that hangs on body 1 by a universal
 // joint, a rod that slides in it, and a ball at body 2 that closes the loop.
 #pragma once

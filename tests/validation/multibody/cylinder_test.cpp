@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cylinder's masses on its line of force against the same cylinder as two real bodies in a loop: with no inertia
 // about the line both are the same mechanism, so positions, speeds and reactions must agree.
 #include "tests/validation/multibody/crane_def.h"

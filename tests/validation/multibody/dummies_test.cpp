@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Masses that elements carry: mass, momentum and inertia are those of a body of the same mass held there by a fixed
 // joint; tyres against statics, coasting and slip laws by hand.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Force elements against closed forms.
 //
 // Beam: case B01 (cantilever of 2 m, 0.1 m square, E 2.1e11, nu 0.3, 5/6): 1.5267809524e-3 m under 1 kN at its end with

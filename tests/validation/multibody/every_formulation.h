@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A case of the validation in every formulation, and its result beside the stated tolerance.
 //
 // With SLEWRING_FIGURES set every figure is printed as a row of the tables in docs/validation.

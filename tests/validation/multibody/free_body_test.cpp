@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cases A06 (torque-free asymmetric body) and A09 (heavy top), in every formulation.
 //
 // A06: Jacobi elliptic functions; invariants 1e-6 relative over 20 s, flip time 1e-3 s, attitude 1e-3.

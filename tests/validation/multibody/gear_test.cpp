@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gears against closed forms, under every formulation and integrator.
 //
 // Geared pendulums, q_2 = r q_1: (J_1 + r^2 J_2) q_1'' = -G_1 sin q_1 - r G_2 sin q_2, J about the pivot, G = m g l;

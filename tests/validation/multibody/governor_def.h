@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case A05: a flyball governor whose spring-dampers are a thousand times faster than its motion.
 #pragma once
 

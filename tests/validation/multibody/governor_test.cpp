@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case A05 (Chrono and Radau: 3e-11): flyball governor with struts of 8e5 N/m and 4e4 N s/m. Tolerance: slider within
 // 1e-3 m at 10 s, in sub-steps of 1 ms and of 2 ms; in 5 and 10 ms, where the explicit rules leave the page, the slow
 // motion's own error of the order h^2 shows.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case A10: single joints at rest, with the wrench that they put on Ground; how many rows each type has. Moving ones:
 // moving_joint_test.cpp.
 //

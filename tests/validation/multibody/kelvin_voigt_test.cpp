@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case D02, a spring and a damper side by side (Kelvin and Voigt): a mass of 1 kg runs into them and comes back with
 // the share e of its speed, counted where the spring is as long as before or where it would begin to pull. The force
 // elements' law: the spring-damper itself pulls on, its end damper lets go. Closed form, six digits; 1e-3.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mechanisms with loops: the N four-bars of case A02, the spatial slider-crank of case A08.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cases A02 (N four-bars through singular positions), A03 (Andrews' squeezer), A08 (spatial slider-crank).
 //
 // A02: IFToMM; the parallelogram branch is an ODE of one coordinate. Tolerances: position 1e-3 m at 10 s, energy 1e-4.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mechanism under test: model, state and workspace of a Def that must be sound.
 #pragma once
 

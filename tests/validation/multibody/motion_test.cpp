@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prescribed motion against closed forms, under every formulation and integrator.
 //
 // Driven pendulum: T = J q'' + m g l sin q. Arm with a bead that slides on it, turned at constant speed in the plane of

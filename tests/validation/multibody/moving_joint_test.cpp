@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case A10, section J of the cases: one body on one joint in motion, with the wrench that the joint puts on Ground, in
 // every formulation.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cases A01 (simple pendulum) and A07 (double pendulums), in every formulation.
 //
 // A01: IFToMM multibody benchmark A01; exact solution by Jacobi elliptic functions. Tolerances of the benchmark:

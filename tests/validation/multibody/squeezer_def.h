@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case A03: Andrews' squeezer.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Force elements far stiffer than the sub-step resolves, under the implicit rules: closed forms of their statics, no
 // energy from what pushes on one side only, and an iteration that ends soon because its matrix holds their slopes.
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Springs and stops far stiffer than the sub-step resolves, against their closed forms.
 #include "tests/validation/multibody/choices.h"
 #include "tests/validation/multibody/mechanism.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sensors of whole scenes: a falling ball in closed form, and the truck crane, whose physics they do not change.
 #include <gtest/gtest.h>
 

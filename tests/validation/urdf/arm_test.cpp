@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two-link arm of examples/urdf against Lagrange's equations written by hand.
 //
 // q1 of the upper arm from upright, q2 of the forearm from the upper arm, about +y; gravity along -z. With lengths L1,

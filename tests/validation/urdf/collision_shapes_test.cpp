@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collision geometry: where the shapes are, what becomes of meshes, and that the shapes touch.
 #include <fmt/format.h>
 

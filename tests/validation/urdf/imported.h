@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A URDF text as the mechanism of the scene that is made of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inertia of links whose inertial frames are turned: hand-transformed tensors, and masses on a rigid frame whose tensor
 // is summed in the link's axes directly.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every joint type of URDF: where the child is, which way it moves, and what becomes of links without mass.
 #include <fmt/format.h>
 

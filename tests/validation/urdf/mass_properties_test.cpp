@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mass properties judged by what fixed joints make one, repairs on request, and links that move without mass.
 // References: sums by hand with parallel axes; principal moments of diagonal tensors.
 #include <fmt/format.h>

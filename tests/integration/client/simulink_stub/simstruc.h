@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* As much of Simulink's C interface as examples/simulink/slewring_sfun.c uses: a block is a plain struct, which the
  * test fills and looks into. */
 #ifndef SIMULINK_STUB_SIMSTRUC_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contact of bodies that move freely: momentum stays, energy does not grow, both formulations agree, for all shapes and
 // motions.
 #include <gtest/gtest.h>

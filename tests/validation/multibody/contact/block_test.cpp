@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case D03 through the whole path: a block on an incline sticks or slips, stops on the flat, rests at its depth.
 #include <gtest/gtest.h>
 

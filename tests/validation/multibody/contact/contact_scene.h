@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies on a ground, as a scene defines them, moved by the Dynamics of any formulation.
 #pragma once
 

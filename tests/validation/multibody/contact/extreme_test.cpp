@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contact at its limits: each ends finite and bounded, or is named.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What contacts cost: the parts into which they divide a step of 1 ms. What rests or is pressed takes those of
 // contact_substep, however fast its load is damped, and follows the law all the same; a blow takes what it needs.
 //

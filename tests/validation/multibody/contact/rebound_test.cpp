@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case D02 through the whole path: a ball of a scene is thrown at the ground and comes back with the scene's
 // restitution.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scenes of the cases of section D, as the formulation under test moves them.
 #pragma once
 

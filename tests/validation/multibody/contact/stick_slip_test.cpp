@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Case D01 through a scene: a block dragged over a floor by a spring sticks and slips (Canudas de Wit et al. 1995, fig.
 // 5), in every formulation. Reference: data/lugre_stick_slip.csv, whose end is the published one of EXUDYN's
 // lugreFrictionODE1. Tolerances of the case: position 1e-3 m, onset of slip 0.02 s.

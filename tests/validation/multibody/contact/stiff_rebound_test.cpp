@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contacts far stiffer and more damped than `contact_substep` resolves: a touch may be missed in its details, but it
 // never gives back more than it took. The explicit rules find out on the way in how fast a contact will answer
 // (contact_rate.h), and what not even their shortest part resolves is refused with the scene.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mechanisms 1e5 m from the origin move as they do there, in every formulation. A double resolves 1.5e-11 m at that
 // place. Bounds and figures: docs/extremes.md.
 #include "tests/validation/multibody/chain_def.h"

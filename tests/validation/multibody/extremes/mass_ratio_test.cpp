@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mass ratios to a million, both ways, and long chains: against the equations of a planar chain (planar_chain.h) and
 // of the parallelogram's one coordinate, in every formulation. Bounds and figures: docs/extremes.md.
 #include "tests/support/nightly.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a run at the limits ended: right within a stated bound, or flagged; anything else is silent garbage.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/validation/multibody/extremes/planar_chain.h"
 
 #include <algorithm>

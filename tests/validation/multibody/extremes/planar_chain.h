@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Equations of motion of a chain of rods in a plane, written down for its absolute angles: a reference that shares no
 // code with the library.
 //

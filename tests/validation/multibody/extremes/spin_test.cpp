@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A free body that spins with 1e3 rad/s for 10 s, in every formulation: energy and angular momentum stay, and the
 // attitude of a body with two equal moments follows its closed form. Bounds and figures: docs/extremes.md.
 #include "tests/support/nightly.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Toggle positions within 1e-6 rad and full stretch, in every formulation. Bounds and figures: docs/extremes.md.
 #include "tests/validation/multibody/chain_def.h"
 #include "tests/validation/multibody/every_formulation.h"
