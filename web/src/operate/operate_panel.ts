@@ -41,6 +41,7 @@ export class OperatePanel {
     const { session } = context;
     this.#driver = new Driver(session);
     this.#keyboard = new Keyboard(this.#driver);
+    this.#keys.classList.add("keys");
     this.gamepad = new Gamepad(this.#driver);
     this.root = panel("operate", "Operate", [this.#keys, this.#pads, this.#gear], this.#sticks, this.#list, this.#map);
     const show = atMostEvery(kShowEveryMs, () => this.#show());

@@ -52,10 +52,13 @@ export class ParameterField {
   // A new value from the session; what the person is typing stays.
   take(parameter: Parameter): void {
     const isEdited = this.#isEdited;
+    const isOther = parameter.value !== this.#parameter.value; // changed by another client
     this.#parameter = parameter;
     if (!isEdited) this.#showValue();
-    if (parameter.step !== undefined && parameter.step > 0 && !this.root.classList.contains("is-refused"))
-      this.#note.textContent = `holds from step ${parameter.step}`;
+    if (isOther && !this.#isWaiting) {
+      this.root.classList.remove("is-refused");
+      this.#note.textContent = parameter.step === undefined ? "changed" : `holds from step ${parameter.step}`;
+    }
     this.#compare();
   }
 

@@ -89,7 +89,7 @@ export class TopBar {
     this.#saved.hidden = isRecording || !session.maySteer;
     const wanted = isPaused ? "Run" : "Pause";
     if (this.#run.textContent !== wanted) {
-      this.#run.replaceChildren(icon(isPaused ? "play" : "pause"), wanted);
+      this.#run.replaceChildren(icon(isPaused ? "play" : "pause"), h("span", {}, wanted));
       this.#run.title = wanted;
       this.#run.setAttribute("aria-label", wanted);
     }

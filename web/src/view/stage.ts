@@ -4,8 +4,10 @@ import * as THREE from "three";
 
 export type Graphics = "auto" | "high" | "low";
 
-const kSlowFrameMs = 45; // mean of a few frames; above it the quality is lowered
-const kMeasuredFrames = 12;
+const kSlowFrameMs = 35; // mean of a few frames; above it the quality is lowered
+const kMeasuredFrames = 6;
+const kPartOfTime = 0.5; // of the browser's main thread for drawing: the rest is for inputs and values
+const kCoarsePixels = 0.6; // pixels of the picture over those of the screen, when low graphics are still slow
 const themes = {
   light: { back: 0xe8ebee, shadow: 0.26, minor: 0xd5dade, major: 0xbcc3c9, hemisphere: 2.6, sun: 2.6, below: 0x9aa0a4 },
   dark: { back: 0x1a1f24, shadow: 0.5, minor: 0x262d34, major: 0x36404a, hemisphere: 1.9, sun: 2.3, below: 0x3a3f44 },
@@ -15,7 +17,6 @@ export class Stage {
   readonly scene = new THREE.Scene();
   readonly camera = new THREE.PerspectiveCamera(38, 1, 0.05, 2000);
   readonly canvas: HTMLCanvasElement;
-  beforeDrawing?: () => boolean; // true: another frame is needed after this one
 
   #renderer: THREE.WebGLRenderer;
   #sun = new THREE.DirectionalLight(0xffffff, 2);
@@ -26,8 +27,9 @@ export class Stage {
   #size = 0; // of the machine, for which the ground was made
   #isDark = false;
   #isWaiting = false;
+  #isStale = false; // something changed since the last frame
   #graphics: Graphics = "auto";
-  #isLow = false;
+  #level = 0; // 0 high, 1 low, 2 low with coarse pixels
   #durations: number[] = [];
 
   constructor(canvas: HTMLCanvasElement) {
@@ -46,10 +48,6 @@ export class Stage {
     this.setExtent(new THREE.Vector3(), 5, 0);
   }
 
-  get isLow(): boolean {
-    return this.#isLow;
-  }
-
   setTheme(isDark: boolean): void {
     this.#isDark = isDark;
     const theme = themes[isDark ? "dark" : "light"];
@@ -66,8 +64,7 @@ export class Stage {
   // auto: high until the frames are slow.
   setGraphics(graphics: Graphics): void {
     this.#graphics = graphics;
-    this.#durations = [];
-    this.#setLow(graphics === "low");
+    this.#setLevel(graphics === "low" ? 1 : 0);
   }
 
   // Light, ground and fog for a machine of this middle and radius [m] on a ground at this height.
@@ -91,15 +88,20 @@ export class Stage {
   }
 
   draw(): void {
+    this.#isStale = true;
     if (this.#isWaiting) return;
     this.#isWaiting = true;
     requestAnimationFrame(() => {
-      this.#isWaiting = false;
-      const needsMore = this.beforeDrawing?.() ?? false;
       const start = performance.now();
       this.#renderer.render(this.scene, this.camera);
-      if (this.#graphics === "auto" && !this.#isLow) this.#measure(start);
-      if (needsMore) this.draw();
+      this.#renderer.getContext().finish(); // a renderer in software returns before it has drawn
+      const duration = performance.now() - start;
+      this.#isStale = false;
+      setTimeout(() => {
+        this.#isWaiting = false;
+        if (this.#isStale) this.draw();
+      }, (duration * (1 - kPartOfTime)) / kPartOfTime);
+      if (this.#graphics === "auto") this.#measure(duration);
     });
   }
 
@@ -109,20 +111,21 @@ export class Stage {
     return new Promise((resolve) => this.canvas.toBlob(resolve, "image/png"));
   }
 
-  #measure(start: number): void {
-    const gl = this.#renderer.getContext();
-    gl.finish(); // a renderer in software returns before it has drawn
-    this.#durations.push(performance.now() - start);
+  #measure(duration: number): void {
+    this.#durations.push(duration);
     if (this.#durations.length < kMeasuredFrames) return;
-    const mean = this.#durations.slice(2).reduce((sum, d) => sum + d, 0) / (kMeasuredFrames - 2);
-    if (mean > kSlowFrameMs) this.#setLow(true);
-    this.#graphics = "high"; // measured once
+    // without the first, in which programs are compiled
+    const mean = this.#durations.slice(1).reduce((sum, one) => sum + one, 0) / (kMeasuredFrames - 1);
+    this.#durations = [];
+    if (mean > kSlowFrameMs && this.#level < 2) this.#setLevel(this.#level + 1);
   }
 
-  #setLow(isLow: boolean): void {
-    this.#isLow = isLow;
-    this.#renderer.setPixelRatio(isLow ? 1 : Math.min(2, window.devicePixelRatio));
-    this.#renderer.shadowMap.enabled = !isLow;
+  #setLevel(level: number): void {
+    this.#level = level;
+    this.#durations = [];
+    const pixels = Math.min(2, window.devicePixelRatio);
+    this.#renderer.setPixelRatio(level === 0 ? pixels : level === 1 ? 1 : kCoarsePixels);
+    this.#renderer.shadowMap.enabled = level === 0;
     this.#sun.shadow.mapSize.setScalar(2048);
     this.scene.traverse((object) => {
       if (object instanceof THREE.Mesh) for (const one of [object.material].flat()) one.needsUpdate = true;
