@@ -19,11 +19,12 @@ import { menuOf } from "./panels/menu";
 import { ObjectPanel } from "./panels/object";
 import { PlaybackBar } from "./panels/playback_bar";
 import { TopBar } from "./panels/top_bar";
-import { TreePanel } from "./panels/tree";
-import { PlotsPanel } from "./plots/plots_panel";
+import { TreePanel, usualClosed } from "./panels/tree";
+import { PlotsPanel, type PlotsState } from "./plots/plots_panel";
 import { Session } from "./session";
 import { ViewPanel } from "./view/view_panel";
-import { forgetWorkspace, keepWorkspace, keptWorkspace, kVersion, parseWorkspace, type Workspace } from "./workspace";
+import { kVersion, parseWorkspace, type Workspace } from "./workspace";
+import { WorkspaceStore } from "./workspace_store";
 
 const kKeepAfterMs = 500;
 
@@ -48,7 +49,9 @@ const layout = new Layout(
 
 // ---- workspace
 
+const store = new WorkspaceStore(session);
 let scene: string | undefined; // whose workspace is shown
+let isLoaded = false;
 let timer: ReturnType<typeof setTimeout> | undefined;
 
 function workspace(): Workspace {
@@ -75,29 +78,33 @@ function show(wanted: Workspace): void {
 }
 
 function keepSoon(): void {
-  if (scene === undefined) return;
+  if (!isLoaded) return;
   clearTimeout(timer);
-  timer = setTimeout(() => keepWorkspace(scene!, workspace()), kKeepAfterMs);
+  timer = setTimeout(() => void store.save(scene!, workspace()), kKeepAfterMs);
 }
 
 // Some plots to begin with: what an operator watches first.
-function usualPlots(): string[][] {
+function usualPlots(): PlotsState {
   const named = (label: string) =>
     [...session.elements.values()].flat().filter((one) => one.label === label && one.element !== "session");
   const strokes = named("stroke").slice(0, 4);
   const forces = named("force").filter((one) => strokes.some((stroke) => stroke.element === one.element));
   const bodies = named("position.y").slice(-1);
   const first = strokes.length > 0 ? strokes : bodies;
-  return [first, forces].filter((list) => list.length > 0).map((list) => list.map((one) => one.name));
+  const lists = [first, forces].filter((list) => list.length > 0);
+  return { length: session.isRecording ? null : 10, plots: lists.map((list) => list.map((one) => one.name)) };
 }
 
 session.changed.on(() => {
   const known = session.description?.scene;
   if (known === undefined || session.elements.size === 0 || known === scene) return;
   scene = known;
-  const kept = keptWorkspace(scene);
-  if (kept) show(kept);
-  else plots.state = { length: session.isRecording ? null : 10, plots: usualPlots() };
+  isLoaded = false;
+  void store.load(scene).then((kept) => {
+    if (kept) show(kept);
+    else plots.state = usualPlots();
+    isLoaded = true;
+  });
 });
 context.workspaceChanged.on(keepSoon);
 
@@ -115,9 +122,15 @@ const menu = menuOf(context, {
     }
   },
   reset: () => {
-    if (scene !== undefined) forgetWorkspace(scene);
-    scene = undefined; // what is shown is not kept again
-    location.reload();
+    if (scene === undefined) return;
+    store.forget(scene);
+    context.theme = "auto";
+    context.units = "engineering";
+    layout.sizes = {};
+    tree.closed = usualClosed;
+    view.state = { follow: "", graphics: "auto" };
+    plots.state = usualPlots();
+    operate.map = {};
   },
 });
 

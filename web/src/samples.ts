@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The values that came so far of the plotted variables: one column a variable over common times.
+// The values that came so far of the recorded elements: one column a variable over common times.
 //
 // Values of a session come in the order of time; those of a recording also go back. A time that is there already keeps
 // its row. Beyond kMostRows the oldest tenth is dropped.
@@ -23,12 +23,9 @@ export class Samples {
   readonly times: number[] = [];
   readonly columns = new Map<string, Column>();
 
-  add(variable: string): void {
-    if (!this.columns.has(variable)) this.columns.set(variable, new Array<null>(this.times.length).fill(null));
-  }
-
-  remove(variable: string): void {
-    this.columns.delete(variable);
+  // All variables of an element.
+  remove(element: string): void {
+    for (const name of this.columns.keys()) if (name.startsWith(`${element}.`)) this.columns.delete(name);
   }
 
   put(time: number, values: Iterable<[string, number | null]>): void {
@@ -41,8 +38,9 @@ export class Samples {
       }
     }
     for (const [name, value] of values) {
-      const column = this.columns.get(name);
-      if (column) column[row] = value;
+      let column = this.columns.get(name);
+      if (!column) this.columns.set(name, (column = new Array<null>(this.times.length).fill(null)));
+      column[row] = value;
     }
     if (this.times.length > kMostRows) {
       this.times.splice(0, kMostRows / 10);

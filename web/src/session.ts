@@ -68,7 +68,7 @@ export class Session {
   #channels = new Map<string, ChannelInfo>(); // by topic
   #wanted = new Map<string, Set<(message: Message) => void>>(); // by topic
   #subscriptions = new Map<string, number>(); // by topic
-  #plotted = new Map<string, { count: number; end: () => void }>(); // by variable
+  #recorded = new Map<string, { count: number; end: () => void }>(); // by element
   #answers = new Map<string, (answer: { parameter?: Parameter; problem?: string }) => void>(); // by request
   #problems = new Map<string, string>(); // of refused parameters
   #inputChannels = new Map<string, number>();
@@ -143,27 +143,25 @@ export class Session {
     });
   }
 
-  // Keeps all values of a variable from now on.
-  record(variable: string): () => void {
-    let plotted = this.#plotted.get(variable);
-    if (!plotted) {
-      this.samples.add(variable);
-      const element = variable.slice(0, variable.indexOf("."));
-      const values: Values = new Map();
+  // Keeps all values of an element from now on, and those that it has already for others.
+  record(element: string): () => void {
+    let recorded = this.#recorded.get(element);
+    if (!recorded) {
       const end = this.subscribe(`/${element}`, (message) => {
-        readValues(element, message.value, values);
-        this.samples.put(message.time, [[variable, values.get(variable) ?? null]]);
+        readValues(element, message.value, this.values);
+        const names = this.elements.get(element) ?? [];
+        this.samples.put(message.time, names.map(({ name }) => [name, this.values.get(name) ?? null]));
         this.valuesChanged.emit();
       });
-      this.#plotted.set(variable, (plotted = { count: 0, end }));
+      this.#recorded.set(element, (recorded = { count: 0, end }));
     }
-    const mine = plotted;
+    const mine = recorded;
     ++mine.count;
     return () => {
       if (--mine.count > 0) return;
       mine.end();
-      this.#plotted.delete(variable);
-      this.samples.remove(variable);
+      this.#recorded.delete(element);
+      this.samples.remove(element);
     };
   }
 
@@ -197,9 +195,10 @@ export class Session {
 
   // ---- session
 
-  // The address of a file of this window.
+  // The address of a file of this window; also of an asset by its name in the protocol.
   urlOf(path: string): string {
-    return new URL(path, location.href).href + this.#query();
+    const asset = /^package:\/\/slewring\/(.*)$/.exec(path)?.[1];
+    return new URL(asset === undefined ? path : `/assets/${asset}`, location.href).href + this.#query();
   }
 
   #query(): string {
@@ -220,7 +219,7 @@ export class Session {
       this.log.length = 0;
       if (info.capabilities.includes("parameters")) this.protocol.getParameters();
       try {
-        this.description = (await (await fetch(`session.json${this.#query()}`)).json()) as Description;
+        this.description = (await (await fetch(this.urlOf("session.json"))).json()) as Description;
       } catch (error) {
         this.noticed.emit({ level: 2, message: `the description of the session did not come: ${String(error)}` });
       }
@@ -264,16 +263,16 @@ export class Session {
 
   // ---- services and inputs
 
-  async call(service: string, request: object = {}): Promise<ServiceAnswer> {
+  async call<T extends ServiceAnswer = ServiceAnswer>(service: string, request: object = {}): Promise<T> {
     try {
-      const answer = (await this.protocol.call(service, request)) as ServiceAnswer;
+      const answer = (await this.protocol.call(service, request)) as T;
       if (answer.accepted === false)
         this.noticed.emit({ level: 2, message: `${service}: refused: ${answer.reason}` });
       return answer;
     } catch (error) {
       const reason = (error as Error).message;
       this.noticed.emit({ level: 2, message: `${service}: ${reason}` });
-      return { accepted: false, step: -1, reason };
+      return { accepted: false, step: -1, reason } as T;
     }
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person arranged, as JSON with a version: kept in this browser for each scene, and as a file.
+// What a person arranged, as JSON with a version.
 import type { GamepadMap } from "./operate/gamepad";
 import type { Theme } from "./context";
 import type { PlotsState } from "./plots/plots_panel";
@@ -72,31 +72,4 @@ export function parseWorkspace(text: string): Workspace {
   ];
   for (const [name, isRight] of parts) if (!isRight) throw new Error(`its part '${name}' is missing or damaged`);
   return json as unknown as Workspace;
-}
-
-const keyOf = (scene: string) => `slewring.workspace.${scene}`;
-
-export function keptWorkspace(scene: string): Workspace | undefined {
-  try {
-    const text = localStorage.getItem(keyOf(scene));
-    return text === null ? undefined : parseWorkspace(text);
-  } catch {
-    return undefined; // of an older version, or no storage: the page begins as for a new scene
-  }
-}
-
-export function keepWorkspace(scene: string, workspace: Workspace): void {
-  try {
-    localStorage.setItem(keyOf(scene), JSON.stringify(workspace));
-  } catch {
-    // a browser that keeps nothing: the file is the other way
-  }
-}
-
-export function forgetWorkspace(scene: string): void {
-  try {
-    localStorage.removeItem(keyOf(scene));
-  } catch {
-    // nothing was kept
-  }
 }

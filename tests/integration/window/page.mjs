@@ -239,6 +239,10 @@ async function isNeutralWhenSuspended(page, context) {
 
 async function readsAPlot(page) {
   await select(page, "Bag");
+  // the plot begins with what was seen in the panel
+  const time = async () => Number.parseFloat(await page.locator(".top .time").textContent());
+  const start = await time();
+  await waitFor("twelve seconds", async () => (await time()) > start + 12);
   const plot = page.locator(".plot").first();
   const row = page.locator(".values tr", { has: page.locator('.name:text-is("position.y")') });
   await row.dragTo(plot.locator(".chart"));

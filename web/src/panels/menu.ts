@@ -76,7 +76,7 @@ export function menuOf(context: Context, actions: WorkspaceActions): HTMLElement
       h(
         "p",
         { class: "help" },
-        "The workspace (panels, camera, plots, theme, gamepad) is kept in this browser for each scene.",
+        "The workspace (panels, camera, plots, theme, gamepad) is kept for each scene.",
       ),
     ),
   );

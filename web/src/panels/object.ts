@@ -61,7 +61,7 @@ export class ObjectPanel {
       sections.push(
         h("section", {}, h("h3", {}, "Values"), h("table", { class: "values" }, h("tbody", {}, ...rows))),
       );
-      this.#stopWatching = session.watch(selected);
+      this.#stopWatching = session.record(selected); // a plot of it begins with what was seen here
     }
     if (sections.length === 0) sections.push(h("p", { class: "empty" }, "This element has no variables."));
     this.#body.replaceChildren(...sections);

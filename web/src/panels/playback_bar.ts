@@ -3,6 +3,7 @@
 import type { Context } from "../context";
 import { atMostEvery, h, setText } from "../dom";
 import { icon } from "../icons";
+import type { ServiceAnswer } from "../protocol";
 import { formatTime } from "../units";
 import { toolButton } from "./panel";
 
@@ -17,6 +18,11 @@ export class PlaybackBar {
   #slider = h("input", { type: "range", min: "0", max: "1", step: "0.001", "aria-label": "Time of the recording" });
   #speed = h("select", { title: "Speed over real time", "aria-label": "Speed" });
   #end = h("span", { class: "number" });
+  #takeOver = h(
+    "button",
+    { type: "button", title: "Start a live session that goes on from this time", onclick: () => void this.#goLive() },
+    "Take over",
+  );
   #isDragging = false;
 
   constructor(context: Context) {
@@ -36,7 +42,15 @@ export class PlaybackBar {
       this.#slider.value = String(Number(this.#slider.value) + direction * kStepSeconds * (event.shiftKey ? 10 : 1));
       seek();
     };
-    this.root = h("footer", { class: "playback", hidden: true }, this.#play, this.#slider, this.#end, this.#speed);
+    this.root = h(
+      "footer",
+      { class: "playback", hidden: true },
+      this.#play,
+      this.#slider,
+      this.#end,
+      this.#speed,
+      this.#takeOver,
+    );
     const show = atMostEvery(kShowEveryMs, () => this.#show());
     for (const event of [session.changed, session.valuesChanged, session.playbackChanged]) event.on(show);
   }
@@ -48,11 +62,22 @@ export class PlaybackBar {
     else session.controlPlayback({ isPlaying: status !== "playing" });
   }
 
+  // The steps up to this time are computed again, which takes a while.
+  async #goLive(): Promise<void> {
+    const { session } = this.#context;
+    this.#takeOver.disabled = true;
+    session.noticed.emit({ level: 0, message: "the recorded steps up to this time are computed again" });
+    const answer = await session.call<ServiceAnswer & { page: string }>("take_over", { time: session.time });
+    this.#takeOver.disabled = false;
+    if (answer.accepted && answer.page) location.assign(answer.page);
+  }
+
   #show(): void {
     const { session } = this.#context;
     const range = session.info?.range;
     this.root.hidden = range === undefined;
     if (!range) return;
+    this.#takeOver.hidden = !session.protocol.services.has("take_over");
     this.#slider.min = String(range.from);
     this.#slider.max = String(range.to);
     if (!this.#isDragging) this.#slider.value = String(session.time);

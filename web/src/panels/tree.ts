@@ -11,6 +11,8 @@ interface Row {
   names: string; // what the filter looks at, in lower case
 }
 
+export const usualClosed: string[] = ["Contacts", "Volumes", "Session"];
+
 export class TreePanel {
   readonly root: HTMLElement;
   #context: Context;
@@ -18,7 +20,7 @@ export class TreePanel {
   #filter = h("input", { type: "search", placeholder: "Filter", "aria-label": "Show elements that contain" });
   #count = h("span", { class: "count" });
   #groups = new Map<Kind, Row[]>();
-  #closed = new Set<string>(["Contacts", "Volumes", "Session"]);
+  #closed = new Set(usualClosed);
 
   constructor(context: Context) {
     this.#context = context;

@@ -113,7 +113,7 @@ export class Plot {
       unit,
       remove,
     );
-    this.#lines.push({ name, color, stop: this.#context.session.record(name), root, value, unit });
+    this.#lines.push({ name, color, stop: this.#context.session.record(name.slice(0, name.indexOf("."))), root, value, unit });
     this.#legend.append(root);
     this.rebuild();
     this.changed.emit();

@@ -139,8 +139,11 @@ export class Machine {
     this.#loader ??= import("three/addons/loaders/GLTFLoader.js").then((module) => new module.GLTFLoader());
     const loader = await this.#loader;
     const { scene } = await loader.loadAsync(session.urlOf(model.url));
-    scene.scale.set(model.scale.x, model.scale.y, model.scale.z);
-    place(scene, model.pose);
+    // as Foxglove does: y of the file, which is up, becomes z
+    scene.rotation.x = Math.PI / 2;
+    const placed = new THREE.Group().add(scene);
+    placed.scale.set(model.scale.x, model.scale.y, model.scale.z);
+    place(placed, model.pose);
     scene.traverse((object) => {
       if (!(object instanceof THREE.Mesh)) return;
       object.castShadow = true;
@@ -149,6 +152,6 @@ export class Machine {
       if (model.override_color && object.material instanceof THREE.MeshStandardMaterial)
         object.material.color.setRGB(model.color.r, model.color.g, model.color.b, THREE.SRGBColorSpace);
     });
-    return scene;
+    return placed;
   }
 }
