@@ -24,8 +24,8 @@ interface Border {
 const borders: Border[] = [
   { name: "left", usual: 280, least: 180, isVertical: true, sign: 1 },
   { name: "right", usual: 300, least: 220, isVertical: true, sign: -1 },
-  { name: "plots", usual: 300, least: 120, isVertical: false, sign: -1 },
-  { name: "object", usual: 380, least: 100, isVertical: false, sign: -1 },
+  { name: "plots", usual: Math.round(0.43 * window.innerHeight), least: 120, isVertical: false, sign: -1 },
+  { name: "object", usual: Math.round(0.48 * window.innerHeight), least: 100, isVertical: false, sign: -1 },
   { name: "log", usual: 220, least: 80, isVertical: false, sign: -1 },
 ];
 const kKeyStep = 16; // px

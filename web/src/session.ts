@@ -47,7 +47,6 @@ export class Session {
   readonly logged = new Emitter();
   readonly noticed = new Emitter<Status>(); // for the person at the page
   readonly restarted = new Emitter(); // a reset or a loaded state: the time begins anew
-  readonly sought = new Emitter(); // the time of a recording went back or jumped
   readonly playbackChanged = new Emitter();
 
   info?: ServerInfo;
@@ -230,7 +229,12 @@ export class Session {
   #takeTime(time: number): void {
     const step = time - this.time;
     this.time = time;
-    if (this.isRecording && (step < 0 || step > 1)) this.sought.emit();
+    if (this.isRecording && step < 0) {
+      // events are recorded ones: they come again
+      const kept = this.log.filter((entry) => entry.time <= time);
+      this.log.splice(0, this.log.length, ...kept);
+      this.logged.emit();
+    }
     this.valuesChanged.emit();
   }
 

@@ -249,7 +249,7 @@ async function readsAPlot(page) {
   await plot.locator('[data-variable="Bag.position.y"]').waitFor();
   await plot.locator('[aria-label="Two cursors with differences"]').click();
   await waitFor("differences of the cursors", async () =>
-    /A -?[\d.]+ +B -?[\d.]+ +B−A -?[\d.]/.test(await plot.locator('[data-variable="Bag.position.y"] .number').textContent()));
+    /A -?[\d.]+ +B -?[\d.]+ +Δ -?[\d.]/.test(await plot.locator('[data-variable="Bag.position.y"] .number').textContent()));
   const box = await plot.locator(".u-over").boundingBox();
   await page.mouse.move(box.x + box.width * 0.5, box.y + 20);
   await page.mouse.down();

@@ -77,7 +77,7 @@ export class OperatePanel {
   #build(): void {
     const { session } = this.#context;
     const inputs = session.description?.inputs ?? [];
-    const names = JSON.stringify([session.maySteer, inputs]);
+    const names = JSON.stringify([session.maySteer, session.isRecording, inputs]);
     if (names === this.#names) return;
     this.#names = names;
     this.#rows = [];
@@ -117,7 +117,7 @@ export class OperatePanel {
         h("b", {}, name),
         value,
         h("div", { class: "control" }, keys && h("kbd", {}, keys[1]), track, keys && h("kbd", {}, keys[0])),
-        holder,
+        !session.isRecording && holder,
         isDriven && button,
       ),
     );

@@ -100,7 +100,7 @@ export class Chart {
     const grid = { stroke: this.#context.color("--grid"), width: 1 };
     const font = "11px system-ui, sans-serif";
     const axes: uPlot.Axis[] = [
-      { stroke: text, grid, ticks: grid, font, size: 26, values: (_, splits) => splits.map((t) => `${+t.toFixed(4)} s`) },
+      { stroke: text, grid, ticks: grid, font, size: 24, space: 60, values: (_, splits) => splits.map((t) => `${+t.toFixed(4)} s`) },
     ];
     const scales: uPlot.Scales = { x: { time: false, auto: false } };
     units.forEach((unit, i) => {
@@ -113,6 +113,7 @@ export class Chart {
         ticks: grid,
         font,
         size: 52,
+        space: 24,
         label: unit || undefined,
         labelSize: unit ? 15 : 0,
         labelGap: 0,

@@ -27,13 +27,13 @@ export class Plot {
   readonly removed = new Emitter();
   readonly used = new Emitter(); // the person has touched it
   readonly changed = new Emitter(); // its variables
+  readonly noted = new Emitter<string>(); // what stands at the pointer and the cursors
   #context: Context;
   #axis: TimeAxis;
   #lines: Line[] = [];
   #cursors = new CursorLines();
   #chart: Chart;
   #legend = h("div", { class: "legend" });
-  #note = h("div", { class: "plot-note" });
   #host = h("div", { class: "chart" });
   #empty = h("p", { class: "empty" }, "Drag variables here, or add one by its name.");
 
@@ -81,11 +81,13 @@ export class Plot {
       },
       h("div", { class: "plot-head" }, this.#legend, h("div", { class: "tools" }, entry, ...tools)),
       this.#host,
-      this.#note,
       this.#empty,
     );
-    this.#chart.hovered.on(() => this.#showValues());
-    this.#cursors.moved.on(() => this.#showValues());
+    for (const event of [this.#chart.hovered, this.#cursors.moved])
+      event.on(() => {
+        this.#showValues();
+        this.noted.emit(this.#noteText());
+      });
   }
 
   get variables(): string[] {
@@ -163,24 +165,25 @@ export class Plot {
       if (times) {
         const [a, b] = times.map(at);
         const difference = a === undefined || b === undefined ? undefined : b - a;
-        setText(line.value, `A ${shown(a)}  B ${shown(b)}  B−A ${shown(difference)}`);
+        setText(line.value, `A ${shown(a)}  B ${shown(b)}  Δ ${shown(difference)}`);
       } else {
         setText(line.value, shown(at(hover ?? (this.#axis.isFollowing ? session.time : this.#axis.range[1]))));
       }
       setText(line.unit, unit.text);
     }
-    setText(this.#note, this.#noteText(hover, times));
   }
 
-  #noteText(hover: number | undefined, times: [number, number] | undefined): string {
+  #noteText(): string {
     const parts: string[] = [];
+    const times = this.#cursors.times;
+    const hover = this.#chart.hoverTime;
     if (times) {
       const [a, b] = times;
-      parts.push(`A ${a.toFixed(4)} s, B ${b.toFixed(4)} s, B−A ${(b - a).toFixed(4)} s`);
+      parts.push(`A ${a.toFixed(3)} s  B ${b.toFixed(3)} s  Δ ${(b - a).toFixed(3)} s`);
     }
     if (hover !== undefined && this.#lines[0]) {
       const sample = this.#context.session.samples.valueAt(this.#lines[0].name, hover);
-      if (sample) parts.push(`sample at ${sample.time.toFixed(4)} s`);
+      if (sample) parts.push(`sample at ${sample.time.toFixed(3)} s`);
       for (const entry of this.#chart.eventsNear(hover)) parts.push(`${entry.source}: ${entry.text}`);
     }
     return parts.join("   ");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All plots, over one time.
 import type { Context } from "../context";
-import { h } from "../dom";
+import { h, setText } from "../dom";
 import { icon } from "../icons";
 import { panel, toolButton } from "../panels/panel";
 import { Plot } from "./plot";
@@ -33,6 +33,7 @@ export class PlotsPanel {
   #names = h("datalist", { id: "variables" });
   #length = h("select", { title: "Time that is shown", "aria-label": "Time that is shown" });
   #pause = toolButton("pause", "Hold the plots; samples go on", () => this.#togglePause());
+  #note = h("span", { class: "plot-note number" });
   #isWaiting = false;
   #isStale = false; // something changed while waiting
 
@@ -48,13 +49,12 @@ export class PlotsPanel {
     this.root = panel(
       "plots",
       "Plots",
-      [this.#length, this.#pause, toolButton("plus", "Add a plot", () => this.#addPlot())],
+      [this.#note, this.#length, this.#pause, toolButton("plus", "Add a plot", () => this.#addPlot())],
       this.#list,
       this.#names,
     );
     this.#axis.changed.on(() => this.#showAxis());
     session.valuesChanged.on(() => this.draw());
-    session.sought.on(() => this.draw());
     session.changed.on(() => this.#offerNames());
     context.themeChanged.on(() => this.#rebuild());
     context.unitsChanged.on(() => this.#rebuild());
@@ -99,6 +99,7 @@ export class PlotsPanel {
     const plot = new Plot(this.#context, this.#axis);
     plot.used.on(() => (this.#last = plot));
     plot.changed.on(() => this.#context.workspaceChanged.emit());
+    plot.noted.on((text) => setText(this.#note, text));
     plot.removed.on(() => {
       this.#removePlot(plot);
       if (this.#plots.length === 0) this.#addPlot();

@@ -65,7 +65,7 @@ export class Machine {
         const material = (object as THREE.Mesh).material;
         if (material instanceof THREE.MeshStandardMaterial) {
           material.emissive.copy(color);
-          material.emissiveIntensity = isChosen ? 0.45 : 0;
+          material.emissiveIntensity = isChosen ? 0.3 : 0;
         }
       });
     }
