@@ -118,7 +118,7 @@ export class Chart {
         labelSize: unit ? 15 : 0,
         labelGap: 0,
         labelFont: font,
-        values: (_, splits) => splits.map((value) => shortNumber(value)),
+        values: (_, splits, _axis, _space, increment) => splits.map((value) => axisNumber(value, increment)),
       });
       scales[scale] = {
         range: (_, min, max) => this.#yRanges.get(scale) ?? padded(min, max),
@@ -270,15 +270,16 @@ function lastBefore(plot: uPlot, which: number, near: number, time: number): num
 function padded(min: number | null, max: number | null): [number, number] {
   if (min === null || max === null || !Number.isFinite(min) || !Number.isFinite(max)) return [-1, 1];
   // noise in the last digits of a constant is no range
-  const least = 1e-6 * Math.max(Math.abs(min), Math.abs(max), 1e-9);
+  const least = 1e-4 * Math.max(Math.abs(min), Math.abs(max), 1e-9);
   const half = Math.max((max - min) / 2, least);
   const middle = (min + max) / 2;
   return [middle - 1.12 * half, middle + 1.12 * half];
 }
 
-function shortNumber(value: number): string {
+// With as many digits as two neighbours on the axis need.
+function axisNumber(value: number, increment: number): string {
   if (value === 0) return "0";
-  const size = Math.abs(value);
-  return size >= 1e5 || size < 1e-3 ? value.toExponential(2) : String(+value.toPrecision(6));
+  const digits = Math.max(0, -Math.floor(Math.log10(increment) + 1e-9));
+  if (Math.abs(value) >= 1e5 || digits > 5) return value.toExponential(2);
+  return String(+value.toFixed(digits));
 }
-

@@ -22,7 +22,7 @@ export class Machine {
   #frames = new Map<string, THREE.Group>();
   #entities = new Map<string, THREE.Object3D>();
   #loader?: Promise<GLTFLoader>;
-  groundHeight = 0; // in World
+  #groundHeight?: number; // in World; undefined: the scene has no ground
   isPosed = false;
 
   constructor(session: Session, changed: () => void, rebuilt: () => void) {
@@ -71,16 +71,16 @@ export class Machine {
     }
   }
 
-  // Sphere around everything but the ground.
-  extent(): THREE.Sphere {
+  // Sphere around everything but the ground, and the height of the ground: without one the lowest point, at most 0.
+  extent(): { center: THREE.Vector3; radius: number; ground: number } {
     const box = new THREE.Box3();
     this.root.updateMatrixWorld(true);
     this.#replaceGround();
     for (const [id, entity] of this.#entities) if (id !== "Ground") box.expandByObject(entity);
     if (box.isEmpty()) box.expandByPoint(new THREE.Vector3()).expandByScalar(1);
     const sphere = box.getBoundingSphere(new THREE.Sphere());
-    sphere.radius = Math.max(sphere.radius, 0.05);
-    return sphere;
+    const ground = this.#groundHeight ?? Math.min(0, box.min.z);
+    return { center: sphere.center, radius: Math.max(sphere.radius, 0.05), ground };
   }
 
   #pose(transforms: Transform[]): void {
@@ -123,6 +123,7 @@ export class Machine {
 
   // The page has a ground of its own: it takes the place and the height of the scene's.
   #replaceGround(): void {
+    this.#groundHeight = undefined;
     for (const part of this.#entities.get("Ground")?.children[0]?.children ?? []) {
       const isBox = part instanceof THREE.Mesh && part.geometry.getAttribute("position").count <= kBoxCorners;
       const box = new THREE.Box3().setFromObject(part);
@@ -130,7 +131,7 @@ export class Machine {
       const width = Math.min(size.x, size.y);
       if (!isBox || width < kGroundWidth || size.z > kGroundFlatness * width) continue;
       part.visible = false;
-      this.groundHeight = box.max.z;
+      this.#groundHeight = box.max.z;
     }
   }
 

@@ -119,8 +119,8 @@ export class ViewPanel {
   }
 
   #setExtent(): void {
-    const { center, radius } = this.#machine.extent();
-    this.#stage.setExtent(center, radius, Math.min(this.#machine.groundHeight, center.z));
+    const { center, radius, ground } = this.#machine.extent();
+    this.#stage.setExtent(center, radius, ground);
   }
 
   #look(preset: Preset): void {
