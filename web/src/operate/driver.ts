@@ -17,6 +17,7 @@ interface Driven {
   wishes: Map<Source, number>;
   lease: Lease;
   sendUntil: number; // ms, monotonic
+  isConfirmed: boolean; // the session's state has shown this page as the holder
   wasRefused: boolean; // not requested again before the input was at neutral
 }
 
@@ -32,7 +33,7 @@ export class Driver {
     this.#session = session;
     session.changed.on(() => this.#takeInputs());
     session.stateChanged.on(() => this.#takeHolders());
-    session.restarted.on(() => this.neutralize());
+    session.restarted.on(() => this.#forgetLeases()); // a reset frees all inputs
     document.addEventListener("visibilitychange", () => (document.hidden ? this.#stop() : this.#start()));
     for (const name of ["pagehide", "freeze"]) window.addEventListener(name, () => this.#stop());
     for (const name of ["pageshow", "resume"]) window.addEventListener(name, () => this.#start());
@@ -71,8 +72,9 @@ export class Driver {
     this.changed.emit();
     const answer = await this.#session.call("lease", { input, take_over: takeOver });
     driven.lease = answer.accepted ? "mine" : "free";
+    driven.isConfirmed = false;
     driven.wasRefused = !answer.accepted;
-    this.#takeHolders();
+    this.changed.emit(); // the state of the session, which is older, follows
   }
 
   async release(input: string): Promise<void> {
@@ -87,15 +89,25 @@ export class Driver {
 
   #takeInputs(): void {
     if (!this.#session.isConnected) {
-      for (const driven of this.#inputs.values()) driven.lease = "free";
+      this.#forgetLeases();
       this.#ownName = undefined;
-      this.neutralize();
     }
     for (const { name, is_lockstep } of this.#session.description?.inputs ?? []) {
       if (!is_lockstep && !this.#inputs.has(name))
-        this.#inputs.set(name, { wishes: new Map(), lease: "free", sendUntil: 0, wasRefused: false });
+        this.#inputs.set(name, {
+          wishes: new Map(),
+          lease: "free",
+          sendUntil: 0,
+          isConfirmed: false,
+          wasRefused: false,
+        });
     }
     this.changed.emit();
+  }
+
+  #forgetLeases(): void {
+    for (const driven of this.#inputs.values()) driven.lease = "free";
+    this.neutralize();
   }
 
   #takeHolders(): void {
@@ -103,11 +115,12 @@ export class Driver {
       const holder = this.holder(input);
       if (driven.lease === "mine" && holder !== "") this.#ownName ??= holder;
       if (driven.lease === "requested") continue;
-      if (holder === "") {
-        // the state may be older than the answer to the request
-        if (driven.lease === "other") driven.lease = "free";
-      } else {
+      if (holder !== "") {
         driven.lease = holder === this.#ownName ? "mine" : "other";
+        driven.isConfirmed = driven.lease === "mine";
+      } else if (driven.lease === "other" || driven.isConfirmed) {
+        driven.lease = "free"; // else the state is older than the answer to the request
+        driven.isConfirmed = false;
       }
     }
     this.changed.emit();

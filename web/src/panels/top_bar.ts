@@ -23,7 +23,7 @@ export class TopBar {
   constructor(context: Context, menu: Child) {
     this.#context = context;
     const { session } = context;
-    const step = toolButton("step", "Compute so many steps, then stay paused", () => void this.#step_(), "Step");
+    const step = toolButton("step", "Compute so many steps, then stay paused", () => void this.#runSteps(), "Step");
     const reset = toolButton("reset", "Begin again from the start", () => void session.call("reset"), "Reset");
     const name = h("input", { type: "text", value: "state", title: "Name of the saved state", "aria-label": "Name of the saved state", spellcheck: false });
     const keep = (service: string, text: string, title: string) =>
@@ -59,7 +59,7 @@ export class TopBar {
     await session.call(session.state?.is_paused ? "resume" : "pause");
   }
 
-  async #step_(): Promise<void> {
+  async #runSteps(): Promise<void> {
     const { session } = this.#context;
     const steps = Math.max(1, Math.round(Number(this.#steps.value) || 1));
     if (!session.state?.is_paused && !(await session.call("pause")).accepted) return;

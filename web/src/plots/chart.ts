@@ -224,11 +224,12 @@ export class Chart {
     const scale = window.devicePixelRatio;
     const at = (time: number) => plot.valToPos(time, "x", true);
     const isVisible = (x: number) => x >= left && x <= left + width;
+    const [usual, bad] = [this.#context.color("--mark"), this.#context.color("--bad")];
     ctx.save();
     for (const entry of session.log) {
       const x = at(entry.time);
       if (!isVisible(x)) continue;
-      ctx.strokeStyle = ctx.fillStyle = this.#context.color(entry.level >= 3 ? "--bad" : "--mark");
+      ctx.strokeStyle = ctx.fillStyle = entry.level >= 3 ? bad : usual;
       ctx.lineWidth = scale;
       ctx.setLineDash([2 * scale, 3 * scale]);
       ctx.beginPath();
