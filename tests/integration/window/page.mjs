@@ -295,6 +295,9 @@ async function beginsAgain(page) {
   await page.click('.controls [aria-label="Begin again from the start"]');
   await waitFor("a small step", async () => Number(/\d+/.exec(await page.locator(".step").textContent())[0]) < 1000);
   await page.locator(".log", { hasText: "the session began again" }).waitFor();
+  await page.keyboard.down("KeyS");
+  await waitFor("the key after the reset", async () => (await raw(page, "Input_Lift")) === -1);
+  await page.keyboard.up("KeyS");
   console.log("the session was reset");
 }
 
