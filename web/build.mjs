@@ -40,7 +40,10 @@ const { metafile } = await build({
 await writeFile(join(folder, "index.html"), await readFile(join(here, "index.html")));
 const packages = Object.keys(metafile.inputs).map((path) => /node_modules\/((?:@[^/]+\/)?[^/]+)/.exec(path)?.[1]);
 const names = [...new Set(packages.filter(Boolean))].sort();
-await writeFile(join(folder, "licences.txt"), (await Promise.all(names.map(licenceOf))).join(`\n${"-".repeat(72)}\n\n`));
+await writeFile(
+  join(folder, "licences.txt"),
+  (await Promise.all(names.map(licenceOf))).join(`\n${"-".repeat(72)}\n\n`),
+);
 
 let size = 0;
 for (const name of await readdir(folder)) {

@@ -56,7 +56,12 @@ export class Layout {
       h("div", { class: "column right" }, panels.operate, panels.health, border("log"), panels.log),
     );
     const buttons = tabs.map(([name, text, symbol]) =>
-      h("button", { type: "button", role: "tab", "data-tab": name, onclick: () => this.showTab(name) }, icon(symbol), text),
+      h(
+        "button",
+        { type: "button", role: "tab", "data-tab": name, onclick: () => this.showTab(name) },
+        icon(symbol),
+        text,
+      ),
     );
     this.tabBar = h("nav", { class: "tabs", role: "tablist" }, ...buttons);
     this.sizes = {};

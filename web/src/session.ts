@@ -149,7 +149,10 @@ export class Session {
       const end = this.subscribe(`/${element}`, (message) => {
         readValues(element, message.value, this.values);
         const names = this.elements.get(element) ?? [];
-        this.samples.put(message.time, names.map(({ name }) => [name, this.values.get(name) ?? null]));
+        this.samples.put(
+          message.time,
+          names.map(({ name }) => [name, this.values.get(name) ?? null]),
+        );
         this.valuesChanged.emit();
       });
       this.#recorded.set(element, (recorded = { count: 0, end }));
@@ -270,8 +273,7 @@ export class Session {
   async call<T extends ServiceAnswer = ServiceAnswer>(service: string, request: object = {}): Promise<T> {
     try {
       const answer = (await this.protocol.call(service, request)) as T;
-      if (answer.accepted === false)
-        this.noticed.emit({ level: 2, message: `${service}: refused: ${answer.reason}` });
+      if (answer.accepted === false) this.noticed.emit({ level: 2, message: `${service}: refused: ${answer.reason}` });
       return answer;
     } catch (error) {
       const reason = (error as Error).message;

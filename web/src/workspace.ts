@@ -30,7 +30,8 @@ const isPoint = (value: unknown) => Array.isArray(value) && value.length === 3 &
 function isView(view: unknown): boolean {
   if (!isObject(view) || typeof view["follow"] !== "string") return false;
   const camera = view["camera"];
-  const isCamera = camera === undefined || (isObject(camera) && isPoint(camera["position"]) && isPoint(camera["target"]));
+  const isCamera =
+    camera === undefined || (isObject(camera) && isPoint(camera["position"]) && isPoint(camera["target"]));
   return isCamera && ["auto", "high", "low"].includes(view["graphics"] as string);
 }
 

@@ -31,7 +31,13 @@ async function waitFor(what, condition) {
 async function openPage() {
   const browser = await chromium.launch({
     executablePath: program,
-    args: ["--headless=new", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"],
+    args: [
+      "--headless=new",
+      "--use-gl=angle",
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+      "--no-sandbox",
+    ],
   });
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true });
   context.setDefaultTimeout(2 * deadline);
@@ -86,14 +92,18 @@ async function changesAParameter(page) {
   await field.locator("input").fill("600 kg");
   await field.locator("button").click();
   await waitFor("the step from which the mass holds", async () =>
-    /holds from step \d+/.test(await field.locator(".note").textContent()));
+    /holds from step \d+/.test(await field.locator(".note").textContent()),
+  );
   const present = () => JSON.parse(run("param", "get", "Bag.mass", ...rest, "--json")).value;
   // a mass changes over half a second or so
   await waitFor("600 kg by slewring param get", () => present() === 600);
   await field.locator("input").fill("-1");
   await field.locator("button").click();
-  const problem = await waitFor("the refusal", async () =>
-    (await field.getAttribute("class")).includes("is-refused") && (await field.locator(".note").textContent()));
+  const problem = await waitFor(
+    "the refusal",
+    async () =>
+      (await field.getAttribute("class")).includes("is-refused") && (await field.locator(".note").textContent()),
+  );
   require(problem.includes("nothing was changed"), `the refusal: ${problem}`);
   require(present() === 600, "a refused value was taken");
   console.log(`Bag.mass is 600 kg; -1: ${problem}`);
@@ -108,14 +118,17 @@ function strokesOf(element) {
     for (const channel of channels) if (channel.topic === `/${element}`) client.subscribe(channel.id);
   });
   client.on("message", ({ timestamp, data }) =>
-    strokes.set(Number(timestamp), JSON.parse(decoder.decode(data)).stroke));
+    strokes.set(Number(timestamp), JSON.parse(decoder.decode(data)).stroke),
+  );
   client.on("error", (error) => console.error(error.message));
   return { strokes, end: () => socket.terminate() };
 }
 
 async function rowsOfCsv(page, plot) {
   const [file] = await Promise.all([page.waitForEvent("download"), plot.locator('[aria-label*="CSV"]').click()]);
-  const [head, ...lines] = readFileSync(await file.path(), "utf8").trim().split("\n");
+  const [head, ...lines] = readFileSync(await file.path(), "utf8")
+    .trim()
+    .split("\n");
   return { head: head.split(","), rows: lines.map((line) => line.split(",")) };
 }
 
@@ -158,7 +171,10 @@ async function drivesTheCrane(page) {
   await page.mouse.up();
   await waitFor("neutral", async () => (await raw(page, "Input_Lift")) === 0);
   await input(page, "Input_Lift").locator("> button").click();
-  await waitFor("a free input", async () => (await input(page, "Input_Lift").locator(".holder").textContent()) === "free");
+  await waitFor(
+    "a free input",
+    async () => (await input(page, "Input_Lift").locator(".holder").textContent()) === "free",
+  );
   console.log(`the stroke went from ${before} m to ${await shown(page, "stroke")} m`);
 }
 
@@ -232,7 +248,10 @@ async function isNeutralWhenSuspended(page, context) {
   const holder = await input(other, "Input_Lift").locator(".holder").textContent();
   require(/^held by window-/.test(holder), `the other page shows '${holder}'`);
   await page.close();
-  await waitFor("a free input", async () => (await input(other, "Input_Lift").locator(".holder").textContent()) === "free");
+  await waitFor(
+    "a free input",
+    async () => (await input(other, "Input_Lift").locator(".holder").textContent()) === "free",
+  );
   console.log("a suspended page is neutral, a closed one gives its input back");
   return other;
 }
@@ -249,29 +268,39 @@ async function readsAPlot(page) {
   await plot.locator('[data-variable="Bag.position.y"]').waitFor();
   await plot.locator('[aria-label="Two cursors with differences"]').click();
   await waitFor("differences of the cursors", async () =>
-    /A -?[\d.]+ +B -?[\d.]+ +Δ -?[\d.]/.test(await plot.locator('[data-variable="Bag.position.y"] .number').textContent()));
+    /A -?[\d.]+ +B -?[\d.]+ +Δ -?[\d.]/.test(
+      await plot.locator('[data-variable="Bag.position.y"] .number').textContent(),
+    ),
+  );
   const box = await plot.locator(".u-over").boundingBox();
   await page.mouse.move(box.x + box.width * 0.5, box.y + 20);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width * 0.8, box.y + 22, { steps: 4 });
   await page.mouse.up();
   await waitFor("plots that stand still", async () =>
-    (await page.locator(".panel-plots > header").textContent()).includes("Follow"));
+    (await page.locator(".panel-plots > header").textContent()).includes("Follow"),
+  );
   const first = (await rowsOfCsv(page, plot)).rows;
   await page.waitForTimeout(1000);
-  require(JSON.stringify(first) === JSON.stringify((await rowsOfCsv(page, plot)).rows), "a held plot has other samples");
+  require(JSON.stringify(first) ===
+    JSON.stringify((await rowsOfCsv(page, plot)).rows), "a held plot has other samples");
   await page.click('[aria-label="Follow the newest samples"]');
   const all = (await rowsOfCsv(page, plot)).rows.map((one) => Number(one[0]));
   require(Math.max(...all.slice(1).map((time, i) => time - all[i])) < 1, "samples are lost while a plot is held");
   const [file] = await Promise.all([page.waitForEvent("download"), plot.locator('[aria-label*="PNG"]').click()]);
-  require(readFileSync(await file.path()).subarray(1, 4).toString() === "PNG", "the picture is no PNG");
+  require(readFileSync(await file.path())
+    .subarray(1, 4)
+    .toString() === "PNG", "the picture is no PNG");
   console.log("a variable was dragged into a plot, read by cursors, zoomed, held and saved");
 }
 
 async function opensAWorkspaceFile(page) {
   const save = async () => {
     await page.click(".menu summary");
-    const [file] = await Promise.all([page.waitForEvent("download"), page.click('text="Save the workspace as a file"')]);
+    const [file] = await Promise.all([
+      page.waitForEvent("download"),
+      page.click('text="Save the workspace as a file"'),
+    ]);
     return file.path();
   };
   const path = await save();
@@ -327,10 +356,15 @@ async function recording({ page }) {
   const pictures = [];
   for (const time of [0.1, 1.9, 1]) {
     await slider.fill(String(time));
-    await waitFor(`the time ${time} s`, async () => (await page.locator(".top .time").textContent()) === `${time.toFixed(3)} s`);
+    await waitFor(
+      `the time ${time} s`,
+      async () => (await page.locator(".top .time").textContent()) === `${time.toFixed(3)} s`,
+    );
     const expected = stored.filter(([t]) => t <= time + 1e-9).at(-1)[1];
-    await waitFor(`the stroke ${expected} m at ${time} s`, async () =>
-      Math.abs((await shown(page, "stroke")) - expected) <= 0.5e-5 * 1.001);
+    await waitFor(
+      `the stroke ${expected} m at ${time} s`,
+      async () => Math.abs((await shown(page, "stroke")) - expected) <= 0.5e-5 * 1.001,
+    );
     await page.waitForTimeout(500); // the view is drawn after the values
     pictures.push((await page.locator(".view canvas").screenshot()).toString("base64"));
   }

@@ -55,7 +55,15 @@ export class Keyboard {
   }
 
   #take(event: KeyboardEvent, isDown: boolean): void {
-    if (event.defaultPrevented || !this.#isOn || event.ctrlKey || event.metaKey || event.altKey || (isDown && this.#isTyping())) return;
+    if (
+      event.defaultPrevented ||
+      !this.#isOn ||
+      event.ctrlKey ||
+      event.metaKey ||
+      event.altKey ||
+      (isDown && this.#isTyping())
+    )
+      return;
     const at = pairs.findIndex((pair) => (pair as readonly string[]).includes(event.code));
     if (at < 0 || at >= this.#inputs.length) return;
     event.preventDefault();

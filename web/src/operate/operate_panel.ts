@@ -139,7 +139,16 @@ export class OperatePanel {
       const lease = this.#driver.lease(input.name);
       const name = this.#driver.holder(input.name);
       holder.className = `holder is-${lease}`;
-      setText(holder, lease === "mine" ? "held by this page" : name !== "" ? `held by ${name}` : lease === "requested" ? "requested" : "free");
+      setText(
+        holder,
+        lease === "mine"
+          ? "held by this page"
+          : name !== ""
+            ? `held by ${name}`
+            : lease === "requested"
+              ? "requested"
+              : "free",
+      );
       if (input.is_lockstep) setText(holder, "held by a controller in lockstep");
       setText(button, lease === "mine" ? "Release" : lease === "other" ? "Take over" : "Take");
     }

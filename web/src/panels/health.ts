@@ -45,8 +45,7 @@ export class HealthPanel {
       end();
       this.#watched.delete(element);
     }
-    for (const element of wanted)
-      if (!this.#watched.has(element)) this.#watched.set(element, session.watch(element));
+    for (const element of wanted) if (!this.#watched.has(element)) this.#watched.set(element, session.watch(element));
     this.#show();
   }
 

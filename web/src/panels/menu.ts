@@ -42,8 +42,18 @@ export function menuOf(context: Context, actions: WorkspaceActions): HTMLElement
     ["engineering", "bar, l/min, deg, kN"],
     ["si", "SI"],
   ];
-  const theme = choice("Theme", themes, () => context.theme, (value) => (context.theme = value));
-  const unit = choice("Units of values", units, () => context.units, (value) => (context.units = value));
+  const theme = choice(
+    "Theme",
+    themes,
+    () => context.theme,
+    (value) => (context.theme = value),
+  );
+  const unit = choice(
+    "Units of values",
+    units,
+    () => context.units,
+    (value) => (context.units = value),
+  );
   context.themeChanged.on(theme.show);
   context.unitsChanged.on(unit.show);
   const item = (text: string, action: () => void) =>
@@ -73,11 +83,7 @@ export function menuOf(context: Context, actions: WorkspaceActions): HTMLElement
       item("Reset the workspace", actions.reset),
       file,
       h("hr"),
-      h(
-        "p",
-        { class: "help" },
-        "The workspace (panels, camera, plots, theme, gamepad) is kept for each scene.",
-      ),
+      h("p", { class: "help" }, "The workspace (panels, camera, plots, theme, gamepad) is kept for each scene."),
     ),
   );
   document.addEventListener("pointerdown", (event) => {

@@ -58,9 +58,7 @@ export class ObjectPanel {
     else this.#fields.clear();
     if (variables.length > 0) {
       const rows = variables.map((variable) => this.#valueRow(variable.name, variable.label));
-      sections.push(
-        h("section", {}, h("h3", {}, "Values"), h("table", { class: "values" }, h("tbody", {}, ...rows))),
-      );
+      sections.push(h("section", {}, h("h3", {}, "Values"), h("table", { class: "values" }, h("tbody", {}, ...rows))));
       this.#stopWatching = session.record(selected); // a plot of it begins with what was seen here
     }
     if (sections.length === 0) sections.push(h("p", { class: "empty" }, "This element has no variables."));
@@ -109,4 +107,3 @@ export class ObjectPanel {
     }
   }
 }
-

@@ -13,5 +13,10 @@ export function panel(name: string, title: Child, tools: Child[], ...body: Child
 }
 
 export function toolButton(name: IconName, title: string, onclick: () => void, text?: string): HTMLButtonElement {
-  return h("button", { class: "tool", type: "button", title, "aria-label": title, onclick }, icon(name), text && h("span", {}, text));
+  return h(
+    "button",
+    { class: "tool", type: "button", title, "aria-label": title, onclick },
+    icon(name),
+    text && h("span", {}, text),
+  );
 }

@@ -25,7 +25,13 @@ export class TopBar {
     const { session } = context;
     const step = toolButton("step", "Compute so many steps, then stay paused", () => void this.#runSteps(), "Step");
     const reset = toolButton("reset", "Begin again from the start", () => void session.call("reset"), "Reset");
-    const name = h("input", { type: "text", value: "state", title: "Name of the saved state", "aria-label": "Name of the saved state", spellcheck: false });
+    const name = h("input", {
+      type: "text",
+      value: "state",
+      title: "Name of the saved state",
+      "aria-label": "Name of the saved state",
+      spellcheck: false,
+    });
     const keep = (service: string, text: string, title: string) =>
       h("button", { class: "tool", type: "button", title, onclick: () => void this.#keep(service, name.value) }, text);
     this.#saved = h(
@@ -78,7 +84,7 @@ export class TopBar {
     const { session } = this.#context;
     const { isRecording, isConnected, state, description } = session;
     const isPaused = state?.is_paused ?? false;
-    setText(this.#name, description ? description.session : session.info?.name ?? "");
+    setText(this.#name, description ? description.session : (session.info?.name ?? ""));
     this.#name.title = description ? `scene ${description.scene}` : "";
     document.title = description ? `${description.session} – Slewring` : "Slewring";
     const mode = !isConnected ? "not connected" : isRecording ? "recording" : isPaused ? "paused" : "running";

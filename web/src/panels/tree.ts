@@ -71,7 +71,13 @@ export class TreePanel {
       const isOpen = wanted !== "" || !this.#closed.has(kind);
       const head = h(
         "button",
-        { class: "group", type: "button", tabIndex: -1, "aria-expanded": String(isOpen), onclick: () => this.#toggle(kind) },
+        {
+          class: "group",
+          type: "button",
+          tabIndex: -1,
+          "aria-expanded": String(isOpen),
+          onclick: () => this.#toggle(kind),
+        },
         icon("chevron"),
         kind,
         h("span", { class: "count" }, String(shown.length)),
@@ -81,7 +87,9 @@ export class TreePanel {
     }
     this.#list.replaceChildren(...groups);
     if (count === 0)
-      this.#list.append(h("p", { class: "empty" }, wanted ? "No element, variable or parameter of this name." : "No elements yet."));
+      this.#list.append(
+        h("p", { class: "empty" }, wanted ? "No element, variable or parameter of this name." : "No elements yet."),
+      );
     this.#count.textContent = count > 0 ? `${count} elements` : "";
     this.#mark();
   }

@@ -100,7 +100,15 @@ export class Chart {
     const grid = { stroke: this.#context.color("--grid"), width: 1 };
     const font = "11px system-ui, sans-serif";
     const axes: uPlot.Axis[] = [
-      { stroke: text, grid, ticks: grid, font, size: 24, space: 60, values: (_, splits) => splits.map((t) => `${+t.toFixed(4)} s`) },
+      {
+        stroke: text,
+        grid,
+        ticks: grid,
+        font,
+        size: 24,
+        space: 60,
+        values: (_, splits) => splits.map((t) => `${+t.toFixed(4)} s`),
+      },
     ];
     const scales: uPlot.Scales = { x: { time: false, auto: false } };
     units.forEach((unit, i) => {

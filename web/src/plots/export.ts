@@ -22,7 +22,12 @@ export interface Caption {
 }
 
 // The canvas of the plot under a line of captions.
-export async function pictureOf(canvas: HTMLCanvasElement, captions: Caption[], background: string, text: string): Promise<Blob | null> {
+export async function pictureOf(
+  canvas: HTMLCanvasElement,
+  captions: Caption[],
+  background: string,
+  text: string,
+): Promise<Blob | null> {
   const scale = window.devicePixelRatio;
   const head = 26 * scale;
   const picture = document.createElement("canvas");

@@ -115,7 +115,14 @@ export class Plot {
       unit,
       remove,
     );
-    this.#lines.push({ name, color, stop: this.#context.session.record(name.slice(0, name.indexOf("."))), root, value, unit });
+    this.#lines.push({
+      name,
+      color,
+      stop: this.#context.session.record(name.slice(0, name.indexOf("."))),
+      root,
+      value,
+      unit,
+    });
     this.#legend.append(root);
     this.rebuild();
     this.changed.emit();
@@ -190,7 +197,12 @@ export class Plot {
   }
 
   get #fileName(): string {
-    return this.#lines.map((line) => line.name).join("_").slice(0, 80) || "plot";
+    return (
+      this.#lines
+        .map((line) => line.name)
+        .join("_")
+        .slice(0, 80) || "plot"
+    );
   }
 
   #saveCsv(): void {

@@ -115,7 +115,8 @@ export class Machine {
             object.add(mesh);
             rebuilt();
           },
-          (error) => session.noticed.emit({ level: 1, message: `the mesh ${model.url} is not shown: ${String(error)}` }),
+          (error) =>
+            session.noticed.emit({ level: 1, message: `the mesh ${model.url} is not shown: ${String(error)}` }),
         );
       }
     }

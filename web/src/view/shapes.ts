@@ -251,8 +251,7 @@ export function meshesOf(entity: Entity): THREE.Object3D {
     geometry.rotateX(Math.PI / 2).scale(round.size.x, round.size.y, round.size.z);
     group.add(place(withEdges(solid(geometry, materialOf(round.color))), round.pose));
   }
-  for (const lines of entity.lines ?? [])
-    group.add(place(framework(lines, materialOf(lines.color)), lines.pose));
+  for (const lines of entity.lines ?? []) group.add(place(framework(lines, materialOf(lines.color)), lines.pose));
   for (const triangles of entity.triangles ?? []) group.add(place(surface(triangles), triangles.pose));
   return group;
 }

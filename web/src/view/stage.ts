@@ -97,10 +97,13 @@ export class Stage {
       this.#renderer.getContext().finish(); // a renderer in software returns before it has drawn
       const duration = performance.now() - start;
       this.#isStale = false;
-      setTimeout(() => {
-        this.#isWaiting = false;
-        if (this.#isStale) this.draw();
-      }, (duration * (1 - kPartOfTime)) / kPartOfTime);
+      setTimeout(
+        () => {
+          this.#isWaiting = false;
+          if (this.#isStale) this.draw();
+        },
+        (duration * (1 - kPartOfTime)) / kPartOfTime,
+      );
       if (this.#graphics === "auto") this.#measure(duration);
     });
   }

@@ -44,7 +44,11 @@ export class ViewPanel {
           "div",
           { class: "segments", role: "group", "aria-label": "Direction of view" },
           ...(Object.keys(presets) as Preset[]).map((preset) =>
-            h("button", { type: "button", title: `Look from: ${presetNames[preset]}`, onclick: () => this.#look(preset) }, presetNames[preset]),
+            h(
+              "button",
+              { type: "button", title: `Look from: ${presetNames[preset]}`, onclick: () => this.#look(preset) },
+              presetNames[preset],
+            ),
           ),
         ),
         this.#follow,
@@ -65,7 +69,11 @@ export class ViewPanel {
       () => this.#takeScene(),
     );
     this.#stage.scene.add(this.#machine.root);
-    for (const [value, text] of [["auto", "Graphics: auto"], ["high", "Graphics: high"], ["low", "Graphics: low"]] as const)
+    for (const [value, text] of [
+      ["auto", "Graphics: auto"],
+      ["high", "Graphics: high"],
+      ["low", "Graphics: low"],
+    ] as const)
       this.#quality.append(h("option", { value }, text));
     this.#quality.onchange = () => {
       this.#stage.setGraphics(this.#quality.value as Graphics);
@@ -134,7 +142,7 @@ export class ViewPanel {
     const option = (value: string, text: string) => h("option", { value }, text);
     this.#follow.replaceChildren(
       option("", "Follow: none"),
-      ...this.#machine?.bodies.map((name) => option(name, `Follow: ${name}`)) ?? [],
+      ...(this.#machine?.bodies.map((name) => option(name, `Follow: ${name}`)) ?? []),
     );
     this.#follow.value = this.#followed;
   }
