@@ -38,6 +38,7 @@ interface Description {
 }
 
 const kMostEntries = 500;
+const kSameSeconds = 0.1; // a seek reads events again, at times that differ a little
 
 export class Session {
   readonly changed = new Emitter(); // the description, the variables or the connection
@@ -243,6 +244,9 @@ export class Session {
 
   #takeLog(message: Message): void {
     const value = message.value as { level: number; name: string; message: string };
+    const isSame = (entry: LogEntry) =>
+      entry.source === value.name && entry.text === value.message && Math.abs(entry.time - message.time) < kSameSeconds;
+    if (this.isRecording && this.log.some(isSame)) return;
     this.log.push({ time: message.time, level: value.level, source: value.name, text: value.message });
     if (this.log.length > kMostEntries) this.log.shift();
     this.logged.emit();

@@ -55,7 +55,10 @@ export class PlotsPanel {
     );
     this.#axis.changed.on(() => this.#showAxis());
     session.valuesChanged.on(() => this.draw());
-    session.changed.on(() => this.#offerNames());
+    session.changed.on(() => {
+      this.#offerNames();
+      this.#showNote("");
+    });
     context.themeChanged.on(() => this.#rebuild());
     context.unitsChanged.on(() => this.#rebuild());
     context.plotWanted.on((name) => {
@@ -99,7 +102,7 @@ export class PlotsPanel {
     const plot = new Plot(this.#context, this.#axis);
     plot.used.on(() => (this.#last = plot));
     plot.changed.on(() => this.#context.workspaceChanged.emit());
-    plot.noted.on((text) => setText(this.#note, text));
+    plot.noted.on((text) => this.#showNote(text));
     plot.removed.on(() => {
       this.#removePlot(plot);
       if (this.#plots.length === 0) this.#addPlot();
@@ -131,6 +134,10 @@ export class PlotsPanel {
     this.#pause.classList.toggle("is-on", !isFollowing);
     this.#length.value = String(this.#axis.length);
     this.draw();
+  }
+
+  #showNote(text: string): void {
+    setText(this.#note, text === "" && this.#context.session.isRecording ? "shows what has been played" : text);
   }
 
   #offerNames(): void {
