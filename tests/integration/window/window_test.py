@@ -40,15 +40,15 @@ def take_domain():
     sys.exit("FAILED: all test domains are in use")
 
 
-def install_packages():
+def install_packages(source=HERE, files=("package.json", "package-lock.json", "client.mjs", "page.mjs")):
     if shutil.which("node") is None or shutil.which("npm") is None:
         skip("node and npm are needed for a client of the Foxglove protocol")
-    with open(f"{HERE}/package-lock.json", "rb") as lock:
+    with open(f"{source}/package-lock.json", "rb") as lock:
         wanted = hashlib.sha256(lock.read()).hexdigest()
     os.makedirs(PACKAGES, exist_ok=True)
     stamp = f"{PACKAGES}/installed.sha256"
-    for name in ("package.json", "package-lock.json", "client.mjs"):
-        shutil.copy(f"{HERE}/{name}", PACKAGES)
+    for name in files:
+        shutil.copy(f"{source}/{name}", PACKAGES)
     if os.path.exists(stamp) and text_of(stamp) == wanted:
         return
     done = subprocess.run(["npm", "ci", "--no-audit", "--no-fund", "--ignore-scripts", "--fetch-retries=1"],
@@ -102,6 +102,56 @@ def run_client(*arguments):
     require(done.returncode == 0, f"the client ended with {done.returncode}:\n{done.stderr}")
 
 
+def run_page(case, address, *arguments):
+    chromium = shutil.which("chromium") or shutil.which("google-chrome")
+    if chromium is None:
+        skip("chromium is needed for the page of the window")
+    done = subprocess.run(["node", f"{PACKAGES}/page.mjs", case, address, SLEWRING, chromium, *arguments],
+                          capture_output=True, text=True, timeout=280)
+    print(done.stdout)
+    require(done.returncode == 0, f"the page: {done.stderr}")
+
+
+def need_page():
+    """The built page, which the window serves of its own accord."""
+    install_packages()
+    if not os.path.exists(f"{os.path.dirname(SLEWRING)}/../web/index.html"):
+        skip("the page is not built; build the target 'page', which needs node, npm and its registry")
+
+
+def page_live(folder, case="live"):
+    need_page()
+    domain = take_domain()
+    window = start_scene(folder, domain)
+    try:
+        run_page(case, window.address(), "--session", SESSION, "--domain", domain)
+    finally:
+        window.end()
+
+
+def page_inputs(folder):
+    page_live(folder, "inputs")
+
+
+def page_recording(folder):
+    need_page()
+    path = record(folder)
+    window = Program(folder, "window", "window", path, "--port", "0", "--json")
+    try:
+        run_page("recording", window.address(), path)
+    finally:
+        window.end()
+
+
+def types(folder):
+    """tsc over the sources of the page, with packages of their own."""
+    install_packages(f"{SOURCES}/web", ("package.json", "package-lock.json", "tsconfig.json"))
+    shutil.rmtree(f"{PACKAGES}/src", ignore_errors=True)
+    shutil.copytree(f"{SOURCES}/web/src", f"{PACKAGES}/src")
+    done = subprocess.run(["npm", "run", "check"], cwd=PACKAGES, capture_output=True, text=True)
+    require(done.returncode == 0, f"tsc:\n{done.stdout}{done.stderr}")
+
+
 def live(folder):
     install_packages()
     domain = take_domain()
@@ -115,11 +165,16 @@ def live(folder):
         window.process.kill()
 
 
-def recording(folder):
-    install_packages()
+def record(folder):
+    """Two seconds of the crane; the path of the run."""
     subprocess.run([SLEWRING, "run", f"{SOURCES}/scenes/truck_crane.yaml", "--in-process", "--pace", "free", "--duration",
                     "2 s", "--out", f"{folder}/runs", "--quiet"], check=True, capture_output=True, cwd=folder)
-    path = f"{folder}/runs/" + os.listdir(f"{folder}/runs")[0]
+    return f"{folder}/runs/" + os.listdir(f"{folder}/runs")[0]
+
+
+def recording(folder):
+    install_packages()
+    path = record(folder)
     window = Program(folder, "window", "window", path, "--port", "0", "--json")
     try:
         run_client("recording", f"ws://{window.address()}/", SLEWRING, path)
@@ -230,6 +285,8 @@ def door(folder):
 
 
 CASES = {"AForeignClientWatchesAndChangesALiveSession": live, "ARecordingIsSoughtByAForeignClient": recording,
-         "TheDoorRefusesHostileRequests": door}
+         "TheDoorRefusesHostileRequests": door, "ThePageShowsChangesAndDrivesASession": page_live,
+         "ThePageFollowsTheSliderOfARecording": page_recording, "ThePageOperatesAndPlots": page_inputs,
+         "TheTypesOfThePageHold": types}
 with tempfile.TemporaryDirectory(prefix="slewring_window_") as scratch:
     CASES[CASE](scratch)
