@@ -26,6 +26,13 @@ class HttpAnswersTest : public ::testing::Test {
   HttpAnswer put(const std::string& text, std::string_view match = "", std::string_view none_match = "") {
     return answers.answer(verdict(Service::workspace), {"PUT", "", {match, none_match}, text});
   }
+  ServerDef server_def() const {
+    ServerDef made;
+    made.web = folder.path().string();
+    made.workspace = folder.path() / "state/workspaces/winch.json";
+    made.description = [] { return Json({{"session", "winch"}}); };
+    return made;
+  }
   static gateway::GatewayDef gateway_def() {
     gateway::GatewayDef def;
     def.assets = {{"Drum.glb", std::make_shared<const std::string>("glTF")}};
@@ -33,10 +40,7 @@ class HttpAnswersTest : public ::testing::Test {
   }
 
   slew::testing::TemporaryFolder folder{"http_answers"};
-  ServerDef def{
-      .web = folder.path().string(), .workspace = folder.path() / "state/workspaces/winch.json", .description = [] {
-        return Json({{"session", "winch"}});
-      }};
+  ServerDef def = server_def();
   gateway::Gateway gateway{gateway_def(), scene::load_text("bodies:\n  A: {mass: 1 kg, inertia: [1, 1, 1]}\njoints:\n"
                                                            "  J: {type: revolute, body2: A}\n",
                                                            "winch")};
