@@ -15,6 +15,7 @@
 #include "scene/expand.h"
 #include "scene/field_reader.h"
 #include "scene/flexible_bodies.h"
+#include "scene/graphics.h"
 #include "scene/mesh_assets.h"
 #include "scene/mesh_inertia.h"
 #include "scene/names.h"
@@ -69,6 +70,7 @@ class SceneReader {
     read_inputs();
     read_recorded();
     read_devices_and_outputs();
+    read_graphics();
     if (const Node::Entry* script = root_.find("script")) {
       read_script(script->value, script->mark, load_context_, names_, scene_, context_);
     }
@@ -427,6 +429,14 @@ class SceneReader {
     if (report_.size() > problems) return;
     for (const NamedVariable& named : variables_of(scene_.devices, scene_.outputs))
       check_variables(named.path, {named.variable});
+  }
+
+  void read_graphics() {
+    const std::size_t problems = report_.size();
+    read_section("graphics");
+    resolve_references();
+    if (report_.size() > problems) return;
+    check_problems([&](Problems& errors, Problems&) { check_graphics(load_context_, scene_, errors); });
   }
 
   template <typename Device>

@@ -22,6 +22,7 @@
 #include "scene/defs.h"
 #include "scene/devices.h"
 #include "scene/diagnostic.h"
+#include "scene/graphics.h"
 #include "sensors/sensors.h"
 
 namespace slew::flex {
@@ -77,6 +78,7 @@ struct Scene {
   ScriptDef script;
   RecordingDef recording;
   std::vector<PlotDef> plots;
+  std::vector<GraphicDef> graphics;
   std::vector<PortDef> ports;  // one per actuator, in component order
   std::vector<std::string> warnings;
   std::vector<FlexibleBody> flexible_bodies;  // with modes, in the bodies' order; none in a scene without files
