@@ -13,7 +13,7 @@ Lines printed below a command are compared where their beginning is one of kComp
 """
 import fcntl, os, pathlib, re, shutil, signal, subprocess, sys, tempfile, time, tomllib
 
-kCompared = re.compile(r"range  |motions  |merged  |ports  |inputs  |inertia  |equal bit for bit|slewring: refused|"
+kCompared = re.compile(r"range  |note  |motions  |merged  |ports  |inputs  |inertia  |equal bit for bit|slewring: refused|"
                        r"largest liftable|limited by|\S+\.yaml:\d+:\d+: ")
 kDeadline = 120  # s: until a session that was started is listed
 kRecording = re.compile(r"\b(\w+)/(\w+)-(\d{8}-\d{6}|\.\.\.)")
@@ -212,7 +212,7 @@ class Reader:
         process = self.shell(text)
         output = process.communicate()[0]
         refusal = (change or {}).get("code", 2 if any(line.startswith("slewring: refused") or
-                                                      re.match(r"\S+\.yaml:\d+:\d+: ", line)
+                                                      re.match(r"\S+\.yaml:\d+:\d+: |--set \S+: ", line)
                                                       for line in command.printed) else 0)
         if process.returncode != refusal:
             self.faults.append(f"{command.place}: ended with {process.returncode}, expected {refusal}; ran {text}\n{output}")
@@ -221,7 +221,8 @@ class Reader:
             for line in command.printed:
                 part = re.sub(r" +", " ", line).strip().removesuffix("...").strip()
                 if kCompared.match(line.strip()) and part not in have:
-                    self.faults.append(f"{command.place}: prints\n{output}and the document has\n{line}")
+                    like = [l for l in output.splitlines() if l.split()[:2] == line.split()[:2]] or ["nothing like it"]
+                    self.faults.append(f"{command.place}: the document has\n  {line}\nand the command prints\n  {like[0]}")
 
 
 def main():
