@@ -14,7 +14,8 @@ Lines printed below a command are compared where their beginning is one of kComp
 import fcntl, os, pathlib, re, shutil, signal, subprocess, sys, tempfile, time, tomllib
 
 kCompared = re.compile(r"range  |note  |motions  |merged  |ports  |inputs  |inertia  |equal bit for bit|slewring: refused|"
-                       r"largest liftable|limited by|\S+\.yaml:\d+:\d+: ")
+                       r"largest liftable|limited by|\d+ (?:kept|dropped)  |\d+ modes: |modes 1 to|lowest \d|static compl|"
+                       r"share of the|mass \d|[xyz]  +\d|\S+\.yaml:\d+:\d+: ")
 kDeadline = 120  # s: until a session that was started is listed
 kRecording = re.compile(r"\b(\w+)/(\w+)-(\d{8}-\d{6}|\.\.\.)")
 
@@ -61,7 +62,8 @@ def commands_of(root, document):
     for number, line, block in code_lines((root / document).read_text()):
         start = re.match(r"(?:\w+)?\$ (.*)", line)
         if start:
-            found.append(Command(document, number, start[1], block))
+            # what stands behind three spaces is an explanation
+            found.append(Command(document, number, re.split(r" {3,}", start[1])[0], block))
         elif found and found[-1].block == block:
             found[-1].printed.append(line)
         elif re.match(r"slewring [a-z]+ [\w.-]", line):
