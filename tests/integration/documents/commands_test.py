@@ -205,6 +205,9 @@ class Reader:
             subprocess.run(["bash", "-euc", change["before"]], cwd=self.folder, env=self.environment, check=True)
         if change and ("add" in change or "replace" in change):
             text = re.sub(change["replace"], change["by"], text) if "replace" in change else f"{text} {change['add']}"
+        if re.match(r"slewring run (?!.*--(?:from|in-process))", text):
+            # a machine that does nothing else is not promised here
+            text = re.sub(r"( ?&)?$", r" --set session.give_up_after=60\1", text, count=1)
         starts_session = re.match(r"slewring (run|window|replay .*--then-live)\b", text) and "--in-process" not in text
         if starts_session and "--session" not in text:
             self.end_background()
