@@ -4,9 +4,9 @@
 //
 //   coupling_alarm RESULTS.md RUNS.md
 //
-// replaces the parts of both pages between "<!-- measured: begin -->" and "<!-- measured: end -->": the summary, and the
-// tables of every run. Controls are held over 20 ms, so that all steps receive the same. Takes some minutes. The same
-// figures on every run.
+// replaces the parts of both pages between "<!-- measured: begin -->" and "<!-- measured: end -->": the summary, and
+// the tables of every run. Controls are held over 20 ms, so that all steps receive the same. Takes some minutes. The
+// same figures on every run.
 #include <fmt/format.h>
 
 #include <algorithm>
