@@ -247,7 +247,8 @@ def main():
         shutil.rmtree(reader.folder, ignore_errors=True)
     if reader.faults:
         sys.exit("\n".join(reader.faults))
-    print(f"{reader.done} commands of {document} were run")
+    print(f"{reader.done} commands of {document} were run" if reader.done else
+          f"SKIPPED: every command of {document} has a reason in commands.toml")
 
 
 main()
