@@ -83,8 +83,9 @@ struct Scene {
   std::vector<std::string> warnings;
   std::vector<FlexibleBody> flexible_bodies;  // with modes, in the bodies' order; none in a scene without files
   std::vector<Asset> assets;
-  std::vector<TableFile> table_files;      // tables that stay in their files; the read ones are among the assets
-  std::vector<MeshInertia> mesh_inertias;  // results of the files read; none in a scene from its expanded text
+  std::vector<TableFile> table_files;       // tables that stay in their files; the read ones are among the assets
+  std::vector<std::string> other_payloads;  // bodies that the machine lifts beside mechanics.payload
+  std::vector<MeshInertia> mesh_inertias;   // results of the files read; none in a scene from its expanded text
 
   // The scene after includes and overrides as canonical YAML in SI: reading it gives the same Scene (assets by name).
   std::string expanded_text;

@@ -228,6 +228,17 @@ LiftableLoad find_liftable(scene::Scene& scene, const LiftingPose& pose, ListedS
   return Finder(scene, pose).find(settings);
 }
 
+std::vector<LiftableLoad> find_liftable_of_each(scene::Scene& scene, const LiftingPose& pose, ListedSettings settings) {
+  std::vector<LiftableLoad> loads = {find_liftable(scene, pose, settings)};
+  const std::string first = scene.mechanics.payload;
+  for (const std::string& payload : scene.other_payloads) {
+    scene.mechanics.payload = payload;
+    loads.push_back(find_liftable(scene, pose, settings));
+  }
+  scene.mechanics.payload = first;
+  return loads;
+}
+
 std::string limit_text(const LiftableLoad& load) {
   const LiftingPort& port = load.limit();
   return fmt::format("{} kg of {}: {} presses with {} at most, {} in {}", std::round(std::max(0.0, port.load)),

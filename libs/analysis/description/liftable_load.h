@@ -70,6 +70,10 @@ enum class ListedSettings { named, left_out };
 // hydraulics has no answer.
 [[nodiscard]] LiftableLoad find_liftable(scene::Scene& scene, const LiftingPose& pose, ListedSettings settings);
 
+// The same for each body that the scene's `payload` names, at least for the one of find_liftable().
+[[nodiscard]] std::vector<LiftableLoad> find_liftable_of_each(scene::Scene& scene, const LiftingPose& pose,
+                                                              ListedSettings settings);
+
 // "Cyl_Lift lifts 2.96 t of Bag at most (...)": one line; the table for people adds the other cylinders.
 [[nodiscard]] std::string limit_text(const LiftableLoad& load);
 // width [characters]: of the lines of a table; 0: no limit.
