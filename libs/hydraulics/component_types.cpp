@@ -14,9 +14,11 @@
 #include "hydraulics/components/l90ls_valve.h"
 #include "hydraulics/components/ls_pump.h"
 #include "hydraulics/components/ls_shuttle.h"
+#include "hydraulics/components/pump.h"
 #include "hydraulics/components/relief_valve.h"
 #include "hydraulics/components/restrictions.h"
 #include "hydraulics/components/slew_cylinder.h"
+#include "hydraulics/components/sources.h"
 
 namespace slew::hydraulics {
 
@@ -39,6 +41,9 @@ std::span<const ComponentType> component_types() {
       accumulator_type(),
       compensated_orifice_type(),
       ls_pump_type(),
+      pump_type(),
+      flow_source_type(),
+      pressure_source_type(),
       bleed_type(),
       orifice_type(),
       laminar_restriction_type(),

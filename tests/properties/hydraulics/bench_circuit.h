@@ -9,6 +9,8 @@
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/four_way_valve.h"
+#include "hydraulics/components/pump.h"
+#include "hydraulics/components/sources.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
@@ -46,6 +48,18 @@ inline void add_accumulators(HydraulicsDef& circuit) {
   AccumulatorDef& piston = add<AccumulatorDef>(circuit, "Piston");
   piston.port_1 = "Vol_C", piston.gas_volume = 4e-3, piston.precharge_pressure = 60 * kBar;
   piston.nominal_flow = 1e-3, piston.friction_pressure = 1 * kBar, piston.thermal_time_constant = 20;
+}
+
+// A flow and a pressure source, a pump with both limits.
+inline void add_sources(HydraulicsDef& circuit) {
+  PumpDef& pump = add<PumpDef>(circuit, "Limited_Pump");
+  pump.port_a = "Vol_C", pump.port_b = "Vol_T", pump.speed = 157, pump.displacement = 8e-6, pump.leak_flow = kLeak;
+  pump.swash = 0.8, pump.maximum_pressure = 190 * kBar, pump.maximum_power = 10e3;
+  FlowSourceDef& flow = add<FlowSourceDef>(circuit, "Flow_Source");
+  flow.port_1 = "Vol_T", flow.port_2 = "Vol_P", flow.flow = 1e-4, flow.flow_per_signal = 1e-7;
+  PressureSourceDef& pressure = add<PressureSourceDef>(circuit, "Pressure_Source");
+  pressure.port_1 = "Vol_D", pressure.set_pressure = 50 * kBar, pressure.pressure_per_signal = 1e3;
+  pressure.nominal_flow = 1e-4;
 }
 
 inline HydraulicsDef bench_circuit() {
@@ -100,6 +114,7 @@ inline HydraulicsDef bench_circuit() {
   add_check_valves(circuit);
   add_counterbalance_valves(circuit);
   add_accumulators(circuit);
+  add_sources(circuit);
   return circuit;
 }
 
