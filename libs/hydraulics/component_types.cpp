@@ -19,6 +19,7 @@
 #include "hydraulics/components/restrictions.h"
 #include "hydraulics/components/slew_cylinder.h"
 #include "hydraulics/components/sources.h"
+#include "hydraulics/components/spool_valve.h"
 
 namespace slew::hydraulics {
 
@@ -30,6 +31,7 @@ std::span<const ComponentType> component_types() {
       slew_cylinder_type(),
       l90ls_valve_type(),
       four_way_valve_type(),
+      spool_valve_type(),
       ls_shuttle_type(),
       relief_valve_type(),
       direct_relief_valve_type(),

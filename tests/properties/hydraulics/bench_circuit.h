@@ -11,6 +11,7 @@
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/pump.h"
 #include "hydraulics/components/sources.h"
+#include "hydraulics/components/spool_valve.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
@@ -48,6 +49,21 @@ inline void add_accumulators(HydraulicsDef& circuit) {
   AccumulatorDef& piston = add<AccumulatorDef>(circuit, "Piston");
   piston.port_1 = "Vol_C", piston.gas_volume = 4e-3, piston.precharge_pressure = 60 * kBar;
   piston.nominal_flow = 1e-3, piston.friction_pressure = 1 * kBar, piston.thermal_time_constant = 20;
+}
+
+// A closed-centre valve with four edges, one by a curve and one blocked; an open-centre one behind it in the bypass.
+inline void add_spool_valves(HydraulicsDef& circuit) {
+  SpoolValveDef& closed = add<SpoolValveDef>(circuit, "Closed_Centre");
+  closed.port_p = "Vol_P", closed.port_a = "Vol_C", closed.port_b = "Vol_D", closed.port_t = "Vol_T";
+  closed.maximum_control_signal = 1000, closed.leak_flow = kLeak;
+  closed.pa.curve = "Edge", closed.pa.area = 4e-6, closed.bt.area = 8e-6, closed.bt.overlap = 0.05;
+  closed.pb.area = 3e-6, closed.pb.overlap = 0.1;
+  SpoolValveDef& open = add<SpoolValveDef>(circuit, "Open_Centre");
+  open.port_p = "Vol_P", open.port_a = "Vol_A", open.port_b = "Vol_B", open.port_t = "Vol_T", open.port_d = "Vol_C";
+  open.pa.area = open.pb.area = 5e-6, open.pa.overlap = open.pb.overlap = 0.3;
+  open.at.area = open.bt.area = 6e-6, open.at.overlap = open.bt.overlap = -0.2;
+  open.bypass_area = 2e-5, open.bypass_closing = 0.2, open.bypass_closed = 0.6;
+  circuit.curves.push_back({.name = "Edge", .points = {{-1, 0}, {0.1, 0}, {0.4, 0.2}, {1, 1.5}}});
 }
 
 // A flow and a pressure source, a pump with both limits.
@@ -114,6 +130,7 @@ inline HydraulicsDef bench_circuit() {
   add_check_valves(circuit);
   add_counterbalance_valves(circuit);
   add_accumulators(circuit);
+  add_spool_valves(circuit);
   add_sources(circuit);
   return circuit;
 }
