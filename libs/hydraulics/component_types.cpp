@@ -17,6 +17,7 @@
 #include "hydraulics/components/pump.h"
 #include "hydraulics/components/relief_valve.h"
 #include "hydraulics/components/restrictions.h"
+#include "hydraulics/components/single_acting_cylinder.h"
 #include "hydraulics/components/slew_cylinder.h"
 #include "hydraulics/components/sources.h"
 #include "hydraulics/components/spool_valve.h"
@@ -28,6 +29,7 @@ std::span<const ComponentType> component_types() {
       hose_type(),
       double_acting_cylinder_type(),
       double_rod_cylinder_type(),
+      single_acting_cylinder_type(),
       slew_cylinder_type(),
       l90ls_valve_type(),
       four_way_valve_type(),

@@ -10,6 +10,7 @@
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/pump.h"
+#include "hydraulics/components/single_acting_cylinder.h"
 #include "hydraulics/components/sources.h"
 #include "hydraulics/components/spool_valve.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
@@ -64,6 +65,14 @@ inline void add_spool_valves(HydraulicsDef& circuit) {
   open.at.area = open.bt.area = 6e-6, open.at.overlap = open.bt.overlap = -0.2;
   open.bypass_area = 2e-5, open.bypass_closing = 0.2, open.bypass_closed = 0.6;
   circuit.curves.push_back({.name = "Edge", .points = {{-1, 0}, {0.1, 0}, {0.4, 0.2}, {1, 1.5}}});
+}
+
+// A single-acting cylinder.
+inline void add_actuators(HydraulicsDef& circuit) {
+  SingleActingCylinderDef& plunger = add<SingleActingCylinderDef>(circuit, "Plunger");
+  plunger.common.force = "Plunger_Force", plunger.common.port_a = "Vol_D", plunger.common.port_b = "Vol_T";
+  plunger.common.piston_diameter = 0.06, plunger.common.chamber_length = 0.6, plunger.common.leak_flow = kLeak;
+  plunger.common.minimum_stroke = 0.05, plunger.common.maximum_stroke = 0.5;
 }
 
 // A flow and a pressure source, a pump with both limits.
@@ -131,6 +140,7 @@ inline HydraulicsDef bench_circuit() {
   add_counterbalance_valves(circuit);
   add_accumulators(circuit);
   add_spool_valves(circuit);
+  add_actuators(circuit);
   add_sources(circuit);
   return circuit;
 }
