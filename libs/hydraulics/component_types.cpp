@@ -11,6 +11,7 @@
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose.h"
+#include "hydraulics/components/hydraulic_motor.h"
 #include "hydraulics/components/l90ls_valve.h"
 #include "hydraulics/components/ls_pump.h"
 #include "hydraulics/components/ls_shuttle.h"
@@ -31,6 +32,7 @@ std::span<const ComponentType> component_types() {
       double_rod_cylinder_type(),
       single_acting_cylinder_type(),
       slew_cylinder_type(),
+      hydraulic_motor_type(),
       l90ls_valve_type(),
       four_way_valve_type(),
       spool_valve_type(),

@@ -9,6 +9,7 @@
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/four_way_valve.h"
+#include "hydraulics/components/hydraulic_motor.h"
 #include "hydraulics/components/pump.h"
 #include "hydraulics/components/single_acting_cylinder.h"
 #include "hydraulics/components/sources.h"
@@ -67,8 +68,13 @@ inline void add_spool_valves(HydraulicsDef& circuit) {
   circuit.curves.push_back({.name = "Edge", .points = {{-1, 0}, {0.1, 0}, {0.4, 0.2}, {1, 1.5}}});
 }
 
-// A single-acting cylinder.
+// A motor with a case drain, one without, and a single-acting cylinder.
 inline void add_actuators(HydraulicsDef& circuit) {
+  HydraulicMotorDef& motor = add<HydraulicMotorDef>(circuit, "Motor");
+  motor.force = "Ring", motor.port_a = "Vol_C", motor.port_b = "Vol_D", motor.port_c = "Vol_T";
+  motor.displacement = 10e-6, motor.gear_ratio = 50, motor.leak_flow = kLeak, motor.case_leak_flow = 2 * kLeak;
+  HydraulicMotorDef& fan = add<HydraulicMotorDef>(circuit, "Fan");
+  fan.force = "Fan_Axle", fan.port_a = "Vol_A", fan.port_b = "Vol_T", fan.displacement = 2e-6;
   SingleActingCylinderDef& plunger = add<SingleActingCylinderDef>(circuit, "Plunger");
   plunger.common.force = "Plunger_Force", plunger.common.port_a = "Vol_D", plunger.common.port_b = "Vol_T";
   plunger.common.piston_diameter = 0.06, plunger.common.chamber_length = 0.6, plunger.common.leak_flow = kLeak;
