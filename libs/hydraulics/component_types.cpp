@@ -11,6 +11,7 @@
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose.h"
+#include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
 #include "hydraulics/components/l90ls_valve.h"
 #include "hydraulics/components/ls_pump.h"
@@ -44,6 +45,7 @@ std::span<const ComponentType> component_types() {
       pilot_check_valve_type(),
       double_pilot_check_valve_type(),
       counterbalance_valve_type(),
+      hose_burst_valve_type(),
       accumulator_type(),
       compensated_orifice_type(),
       ls_pump_type(),

@@ -9,6 +9,7 @@
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/four_way_valve.h"
+#include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
 #include "hydraulics/components/pump.h"
 #include "hydraulics/components/single_acting_cylinder.h"
@@ -33,7 +34,7 @@ inline void add_check_valves(HydraulicsDef& circuit) {
   lock.common.nominal_flow = 5e-4;
 }
 
-// Counterbalance valves with the spring's chamber at port 1 and vented.
+// Counterbalance valves with the spring's chamber at port 1 and vented, and a hose-burst valve.
 inline void add_counterbalance_valves(HydraulicsDef& circuit) {
   CounterbalanceValveDef& valve = add<CounterbalanceValveDef>(circuit, "Counterbalance");
   valve.port_1 = "Vol_A", valve.port_2 = "Vol_C", valve.port_3 = "Vol_B";
@@ -41,6 +42,9 @@ inline void add_counterbalance_valves(HydraulicsDef& circuit) {
   CounterbalanceValveDef& vented = add<CounterbalanceValveDef>(circuit, "Counterbalance_Vented");
   vented.port_1 = "Vol_B", vented.port_2 = "Vol_D", vented.port_3 = "Vol_A", vented.port_4 = "Vol_T";
   vented.setting_pressure = 250 * kBar, vented.nominal_flow = 5e-4, vented.check.nominal_flow = 5e-4;
+  HoseBurstValveDef& fuse = add<HoseBurstValveDef>(circuit, "Fuse");
+  fuse.port_1 = "Vol_B", fuse.port_2 = "Vol_C", fuse.nominal_flow = 1e-3, fuse.closing_flow = 8e-4;
+  fuse.leak_flow = kLeak;
 }
 
 // A bladder with polytropic gas, a piston with friction and heat exchange.
