@@ -18,7 +18,7 @@
 //
 // Source: Merritt 1967, Hydraulic Control Systems, sections 4.2 and 4.3 (piston motors: leaks, torque losses). Not
 // covered: ripple of flow and torque, inertia of the rotor (add i^2 J to the driven body, or a shaft body with a gear),
-// variable displacement, elasticity of the gear, stiction (the shaft creeps below v_rest; see hydraulic brakes).
+// variable displacement, elasticity of the gear, stiction (the shaft creeps below v_rest), level tlm.
 #pragma once
 
 #include "hydraulics/component_def.h"
