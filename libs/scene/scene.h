@@ -17,6 +17,7 @@
 
 #include "core/status.h"
 #include "coupling/line_force.h"
+#include "coupling/port_unit.h"
 #include "hydraulics/hydraulics_def.h"
 #include "multibody/model/defs.h"
 #include "scene/defs.h"
@@ -36,10 +37,11 @@ namespace slew::scene {
 struct PortDef {
   std::string name;   // name of the actuator component
   std::string force;  // name of the force element
-  double offset = 0;  // m
-  double ratio = 1;   // 1 for a line, m/rad for an axis
+  double offset = 0;  // m; rad where unit is the radian
+  double ratio = 1;   // 1 for a line, m/rad for an axis, 1 for an axis by its angle
   coupling::LineForceDef line_force;
   coupling::PortLevel level = coupling::PortLevel::session;
+  coupling::PortUnit unit = coupling::PortUnit::metre;
 };
 
 // A file that belongs to the scene and must be the same on every machine.

@@ -30,6 +30,7 @@ struct LimitingSetting {
 
 struct LiftingPort {
   std::string name{};                       // name of the cylinder
+  coupling::PortUnit unit{};                // of the stroke; the forces are torques where it is the radian
   double stroke = 0;                        // m
   double static_force = 0;                  // N, with the scene's payload
   double force_per_kg = 0;                  // m/s2; 0: it does not carry the payload
