@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The values that this page sends to the inputs, and who holds them.
+// The values that this page sends to the inputs, and the holders of the inputs.
 //
 // Each source (pointer, keyboard, gamepad) has a wish for an input; the one farthest from neutral counts. An input is
 // leased when it first leaves neutral. While it is away from neutral, and for kTailMs after, its value is sent every
