@@ -35,8 +35,9 @@ export class Driver {
     session.stateChanged.on(() => this.#takeHolders());
     session.restarted.on(() => this.#forgetLeases()); // a reset frees all inputs
     document.addEventListener("visibilitychange", () => (document.hidden ? this.#stop() : this.#start()));
-    for (const name of ["pagehide", "freeze"]) window.addEventListener(name, () => this.#stop());
-    for (const name of ["pageshow", "resume"]) window.addEventListener(name, () => this.#start());
+    // freeze and resume are events of the document that do not bubble
+    for (const name of ["pagehide", "freeze"]) window.addEventListener(name, () => this.#stop(), { capture: true });
+    for (const name of ["pageshow", "resume"]) window.addEventListener(name, () => this.#start(), { capture: true });
     this.#start();
   }
 
