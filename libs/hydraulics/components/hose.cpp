@@ -61,6 +61,8 @@ void validate_hose(const HydraulicsDef& circuit, const ComponentDef& component, 
                       "the lower bound of the wall's modulus is above the upper bound", "at most maximum_bulk_modulus",
                       ""});
   }
+  // the wall of a hose of which nothing is known is at its upper bound at every pressure
+  if (def.bulk_modulus == HoseDef{}.bulk_modulus) return;
   const double highest_rise = def.bulk_modulus * std::sqrt(kHighestPressure);
   if (def.minimum_bulk_modulus == def.maximum_bulk_modulus || highest_rise <= def.minimum_bulk_modulus) {
     warnings.push_back({def.name + ".bulk_modulus",

@@ -264,8 +264,10 @@ TEST(HydraulicsValidation, anti_cavitation_stated_at_a_drop_below_its_crack_pres
 TEST(HydraulicsValidation, hose_walls_without_effect_and_valves_that_never_open_fully_are_warnings) {
   HydraulicsDef def = crane_circuit();
   component<L90lsValveDef>(def, "L90Lift").nominal_control_signal = 600;
+  component<HoseDef>(def, "Hose_Lift_A").bulk_modulus = 8e9;
   const Findings found = findings(def);
   EXPECT_TRUE(found.errors.empty());
+  EXPECT_EQ(what_at(found.warnings, "Hose_Lift_B.bulk_modulus"), "");  // the default, which the law caps too
   EXPECT_NE(what_at(found.warnings, "Hose_Lift_A.bulk_modulus").find("at its upper bound"), std::string::npos);
   EXPECT_EQ(what_at(found.warnings, "L90Lift.nominal_control_signal"), "the valve never opens fully");
   component<HoseDef>(def, "Hose_Lift_A").minimum_bulk_modulus = 6e8;
