@@ -2,8 +2,11 @@
 #include "view_node/window.h"
 
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -69,16 +72,29 @@ ServerDef server_def(const WindowOptions& options) {
   return def;
 }
 
-void report_address(const WindowOptions& options, const Server& server, const std::string& what, bool has_token,
-                    const Report& report) {
+// The desktop's browser, by a process that outlives this one. Without a desktop nothing is started.
+void open_browser(const std::string& page, const Report& report) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+  const char* const words[] = {"setsid", "--fork", "xdg-open", page.c_str(), nullptr};
+  pid_t process = -1;
+  int status = -1;
+  if (posix_spawnp(&process, words[0], nullptr, nullptr, const_cast<char**>(words), environ) == 0)
+    waitpid(process, &status, 0);
+  if (status != 0) report("no browser was opened: setsid of util-linux does not run; open the address by hand");
+}
+
+// Prints the address, and opens it.
+void show_address(const WindowOptions& options, const Server& server, const std::string& what, const std::string& token,
+                  const Report& report) {
   const bool is_v6 = options.listen.find(':') != std::string::npos;
   const std::string host = fmt::format("{}:{}", is_v6 ? "[" + options.listen + "]" : options.listen, server.port());
-  const char* const query = has_token ? "?token=..." : "";
+  const char* const query = token.empty() ? "" : "?token=...";
   if (options.is_json) {
     report(Json({{"name", what}, {"page", "http://" + host + "/" + query}, {"foxglove", "ws://" + host + "/" + query}})
                .dump());
   } else {
     report(fmt::format("{}: http://{}/{} (Foxglove, Lichtblick: ws://{}/{})", what, host, query, host, query));
+    if (options.opens_browser) open_browser("http://" + host + (token.empty() ? "/" : "/?token=" + token), report);
   }
 }
 
@@ -208,9 +224,9 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
   gateway::Gateway gateway(std::move(gateway_def), std::move(scene));
   receiver.set_gateway(&gateway);
   def.description = [&] { return gateway.description(view); };
-  const bool has_token = !def.door.token.empty();
+  const std::string token = def.door.token;
   Server server(std::move(def), gateway);
-  report_address(options, server, "session '" + observer->session_name() + "'", has_token, report);
+  show_address(options, server, "session '" + observer->session_name() + "'", token, report);
   report_meshes(meshes, gateway, report);
   Silence silence;
   const auto is_over = [&] { return view.is_over() || receiver.has_new_session(); };
@@ -260,9 +276,9 @@ ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report&
   gateway::Gateway gateway(std::move(gateway_def), std::move(scene));
   source.publish_names(gateway);
   def.description = [&] { return gateway.description(source.view()); };
-  const bool has_token = !def.door.token.empty();
+  const std::string token = def.door.token;
   Server server(std::move(def), gateway);
-  report_address(options, server, "recording '" + reader->path().string() + "'", has_token, report);
+  show_address(options, server, "recording '" + reader->path().string() + "'", token, report);
   report_meshes(meshes, gateway, report);
   while (node::stop_requested.load() == 0) {
     const std::int64_t now_ns = monotonic_ns();

@@ -27,6 +27,9 @@ void add_window_options(options::Command& verb, WindowOptions& options) {
       .one_value_each()
       .value_name("ORIGIN")
       .group("Window");
+  verb.flag("--browser,!--no-browser", options.opens_browser,
+            "open the page in the browser of the desktop, where there is one (default; not with --json)")
+      .group("Window");
   verb.flag("--view-only", options.is_looking_only, "no parameters, no services, no inputs").group("Window");
   verb.option("--saves", options.saves, "folder in which clients save and load states of the session")
       .value_name("DIR")
@@ -54,6 +57,7 @@ std::vector<std::string> window_arguments(const WindowOptions& options) {
   add("--web", options.web);
   add("--saves", options.saves);
   add("--assets", options.assets);
+  if (!options.opens_browser) arguments.emplace_back("--no-browser");
   if (options.is_looking_only) arguments.emplace_back("--view-only");
   if (options.is_json) arguments.emplace_back("--json");
   if (!options.recording.empty()) arguments.push_back(options.recording);

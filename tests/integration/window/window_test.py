@@ -321,6 +321,40 @@ def take_over(folder):
         window.process.kill()
 
 
+def opens_browser(folder):
+    """The page is opened on a desktop, unless that is not wanted."""
+    subprocess.run([SLEWRING, "run", f"{SOURCES}/scenes/single_cylinder.yaml", "--in-process", "--pace", "free",
+                    "--duration", "0.1 s", "--out", f"{folder}/runs", "--quiet"],
+                   check=True, capture_output=True, cwd=folder)
+    run = f"{folder}/runs/" + os.listdir(f"{folder}/runs")[0]
+    os.makedirs(f"{folder}/bin")
+    with open(f"{folder}/bin/xdg-open", "w") as file:
+        file.write(f'#!/bin/sh\necho "$1" >> {folder}/opened.new\nmv {folder}/opened.new {folder}/opened\n')
+    os.chmod(f"{folder}/bin/xdg-open", 0o755)
+    os.environ["PATH"] = f"{folder}/bin:" + os.environ["PATH"]
+    os.environ["DISPLAY"] = ":9"
+    with open(f"{folder}/token", "w") as file:
+        file.write("0123456789abcdef0123\n")
+
+    def printed(*more):
+        window = Program(folder, "window", "window", run, "--port", "0", *more)
+        try:
+            return wait_for("the address", lambda: re.search(r"http://\S*", text_of(window.out)))[0], window
+        finally:
+            if "--no-browser" in more:
+                window.end()
+
+    printed("--no-browser")
+    address, window = printed("--token-file", f"{folder}/token")
+    try:
+        opened = wait_for("the browser", lambda: os.path.exists(f"{folder}/opened") and text_of(f"{folder}/opened"))
+    finally:
+        window.end()
+    # with the token, which is not printed; the first window opened nothing
+    require(address.endswith("/?token=...") and opened == address[:-3] + "0123456789abcdef0123\n",
+            f"printed {address}, opened {opened}")
+
+
 def files(folder):
     """Meshes, packed files and the workspace by HTTP."""
     subprocess.run([SLEWRING, "run", f"{SOURCES}/scenes/truck_crane.yaml", "--in-process", "--pace", "free", "--duration",
@@ -426,7 +460,8 @@ CASES = {"AForeignClientWatchesAndChangesALiveSession": live, "ARecordingIsSough
          "TheDoorRefusesHostileRequests": door, "MeshesFilesAndTheWorkspaceComeByHttp": files,
          "ASessionTakesOverFromARecordingWithTheSameBits": take_over,
          "ThePageShowsChangesAndDrivesASession": page_live, "ThePageFollowsTheSliderOfARecording": page_recording,
-         "ThePageOperatesAndPlots": page_inputs, "TheTypesOfThePageHold": types}
+         "ThePageOperatesAndPlots": page_inputs, "TheTypesOfThePageHold": types,
+         "ADesktopOpensThePageInItsBrowser": opens_browser}
 with tempfile.TemporaryDirectory(prefix="slewring_window_") as scratch:
     os.environ["XDG_STATE_HOME"] = f"{scratch}/state"  # workspaces
     CASES[CASE](scratch)
