@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_node/window.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -76,10 +77,16 @@ ServerDef server_def(const WindowOptions& options) {
 void open_browser(const std::string& page, const Report& report) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
   const char* const words[] = {"setsid", "--fork", "xdg-open", page.c_str(), nullptr};
+  posix_spawn_file_actions_t files;  // neither the socket nor the output of this process
+  posix_spawn_file_actions_init(&files);
+  for (const int output : {STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&files, output, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
   pid_t process = -1;
   int status = -1;
-  if (posix_spawnp(&process, words[0], nullptr, nullptr, const_cast<char**>(words), environ) == 0)
+  if (posix_spawnp(&process, words[0], &files, nullptr, const_cast<char**>(words), environ) == 0)
     waitpid(process, &status, 0);
+  posix_spawn_file_actions_destroy(&files);
   if (status != 0) report("no browser was opened: setsid of util-linux does not run; open the address by hand");
 }
 
