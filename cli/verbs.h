@@ -12,6 +12,7 @@ namespace slew::cli {
 void add_run(options::Command& program);
 void add_node(options::Command& program);
 void add_sessions(options::Command& program);
+void add_topics(options::Command& program);
 void add_watch(options::Command& program);
 void add_param(options::Command& program);
 void add_control(options::Command& program);

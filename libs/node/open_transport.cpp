@@ -69,6 +69,14 @@ std::unique_ptr<transport::Transport> open_viewer(const SessionOptions& options)
   return open(options, Role::observer, {options.session, "viewer", {}, traits(Role::observer).reads});
 }
 
+transport::TopicSet listener_topics(const SessionOptions& options) {
+  return options.keys.empty() ? transport::TopicSet::all() : topics_readable(Role::observer);
+}
+
+std::unique_ptr<transport::Transport> open_listener(const SessionOptions& options) {
+  return open(options, Role::observer, {options.session, "listener", {}, listener_topics(options)});
+}
+
 std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options) {
   return open(options, Role::observer,
               {transport::kAnySession, "survey", {}, {Topic::session, Topic::node_status, Topic::health}});

@@ -27,6 +27,10 @@ namespace slew::node {
 // An observer that writes nothing: for keys that permit reading only.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_viewer(const SessionOptions& options);
 
+// Reads every topic that an observer may read: with keys those that its keys allow, without all. Writes nothing.
+[[nodiscard]] std::unique_ptr<transport::Transport> open_listener(const SessionOptions& options);
+[[nodiscard]] transport::TopicSet listener_topics(const SessionOptions& options);
+
 // Reads descriptions, statuses and health of all sessions of the domain; writes nothing.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options);
 
