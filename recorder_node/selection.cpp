@@ -19,6 +19,7 @@ using wire::Topic;
 namespace {
 
 constexpr int kDoubleBits = 53;
+constexpr std::int64_t kHealthPeriodNs = 950'000'000;  // every tenth, though they come unevenly
 
 bool has_state_hash(Topic topic) noexcept {
   return topic == Topic::mechanism || topic == Topic::actuators || topic == Topic::elastic || topic == Topic::sensors;
@@ -71,6 +72,7 @@ Selection::Stored Selection::take(const transport::Received& message) {
   if (message.topic == Topic::variables && part_.significant_bits < kDoubleBits) return take_variables(message);
   if (is_reduced && message.topic == Topic::tick) return take_tick(message);
   if (is_reduced && is_sample(message.topic)) return take_sample(message);
+  if (is_reduced && message.topic == Topic::health) return take_health(message);
   if (part_.steps == RecordedSteps::none && message.topic == Topic::state) return {};
   return {message.bytes};
 }
@@ -110,6 +112,16 @@ Selection::Stored Selection::take_variables(const transport::Received& message) 
   for (double& value : block_.values) value = rounded_to_bits(value, part_.significant_bits);
   if (!transport::encode(block_, buffer_)) return {message.bytes};
   return {buffer_};
+}
+
+Selection::Stored Selection::take_health(const transport::Received& message) {
+  if (!transport::decode(message.bytes, health_)) return {message.bytes};
+  KeptHealth& kept = kept_health_[static_cast<std::size_t>(health_.header.role)];
+  const std::int64_t since_ns = message.source_ns - kept.sent_ns;
+  const bool is_due = kept.sent_ns == 0 || since_ns < 0 || since_ns >= kHealthPeriodNs;
+  if (!is_due && health_.state == kept.state) return {};
+  kept = {message.source_ns, health_.state};
+  return {message.bytes};
 }
 
 // A writer's block is given when it is full, or when a hash of another block comes. Hashes that were sent again later

@@ -3,7 +3,8 @@
 //
 // With steps: ticks the samples of the steps are replaced by digests of their state hashes, and the hash in a tick,
 // which no replay compares, is 0. With steps: none ticks, samples and states are left out. INIT, a sample with events
-// of sensors, and all messages that are not of a step stay as they are.
+// of sensors, and all messages that are not of a step stay as they are; of the health messages, ten a second of each
+// node, one a second is stored, and each with another state.
 #pragma once
 
 #include <array>
@@ -54,6 +55,7 @@ class Selection {
   [[nodiscard]] Stored take_sample(const transport::Received& message);
   [[nodiscard]] Stored take_tick(const transport::Received& message);
   [[nodiscard]] Stored take_variables(const transport::Received& message);
+  [[nodiscard]] Stored take_health(const transport::Received& message);
   [[nodiscard]] std::optional<recording::StateHashes> add_hash(const wire::Header& header, std::uint64_t state_hash);
 
   RecordedPart part_;
@@ -61,6 +63,12 @@ class Selection {
   wire::Tick tick_;
   wire::VariableBlock block_;
   wire::SensorMessage sensors_;
+  wire::Health health_;
+  struct KeptHealth {
+    std::int64_t sent_ns = 0;  // 0: none yet
+    wire::NodeState state{};
+  };
+  std::array<KeptHealth, wire::kRoles> kept_health_{};
   transport::ByteBuffer buffer_;
 };
 

@@ -66,6 +66,25 @@ TEST(Selection, RoundsPublishTimesWhereItRoundsValues) {
   EXPECT_GE(kTime, rounded);
 }
 
+TEST(Selection, WithoutSamplesKeepsOneHealthMessageASecondAndEachOfAnotherState) {
+  Selection selection({RecordedSteps::ticks, recording::ChunkCoding::zstd, 53}), all;
+  constexpr std::int64_t kBegin = 1'700'000'000'000'000'000;
+  int kept = 0, kept_of_all = 0;
+  for (int i = 0; i < 40; ++i) {
+    wire::Health health;
+    health.header.role = i % 2 == 0 ? Role::io : Role::mechanics;
+    health.state = i < 31 ? NodeState::running : NodeState::ended;
+    std::vector<std::byte> bytes;
+    ASSERT_TRUE(transport::encode(health, bytes));
+    const transport::Received message{Topic::health, bytes, kBegin + i / 2 * 100 * kMs};
+    kept += selection.take(message).bytes.empty() ? 0 : 1;
+    kept_of_all += all.take(message).bytes.empty() ? 0 : 1;
+  }
+  // at 0 s and 1 s, and at the end of 1.5 s or 1.6 s
+  EXPECT_EQ(kept, 6);
+  EXPECT_EQ(kept_of_all, 40);
+}
+
 TEST(Selection, OfTicksHasTicksAndDigestsInsteadOfSamples) {
   RecorderBench bench(with({RecordedSteps::ticks, recording::ChunkCoding::zstd, 53}));
   bench.join();
