@@ -2,10 +2,11 @@
 // The alarm of the coupling and its lamps, beside the errors against the monolith: machines, kinds of control, levels,
 // steps and late samples, each run to its end.
 //
-//   coupling_alarm RESULTS.md
+//   coupling_alarm RESULTS.md RUNS.md
 //
-// replaces the part of RESULTS.md between "<!-- measured: begin -->" and "<!-- measured: end -->". Controls are held
-// over 20 ms, so that all steps receive the same. Takes some minutes. The same figures on every run.
+// replaces the parts of both pages between "<!-- measured: begin -->" and "<!-- measured: end -->": the summary, and
+// the tables of every run. Controls are held over 20 ms, so that all steps receive the same. Takes some minutes. The
+// same figures on every run.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -380,28 +381,34 @@ std::string text_of(const Study& result) {
     for (const std::string& row : result.wrong) text += row;
     text += "\n";
   }
-  return lamps_of(result.lamps) + text + result.tables;
+  return lamps_of(result.lamps) + text;
 }
 
-int run(const std::string& results) {
+int run(const std::string& results, const std::string& runs) {
   Study result;
   const std::vector<Variant> list = variants();
   for (const Machine& machine : machines()) study(machine, list, result);
-  if (replace_measured(results, text_of(result))) return 0;
-  std::cerr << "could not find the marks in " << results << "\n";
-  return 6;
+  if (!replace_measured(results, text_of(result))) {
+    std::cerr << "could not find the marks in " << results << "\n";
+    return 6;
+  }
+  if (!replace_measured(runs, "\n" + result.tables)) {
+    std::cerr << "could not find the marks in " << runs << "\n";
+    return 6;
+  }
+  return 0;
 }
 
 }  // namespace
 }  // namespace slew::benchmarks
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: coupling_alarm RESULTS.md\n";
+  if (argc != 3) {
+    std::cerr << "usage: coupling_alarm RESULTS.md RUNS.md\n";
     return 2;
   }
   try {
-    return slew::benchmarks::run(argv[1]);
+    return slew::benchmarks::run(argv[1], argv[2]);
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return 1;

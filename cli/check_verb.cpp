@@ -30,6 +30,7 @@ struct CheckOptions {
   std::string scene;
   std::vector<std::string> overrides;
   bool is_json = false;
+  bool is_expanded = false;
 };
 
 // Checks names that only the built models have: plotted and recorded variables must exist.
@@ -56,16 +57,28 @@ void check_variables(const scene::Scene& scene, const session::DirectSession& se
 
 // A payload that the scene's valves do not lift: a physical result, and rarely intended.
 void check_payload(scene::Scene& scene) {
-  const analysis::LiftableLoad load = analysis::find_liftable(scene, {}, analysis::ListedSettings::left_out);
-  if (!load.has_answer() || load.mass <= load.limit().load) return;
-  scene.warnings.push_back(fmt::format(
-      "{}: {} kg cannot be lifted from where the scene begins, but {}; see 'slewring describe {} --liftable'",
-      load.payload, load.mass, analysis::limit_text(load), scene.name));
+  for (const analysis::LiftableLoad& load :
+       analysis::find_liftable_of_each(scene, {}, analysis::ListedSettings::left_out)) {
+    if (!load.has_answer() || load.mass <= load.limit().load) continue;
+    scene.warnings.push_back(fmt::format(
+        "{}: {} kg cannot be lifted from where the scene begins, but {}; see 'slewring describe {} --liftable'",
+        load.payload, load.mass, analysis::limit_text(load), scene.name));
+  }
+}
+
+// The scene as sessions publish and recordings keep it: a file of its own, with its warnings on standard error.
+ExitCode print_expanded(const scene::Scene& scene) {
+  for (const std::string& warning : scene.warnings) {
+    std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
+  }
+  fmt::print("{}", scene.expanded_text);
+  return ExitCode::ok;
 }
 
 ExitCode check(const CheckOptions& options) {
   try {
     scene::Scene scene = scene::load_file(options.scene, options.overrides);
+    if (options.is_expanded) return print_expanded(scene);
     session::DirectSession session(scene);
     require(session.start());
     check_variables(scene, session);
@@ -103,10 +116,12 @@ void add_check(options::Command& program) {
   options::Command verb = program.command("check", "check a scene: file, models, start state");
   const auto options = std::make_shared<CheckOptions>();  // lives as long as the command line's callbacks
   scene::add_scene_file(verb, "scene", options->scene).required();
-  verb.option("--set", options->overrides, "change a value of the scene; repeat for more")
+  verb.option("--set", options->overrides, "change a value or a parameter of the scene; repeat for more")
       .value_name("PATH=VALUE")
       .one_value_each();
   verb.flag("--json", options->is_json, "for machines: every problem with file, line and column");
+  verb.flag("--expanded", options->is_expanded,
+            "print the scene that it became: parameters, templates, groups, includes and --set written out, in SI");
   verb.footer("Example:\n  slewring check scenes/truck_crane.yaml");
   verb.action([options] { return check(*options); });
 }

@@ -315,10 +315,12 @@ ExitCode show_parts(const DescribeOptions& options) {
     texts.push_back(analysis::report_text(eigenvalues, options.count, output_width()));
   }
   if (options.has_liftable) {
-    const analysis::LiftableLoad load =
-        analysis::find_liftable(scene, {at, options.pose}, analysis::ListedSettings::named);
-    json["liftable"] = analysis::report_json(load);
-    texts.push_back(analysis::report_text(load, output_width()));
+    const std::vector<analysis::LiftableLoad> loads =
+        analysis::find_liftable_of_each(scene, {at, options.pose}, analysis::ListedSettings::named);
+    json["liftable"] = analysis::report_json(loads.front());
+    // the further bodies of the scene's payload
+    for (std::size_t i = 1; i < loads.size(); ++i) json["liftable_others"].push_back(analysis::report_json(loads[i]));
+    for (const analysis::LiftableLoad& load : loads) texts.push_back(analysis::report_text(load, output_width()));
   }
   if (options.is_json) {
     fmt::print("{}\n", json.dump(2));

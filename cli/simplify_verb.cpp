@@ -74,8 +74,8 @@ void add_simplify(options::Command& program) {
   analysis::SimplifyOptions& settings = options->settings;
   scene::add_scene_file(verb, "scene", settings.scene.file).required();
   verb.option("--error", settings.errors,
-              "a variable and by how much it may change: a quantity, or a part of its range in %; repeat for more")
-      .required()
+              "a variable and by how much it may change: a quantity, or a part of its range in %; repeat for more; "
+              "without it 1 mm of the position of each payload that the scene names")
       .value_name("'VARIABLE TOLERANCE'")
       .one_value_each();
   verb.option("--until", settings.scene.duration, "how long each run is; without it the scene's duration")

@@ -53,6 +53,7 @@ ExitCode open_window(Options options, const options::Command& verb) {
   options.run.scene.file = options.source;
   if (!verb.has("--duration")) options.run.scene.duration = "0";
   if (!verb.has("--input")) options.run.scene.input = "none";
+  if (options.window.assets.empty()) options.window.assets = options.run.assets();
   const io_node::SessionScene session = io_node::load_session_scene(options.run.scene);
   WindowProcess window(options.window);
   return run_session(std::move(options.run), session, &window);

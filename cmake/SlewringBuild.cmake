@@ -34,8 +34,8 @@ target_compile_options(slewring_flags INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Werror>
   # g++ 12 reports overlaps inside std::string's operator+ that do not exist (GCC bug 105651)
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
-  # clang takes the C macro INFINITY for a float
-  $<$<CXX_COMPILER_ID:Clang>:-Wno-double-promotion>)
+  # clang takes the C macro INFINITY for a float; ccache takes precompiled headers of clang without their time alone
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-double-promotion> $<$<COMPILE_LANG_AND_ID:CXX,Clang>:SHELL:-Xclang -fno-pch-timestamp>)
 if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
   # of the same kind, and shown for standard headers only where they are precompiled; asan-ubsan builds without
   target_compile_options(slewring_flags INTERFACE

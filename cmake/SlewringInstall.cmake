@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # What an installation holds, in three components that are the Debian packages too (SlewringPackages.cmake):
 #
-#   program   bin/slewring, its nodes and private libraries in lib/slewring, scenes, manual pages, completion, the unit
+#   program   bin/slewring, its nodes and private libraries in lib/slewring, scenes, page, manual pages, completion,
+#             the unit
 #   client    the client library with headers, CMake package, pkg-config file and Python module, the message types
 #   doc       documents and examples
 #
@@ -24,6 +25,8 @@ set_target_properties(slewring PROPERTIES INSTALL_RPATH "$ORIGIN/../${private}")
 set_target_properties(${nodes} PROPERTIES INSTALL_RPATH "$ORIGIN")
 
 install(DIRECTORY scenes DESTINATION ${shared}/slewring COMPONENT program)
+# without it the window has a built-in page
+install(DIRECTORY ${PROJECT_BINARY_DIR}/web DESTINATION ${shared}/slewring COMPONENT program OPTIONAL)
 install(FILES cli/completion/slewring.bash RENAME slewring DESTINATION ${shared}/bash-completion/completions
         COMPONENT program)
 install(FILES cli/completion/_slewring DESTINATION ${shared}/zsh/vendor-completions COMPONENT program)

@@ -24,7 +24,6 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME slewring)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "openssl")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "slewring-doc, libslewring-client-dev")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "real-time co-simulation of hydraulically driven working machines
 Mechanics, hydraulics, operator input and recording of a machine run as separate

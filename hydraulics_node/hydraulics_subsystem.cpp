@@ -253,9 +253,10 @@ void HydraulicsSubsystem::list_variables() {
   variables_.assign(circuit.begin(), circuit.end());
   for (const scene::PortDef& def : scene_.ports) {
     const std::string& port = def.name;
-    variables_.push_back({port + ".coupling_e_x", Dimension::length});
-    variables_.push_back({port + ".coupling_e_v", Dimension::velocity});
-    variables_.push_back({port + ".coupling_e_F", Dimension::force});
+    const coupling::PortDimensions dimensions = coupling::dimensions_of(def.unit);
+    variables_.push_back({port + ".coupling_e_x", dimensions.position});
+    variables_.push_back({port + ".coupling_e_v", dimensions.speed});
+    variables_.push_back({port + ".coupling_e_F", dimensions.force});
     variables_.push_back({port + ".coupling_dE", Dimension::energy});
     variables_.push_back({port + ".coupling_dE_star", Dimension::energy});
     variables_.push_back({port + ".coupling_eta", Dimension::none});

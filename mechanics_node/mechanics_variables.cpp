@@ -31,11 +31,11 @@ MechanicsVariables::MechanicsVariables(const multibody::Model& model, const std:
   for (ElementVariable& variable : multibody::reaction_variables(model)) list_.push_back(std::move(variable));
   of_reactions_ = list_.size() - of_model_;
   for (const Port& port : ports) {
-    list_.push_back({port.name + ".line_force", Dimension::force});
-    list_.push_back({port.name + ".friction_force", Dimension::force});
-    list_.push_back({port.name + ".end_stop_force", Dimension::force});
-    list_.push_back({port.name + ".static_force", Dimension::force});
-    list_.push_back({port.name + ".static_force_per_kg", Dimension::acceleration});
+    const coupling::PortDimensions dimensions = coupling::dimensions_of(port.unit);
+    for (const char* force : {".line_force", ".friction_force", ".end_stop_force", ".static_force"}) {
+      list_.push_back({port.name + force, dimensions.force});
+    }
+    list_.push_back({port.name + ".static_force_per_kg", dimensions.force_per_mass});
   }
   if (has_partner_age) list_.push_back({"mechanics.partner_age", Dimension::none});
   if (payload > 0) {

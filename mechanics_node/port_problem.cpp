@@ -23,6 +23,7 @@ std::vector<Port> ports_of(const scene::Scene& scene) {
   std::vector<Port> ports;
   for (const scene::PortDef& port : scene.ports) {
     ports.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});
+    ports.back().unit = port.unit;
   }
   return ports;
 }

@@ -9,6 +9,7 @@
 
 #include "coupling/line_force.h"
 #include "coupling/port_dynamics.h"
+#include "coupling/port_unit.h"
 #include "mechanics_node/mechanism.h"
 #include "multibody/constraints/rows.h"
 #include "multibody/joints/joint_law.h"
@@ -24,6 +25,7 @@ struct Port {
   double F = 0;         // pressure force with damping [N]
   double friction = 0;  // at the published instant [N]
   double stop = 0;      // at the published instant [N]
+  coupling::PortUnit unit = coupling::PortUnit::metre;
 
   [[nodiscard]] double stroke(double row_x) const noexcept { return offset + ratio * row_x; }
 };

@@ -6,10 +6,10 @@
 #include <tuple>
 
 #include "core/state_hash.h"
-#include "recorder_node/idl_text.h"
 #include "recorder_node/recorder_node.h"
 #include "recording/run_directory.h"
 #include "transport/cdr/sample_state.h"
+#include "transport/idl_text.h"
 #include "transport/topics.h"
 
 namespace slew::recorder_node {
@@ -95,8 +95,10 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
   ticks_.emplace(identity.communication_step);
   status = add_attachments(session);
   for (std::size_t i = 0; status.is_ok() && i < wire::kTopics; ++i) {
-    const recording::ChannelDef channel{
-        std::string(to_text(static_cast<Topic>(i))), transport::traits(static_cast<Topic>(i)).type_name, kIdlText, {}};
+    const recording::ChannelDef channel{std::string(to_text(static_cast<Topic>(i))),
+                                        transport::traits(static_cast<Topic>(i)).type_name,
+                                        std::string(transport::idl_text()),
+                                        {}};
     status = writer_->add_channel(channel, channels_[i]);
   }
   if (status.is_ok() && identity.steps == recording::RecordedSteps::ticks) {

@@ -106,12 +106,13 @@ function takeText(message) {
       element("playback").hidden = false;
     }
   } else if (message.op === "advertise") {
-    for (const channel of message.channels) {
+    const inJson = message.channels.filter((channel) => channel.encoding === "json");
+    for (const channel of inJson) {
       channel.isSignal = !channel.topic.startsWith("/slewring/");
       channel.fields = JSON.parse(channel.schema);
       channels.set(channel.id, channel);
     }
-    const subscriptions = message.channels.filter((c) => c.isSignal).map((c) => ({ id: c.id, channelId: c.id }));
+    const subscriptions = inJson.filter((c) => c.isSignal).map((c) => ({ id: c.id, channelId: c.id }));
     socket.send(JSON.stringify({ op: "subscribe", subscriptions }));
   } else if (message.op === "unadvertise") {
     for (const id of message.channelIds) channels.delete(id);

@@ -19,12 +19,24 @@ constexpr std::int64_t kFrameNs = 1'000'000'000 / 60;
 constexpr double kSlowest = 0.01, kFastest = 100;
 constexpr std::uint64_t kLookBackNs = 1'000'000'000;  // the rarest variables are published more often
 
-Topic topic_of(const recording::RecordedMessage& message) {
+Topic topic_of(const recording::RecordedChannel& channel) {
   for (std::size_t i = 0; i < wire::kTopics; ++i) {
-    if (message.channel->topic == node::to_text(static_cast<Topic>(i))) return static_cast<Topic>(i);
+    if (channel.topic == node::to_text(static_cast<Topic>(i))) return static_cast<Topic>(i);
   }
   return Topic::count;
 }
+
+// Values alone: messages of the wire from before the time that was jumped to are none of it.
+class ValuesAlone final : public observer::Receiver {
+ public:
+  explicit ValuesAlone(gateway::Gateway& gateway) : gateway_(gateway) {}
+  void take_block(const wire::VariableBlock& block, std::span<const std::byte> bytes, double time) override {
+    gateway_.take_block(block, bytes, time);
+  }
+
+ private:
+  gateway::Gateway& gateway_;
+};
 
 double seconds_of(std::uint64_t ns) {
   return static_cast<double>(ns) * 1e-9;
@@ -44,7 +56,7 @@ RecordedSource::RecordedSource(const recording::Reader& reader) : reader_(reader
   // names first: a message of the directory may be filed behind the first values
   for (const Topic topic : {Topic::session, Topic::variable_directory}) {
     require(reader.for_each(session::only({topic}), [&](const recording::RecordedMessage& message) {
-      view_.take(topic_of(message), message.payload);
+      view_.take(topic_of(*message.channel), message.payload);
       return recording::Reader::Visit::go_on;
     }));
   }
@@ -55,6 +67,23 @@ RecordedSource::RecordedSource(const recording::Reader& reader) : reader_(reader
   }
   base_ns_ = range_.from_ns;
   seek_ns_ = range_.from_ns;
+}
+
+std::vector<gateway::WireChannelDef> RecordedSource::wire_topics() const {
+  std::vector<gateway::WireChannelDef> defs;
+  for (const recording::RecordedChannel& channel : reader_.channels()) {
+    const Topic topic = topic_of(channel);
+    if (topic != Topic::count && channel.message_count > 0) defs.push_back({topic, channel.type_name, channel.idl});
+  }
+  return defs;
+}
+
+void RecordedSource::publish_names(gateway::Gateway& gateway) const {
+  const auto filter = session::only({Topic::session, Topic::variable_directory});
+  require(reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
+    gateway.take_wire(topic_of(*message.channel), message.payload, seconds_of(message.log_time_ns));
+    return recording::Reader::Visit::go_on;
+  }));
 }
 
 std::uint64_t RecordedSource::time_at(std::int64_t now_ns) const noexcept {
@@ -109,23 +138,29 @@ bool RecordedSource::read_until(std::uint64_t time_ns, observer::Receiver* recei
       next_ = message;  // its bytes stay valid until the next one is read
       return true;
     }
-    view_.take(topic_of(message), message.payload, seconds_of(message.log_time_ns), receiver);
+    view_.take(topic_of(*message.channel), message.payload, seconds_of(message.log_time_ns), receiver);
   }
 }
 
 void RecordedSource::jump(std::uint64_t time_ns, gateway::Gateway& gateway) {
-  recording::MessageFilter filter = session::only({Topic::node_status, Topic::health, Topic::variables});
+  recording::MessageFilter filter;
+  if (!reads_wire_) filter = session::only({Topic::node_status, Topic::health, Topic::variables});
   filter.from_ns = time_ns > kLookBackNs ? time_ns - kLookBackNs : 0;
   cursor_.emplace(reader_, filter);
   next_.reset();
   gateway.forget_values();
-  static_cast<void>(read_until(time_ns, &gateway));
+  ValuesAlone values(gateway);
+  static_cast<void>(read_until(time_ns, &values));
 }
 
 void RecordedSource::poll(gateway::Gateway& gateway, std::int64_t now_ns) {
   if (now_ns < next_frame_ns_ && !seek_ns_) return;
   next_frame_ns_ = now_ns + kFrameNs;
   const std::uint64_t time_ns = time_at(now_ns);
+  if (reads_wire_ != gateway.wants_wire()) {
+    reads_wire_ = !reads_wire_;
+    if (!seek_ns_) seek_ns_ = time_ns;
+  }
   if (seek_ns_) {
     jump(*seek_ns_, gateway);
     seek_ns_.reset();

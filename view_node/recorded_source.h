@@ -21,6 +21,10 @@ class RecordedSource final : public gateway::Playback {
   [[nodiscard]] const observer::SessionView& view() const noexcept { return view_; }
   [[nodiscard]] gateway::DataRange range() const noexcept { return range_; }
 
+  // The recorded topics, with the interface definition of the recording.
+  [[nodiscard]] std::vector<gateway::WireChannelDef> wire_topics() const;
+  // Gives the gateway the messages that its clients may request at any time: the session and the names of variables.
+  void publish_names(gateway::Gateway& gateway) const;
   // Goes on to the time of the playback and shows it; nothing while it stands.
   void poll(gateway::Gateway& gateway, std::int64_t now_ns);
 
@@ -40,6 +44,7 @@ class RecordedSource final : public gateway::Playback {
   std::optional<recording::MessageCursor> cursor_;
   std::optional<recording::RecordedMessage> next_;  // read, and later than the time
   std::uint64_t read_to_ns_ = 0;
+  bool reads_wire_ = false;  // all topics, since a client has subscribed to one
 
   bool is_playing_ = false;
   double speed_ = 1;

@@ -14,6 +14,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
+#include <boost/beast/http/span_body.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/stream.hpp>
@@ -22,7 +23,7 @@
 #include <optional>
 
 #include "core/failure.h"
-#include "view_node/page_files.h"
+#include "view_node/http_answers.h"
 
 namespace slew::view_node {
 namespace {
@@ -56,13 +57,17 @@ std::string_view view(boost::beast::string_view text) {
 // One connection: HTTP, then perhaps a WebSocket. Handlers keep it alive; a closed socket ends them.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(Socket socket, const ServerDef& def, Gateway& gateway)
-      : stream_(std::move(socket)), def_(def), gateway_(gateway), deadline_ns_(monotonic_ns() + kRequestNs) {
+  Connection(Socket socket, const ServerDef& def, const HttpAnswers& answers, Gateway& gateway)
+      : stream_(std::move(socket)),
+        def_(def),
+        answers_(answers),
+        gateway_(gateway),
+        deadline_ns_(monotonic_ns() + kRequestNs) {
     error_code ignored;
     stream_.next_layer().set_option(net::socket_base::send_buffer_size(kSendBuffer), ignored);
     stream_.next_layer().set_option(tcp::no_delay(true), ignored);
     parser_.header_limit(kMostHeaderBytes);
-    parser_.body_limit(0);
+    parser_.body_limit(kMostWorkspaceBytes);
   }
 
   void start() {
@@ -95,11 +100,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
  private:
   void take_request(error_code error) {
     if (error == http::error::header_limit)
-      return answer(http::status::request_header_fields_too_large, "the request's header has more than 16 KiB\n");
+      return answer(sentence(431, "the request's header has more than 16 KiB; nothing was changed"));
     if (error == http::error::body_limit)
-      return answer(http::status::payload_too_large, "a request has no body here; use GET\n");
+      return answer(sentence(413, "the request's body has more than 1 MiB; nothing was changed"));
     if (error) return drop();
-    const http::request<http::string_body>& request = parser_.get();
+    http::request<http::string_body>& request = parser_.get();
     const auto origin = request.find(http::field::origin);
     const gateway::Request asked{.method = view(request.method_string()),
                                  .target = view(request.target()),
@@ -109,25 +114,22 @@ class Connection : public std::enable_shared_from_this<Connection> {
                                  .has_origin = origin != request.end(),
                                  .is_upgrade = websocket::is_upgrade(request)};
     const gateway::Verdict verdict = gateway::judge(def_.door, asked);
-    switch (verdict.service) {
-      case Service::error:
-        return answer(static_cast<http::status>(verdict.status), verdict.text + "\n");
-      case Service::session:
-        return answer(http::status::ok, def_.description().dump() + "\n", "application/json");
-      case Service::file:
-        if (const auto file = read_page_file(def_.web, verdict.path))
-          return answer(http::status::ok, file->content, file->type);
-        return answer(http::status::not_found, "there is no such file\n");
-      case Service::websocket:
-        return accept(verdict.subprotocol);
-    }
+    if (verdict.service == Service::websocket) return accept(verdict.subprotocol);
+    answer(answers_.answer(
+        verdict, {.method = asked.method,
+                  .accept_encoding = view(request[http::field::accept_encoding]),
+                  .conditions = {view(request[http::field::if_match]), view(request[http::field::if_none_match])},
+                  .body = std::move(request.body())}));
   }
 
-  void answer(http::status status, std::string body, std::string_view type = "text/plain; charset=utf-8") {
-    response_.result(status);
+  void answer(const HttpAnswer& given) {
+    const auto beast = [](std::string_view text) { return boost::beast::string_view(text.data(), text.size()); };
+    response_.result(given.status);
     response_.set(http::field::server, "slewring");
-    response_.set(http::field::content_type, boost::beast::string_view(type.data(), type.size()));
-    response_.set(http::field::cache_control, "no-cache");
+    response_.set(http::field::cache_control, beast(given.cache));
+    if (!given.entity_tag.empty()) response_.set(http::field::etag, given.entity_tag);
+    if (given.is_compressed) response_.set(http::field::content_encoding, "gzip");
+    if (given.depends_on_encoding) response_.set(http::field::vary, "Accept-Encoding");
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("Referrer-Policy", "no-referrer");
     response_.set("X-Frame-Options", "DENY");
@@ -135,8 +137,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
                   "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; style-src 'self' "
                   "'unsafe-inline'; worker-src 'self' blob:; frame-ancestors 'none'");
     response_.keep_alive(false);
-    response_.content_length(body.size());
-    if (parser_.get().method() != http::verb::head) response_.body() = std::move(body);
+    if (given.content != nullptr) {
+      content_ = given.content;
+      response_.set(http::field::content_type, beast(given.type));
+      response_.content_length(content_->size());
+      if (parser_.get().method() != http::verb::head) response_.body() = {content_->data(), content_->size()};
+    }
     deadline_ns_ = monotonic_ns() + kStalledNs;
     http::async_write(stream_.next_layer(), response_, [self = shared_from_this()](error_code, std::size_t) {
       error_code ignored;
@@ -158,7 +164,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void accept(gateway::Subprotocol subprotocol) {
     if (buffer_.size() > 0)
-      return answer(http::status::bad_request, "bytes came in front of the answer to the WebSocket's request\n");
+      return answer(
+          sentence(400, "bytes came in front of the answer to the WebSocket's request; no connection was made"));
     stream_.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
       const std::string_view name = gateway::to_text(subprotocol);
       response.set(http::field::sec_websocket_protocol, boost::beast::string_view(name.data(), name.size()));
@@ -212,8 +219,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
   websocket::stream<Socket, false> stream_;
   boost::beast::flat_buffer buffer_{gateway::kMaxMessageBytes + kMostHeaderBytes};
   http::request_parser<http::string_body> parser_;
-  http::response<http::string_body> response_;
+  http::response<http::span_body<const char>> response_;
+  std::shared_ptr<const std::string> content_;  // of the response
   const ServerDef& def_;
+  const HttpAnswers& answers_;
   Gateway& gateway_;
   std::optional<gateway::ClientId> client_;
   Frame frame_;                       // under way
@@ -247,7 +256,7 @@ class Server::State {
     acceptor_.async_accept([this](error_code error, Socket socket) {
       if (error == net::error::operation_aborted) return;
       if (!error && connections_.size() < kMostConnections) {
-        connections_.push_back(std::make_shared<Connection>(std::move(socket), def_, gateway_));
+        connections_.push_back(std::make_shared<Connection>(std::move(socket), def_, answers_, gateway_));
         connections_.back()->start();
       }
       accept();
@@ -279,6 +288,7 @@ class Server::State {
 
   ServerDef def_;
   Gateway& gateway_;
+  HttpAnswers answers_{def_, gateway_};
   net::io_context context_{1};
   Acceptor acceptor_;
   std::list<std::shared_ptr<Connection>> connections_;

@@ -8,24 +8,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <string>
 
-#include "core/json.h"
 #include "core/time.h"
-#include "gateway/door.h"
 #include "gateway/gateway.h"
+#include "view_node/server_def.h"
 
 namespace slew::view_node {
-
-struct ServerDef {
-  std::string address = "127.0.0.1";
-  std::uint16_t port = 0;  // 0: any free one
-  gateway::DoorDef door;
-  std::string web;                    // folder of the page; empty: the built-in one
-  std::function<Json()> description;  // /session.json
-};
 
 class Server {
  public:

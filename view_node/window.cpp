@@ -15,10 +15,13 @@
 #include "node/identity.h"
 #include "session/recorded.h"
 #include "session/survey.h"
+#include "view_node/machine_meshes.h"
 #include "view_node/page_files.h"
 #include "view_node/recorded_source.h"
 #include "view_node/saved_files.h"
 #include "view_node/server.h"
+#include "view_node/taken_session.h"
+#include "view_node/workspace_file.h"
 
 namespace slew::view_node {
 namespace {
@@ -50,6 +53,7 @@ ServerDef server_def(const WindowOptions& options) {
   def.port = static_cast<std::uint16_t>(options.port);
   def.door = {options.hosts, options.origins, read_token(options.token_file)};
   def.web = options.web.empty() ? find_page() : options.web;
+  def.is_looking_only = options.is_looking_only;
   if (!gateway::is_address(options.listen)) {
     throw Failure(ExitCode::bad_input, fmt::format("--listen {}: this is no address; nothing was started; expected one "
                                                    "such as 127.0.0.1",
@@ -78,6 +82,12 @@ void report_address(const WindowOptions& options, const Server& server, const st
   }
 }
 
+void report_meshes(const MachineMeshes& meshes, gateway::Gateway& gateway, const Report& report) {
+  if (meshes.problem.empty()) return;
+  report(meshes.problem);
+  gateway.add_event(gateway::LogLevel::warning, "window", meshes.problem);
+}
+
 // Gives clients the reason, and the time to receive it.
 void end(gateway::Gateway& gateway, Server& server, const std::string& reason, const Report& report) {
   report(reason);
@@ -96,17 +106,32 @@ class LateReceiver final : public observer::Receiver {
   void take_block(const wire::VariableBlock& block, std::span<const std::byte> bytes, double time) override {
     if (gateway_ != nullptr) gateway_->take_block(block, bytes, time);
   }
+  void take_wire(wire::Topic topic, std::span<const std::byte> bytes, double time) override {
+    if (gateway_ != nullptr) return gateway_->take_wire(topic, bytes, time);
+    if (gateway::KeptWireMessages::keeps(topic) && early_.size() < gateway::KeptWireMessages::kMostOfTopic)
+      early_.push_back({topic, {bytes.begin(), bytes.end()}, time});
+  }
   void take_lease(const wire::ControllerLease& lease) override {
     if (gateway_ != nullptr) gateway_->take_lease(lease);
   }
   void take_reply(const wire::ControlReply& reply) override {
     if (gateway_ != nullptr) gateway_->take_reply(reply);
   }
-  void set_gateway(gateway::Gateway* gateway) noexcept { gateway_ = gateway; }
+  void set_gateway(gateway::Gateway* gateway) {
+    gateway_ = gateway;
+    for (const Early& message : std::exchange(early_, {}))
+      if (gateway != nullptr) gateway->take_wire(message.topic, message.bytes, message.time);
+  }
   [[nodiscard]] bool has_new_session() const noexcept { return has_new_session_; }
 
  private:
+  struct Early {
+    wire::Topic topic;
+    std::vector<std::byte> bytes;
+    double time;
+  };
   gateway::Gateway* gateway_ = nullptr;
+  std::vector<Early> early_;
   bool has_new_session_ = false;
 };
 
@@ -127,6 +152,7 @@ gateway::GatewayDef live_def(const WindowOptions& options, observer::Observer& o
   def.name = observer.session_name();
   def.session_id = node::to_text(observer.view().session().header.session);
   def.controller = fmt::format("window-{}", getpid());
+  def.wire = gateway::observed_topics();
   if (options.is_looking_only) return def;
   def.saved = &saved;
   // one that cannot be sent stays without an answer, which its client receives as a refusal
@@ -174,13 +200,18 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
   node::SessionOptions of_session = options.session;
   of_session.session = observer->session_name();
   SavedFiles saved(options.saves, of_session);
-  gateway::Gateway gateway(live_def(options, *observer, saved),
-                           scene::load_text(view.session().scene_text, view.session().scene_name));
+  scene::Scene scene = scene::load_text(view.session().scene_text, view.session().scene_name);
+  MachineMeshes meshes = read_machine_meshes(scene, options.assets.empty() ? "." : options.assets);
+  def.workspace = workspace_path(scene.name);
+  gateway::GatewayDef gateway_def = live_def(options, *observer, saved);
+  gateway_def.assets = std::move(meshes.assets);
+  gateway::Gateway gateway(std::move(gateway_def), std::move(scene));
   receiver.set_gateway(&gateway);
   def.description = [&] { return gateway.description(view); };
   const bool has_token = !def.door.token.empty();
   Server server(std::move(def), gateway);
   report_address(options, server, "session '" + observer->session_name() + "'", has_token, report);
+  report_meshes(meshes, gateway, report);
   Silence silence;
   const auto is_over = [&] { return view.is_over() || receiver.has_new_session(); };
   while (!is_over() && !observer->is_stopped()) {
@@ -218,16 +249,26 @@ ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report&
   gateway_def.session_id = identity.session_id + "-recorded";
   gateway_def.playback = &source;
   gateway_def.range = source.range();
-  gateway::Gateway gateway(std::move(gateway_def),
-                           scene::load_text(session::recorded_scene_text(*reader), identity.scene));
+  gateway_def.wire = source.wire_topics();
+  scene::Scene scene = scene::load_text(session::recorded_scene_text(*reader), identity.scene);
+  MachineMeshes meshes =
+      read_machine_meshes(scene, options.assets.empty() ? session::recorded_assets(options.recording) : options.assets);
+  def.workspace = workspace_path(scene.name);
+  gateway_def.assets = std::move(meshes.assets);
+  TakenSession taken(options, identity.session_name);
+  if (!options.is_looking_only) gateway_def.continuation = &taken;
+  gateway::Gateway gateway(std::move(gateway_def), std::move(scene));
+  source.publish_names(gateway);
   def.description = [&] { return gateway.description(source.view()); };
   const bool has_token = !def.door.token.empty();
   Server server(std::move(def), gateway);
   report_address(options, server, "recording '" + reader->path().string() + "'", has_token, report);
+  report_meshes(meshes, gateway, report);
   while (node::stop_requested.load() == 0) {
     const std::int64_t now_ns = monotonic_ns();
     gateway.poll(source.view(), now_ns);
     source.poll(gateway, now_ns);
+    for (const std::string& line : taken.poll()) report(line);
     server.poll(kRound);
   }
   end(gateway, server, "the window was closed", report);

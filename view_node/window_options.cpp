@@ -32,6 +32,10 @@ void add_window_options(options::Command& verb, WindowOptions& options) {
       .value_name("DIR")
       .show_default()
       .group("Window");
+  verb.option("--assets", options.assets,
+              "folder with the scene's meshes for the eye; without it that of the scene or recording, else this one")
+      .value_name("DIR")
+      .group("Window");
   verb.option("--web", options.web, "folder of the page; without it the installed one")
       .value_name("DIR")
       .group("Window");
@@ -49,12 +53,11 @@ std::vector<std::string> window_arguments(const WindowOptions& options) {
   for (const std::string& origin : options.origins) add("--allow-origin", origin);
   add("--web", options.web);
   add("--saves", options.saves);
+  add("--assets", options.assets);
   if (options.is_looking_only) arguments.emplace_back("--view-only");
   if (options.is_json) arguments.emplace_back("--json");
-  if (!options.recording.empty()) {
-    arguments.push_back(options.recording);
-    return arguments;
-  }
+  if (!options.recording.empty()) arguments.push_back(options.recording);
+  // of a recording: for a live session that goes on from it
   add("--session", options.session.session);
   const std::vector<std::string> network = node::network_arguments(options.session);
   arguments.insert(arguments.end(), network.begin(), network.end());

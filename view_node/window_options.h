@@ -24,6 +24,7 @@ struct WindowOptions {
   std::vector<std::string> origins;  // gateway::DoorDef
   std::string web;                   // folder of the page; empty: the built one
   std::string saves = "saved";       // folder of saved states
+  std::string assets;                // folder of the scene's files; empty: the scene's or recording's own, or this one
   bool is_looking_only = false;
   bool is_json = false;
 };

@@ -67,7 +67,8 @@ std::vector<Drive> drives_of(const scene::Scene& scene) {
 
 std::vector<std::string> variables_of(const Drive& drive) {
   const std::string& name = drive.name;
-  return {drive.valve->name + ".control_signal", name + ".speed", name + ".stroke", name + ".static_force",
+  const char* const position = drive.actuator.coordinate.unit == hydraulics::PortUnit::metre ? ".stroke" : ".angle";
+  return {drive.valve->name + ".control_signal", name + ".speed", name + position, name + ".static_force",
           name + (drive.direction > 0 ? ".pressure_b" : ".pressure_a")};
 }
 

@@ -2,6 +2,7 @@
 #include "gateway/body_shapes.h"
 
 #include <algorithm>
+#include <numbers>
 
 namespace slew::gateway {
 namespace {
@@ -127,6 +128,18 @@ void add_shape(const ShapeDef& shape, const Color& color, Json& primitives) {
 
 void add_cylinder(double radius, double length, double z, const Color& color, Json& primitives) {
   add_round(radius, length, Vec3(0, 0, z), Quaternion(), color, primitives);
+}
+
+void add_model(const std::string& uri, Vec3 position, const Quaternion& orientation, Json& primitives) {
+  const math::Mat3 R_quarter = math::rotation_zxz({0, -std::numbers::pi / 2, 0});
+  const Quaternion q = math::quaternion_of(math::rotation_of(orientation) * R_quarter);
+  primitives["models"].push_back({{"pose", pose_json(position, q)},
+                                  {"scale", vector_json(Vec3(1, 1, 1))},
+                                  {"color", color_json({1, 1, 1})},
+                                  {"override_color", false},
+                                  {"url", uri},
+                                  {"media_type", "model/gltf-binary"},
+                                  {"data", ""}});
 }
 
 void add_star(Vec3 hub, std::span<const Vec3> points, double thickness, const Color& color, Json& primitives) {

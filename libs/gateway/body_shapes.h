@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 
 #include "core/json.h"
 #include "math/rotation.h"
@@ -22,6 +23,10 @@ void add_shape(const multibody::ShapeDef& shape, const Color& color, Json& primi
 
 // Adds a cylinder about the z axis, its middle at z [m].
 void add_cylinder(double radius, double length, double z, const Color& color, Json& primitives);
+
+// Adds a mesh in a binary glTF file, in the axes that the pose places. Foxglove takes y of such a file for up and turns
+// it into z, a quarter turn about x, which the pose of the primitive undoes.
+void add_model(const std::string& uri, math::Vec3 position, const math::Quaternion& orientation, Json& primitives);
 
 // Adds lines from the hub to the points [m], in the body's frame.
 void add_star(math::Vec3 hub, std::span<const math::Vec3> points, double thickness, const Color& color,

@@ -10,7 +10,6 @@ namespace slew::gateway {
 namespace {
 
 constexpr std::size_t kMaxProblem = 300;  // bytes
-constexpr int kDeepest = 16;              // levels of a message; the JSON library's memory for one grows with its depth
 
 enum class ClientOpcode : std::uint8_t { publish = 1, service_call = 2, playback_control = 3 };
 
@@ -18,7 +17,7 @@ enum class ClientOpcode : std::uint8_t { publish = 1, service_call = 2, playback
   throw Failure(ExitCode::bad_input, problem);
 }
 
-bool is_too_deep(std::string_view text) noexcept {
+bool is_too_deep(std::string_view text, int deepest) noexcept {
   int depth = 0;
   bool is_in_text = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -32,7 +31,7 @@ bool is_too_deep(std::string_view text) noexcept {
     } else if (c == '"') {
       is_in_text = true;
     } else if (c == '[' || c == '{') {
-      if (++depth > kDeepest) return true;
+      if (++depth > deepest) return true;
     } else if (c == ']' || c == '}') {
       --depth;
     }
@@ -116,6 +115,9 @@ ClientMessage message_of(const Json& json) {
   if (operation == "setParameters") return set_parameters_of(json);
   if (operation == "subscribeParameterUpdates") return FollowParameters{names_of(json), Wanted::yes};
   if (operation == "unsubscribeParameterUpdates") return FollowParameters{names_of(json), Wanted::no};
+  if (operation == "subscribeConnectionGraph") return FollowGraph{Wanted::yes};
+  if (operation == "unsubscribeConnectionGraph") return FollowGraph{Wanted::no};
+  if (operation == "fetchAsset") return FetchAsset{short_text(json.at("uri").text()), id_of(json.at("requestId"))};
   refuse("this server does not support '" + operation + "'; serverInfo lists its capabilities");
 }
 
@@ -194,9 +196,10 @@ DecodedMessage ignored(const std::string& problem) {
 
 }  // namespace
 
-DecodedObject decode_object(std::string_view text) {
+DecodedObject decode_object(std::string_view text, int deepest) {
   if (text.empty()) return {Json::object(), ""};
-  if (is_too_deep(text)) return {std::nullopt, "the JSON text is nested deeper than 16 levels"};
+  if (is_too_deep(text, deepest))
+    return {std::nullopt, "the JSON text is nested deeper than " + std::to_string(deepest) + " levels"};
   std::optional<Json> json = Json::parse(text);
   if (!json || !json->is_object()) return {std::nullopt, "the text is no JSON object"};
   return {std::move(json), ""};

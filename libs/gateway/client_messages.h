@@ -19,6 +19,7 @@ namespace slew::gateway {
 inline constexpr std::size_t kMaxMessageBytes = 1 << 20;  // of a client's message
 inline constexpr std::size_t kMaxListed = 16'384;         // subscriptions, names or channels in one message
 inline constexpr std::size_t kMaxTextBytes = 1024;        // names, topics and ids
+inline constexpr int kDeepestMessage = 16;  // levels; the JSON library's memory for one grows with its depth
 
 struct Subscribe {
   struct Subscription {
@@ -73,6 +74,16 @@ struct ServiceCall {
   std::string_view bytes;  // valid as long as the message
 };
 
+struct FollowGraph {
+  Wanted wanted = Wanted::yes;
+};
+
+// The answer is one message: for a client's own number of the request.
+struct FetchAsset {
+  std::string uri;
+  std::uint32_t request = 0;
+};
+
 struct PlaybackControl {
   bool is_paused = false;
   float speed = 1;
@@ -80,8 +91,9 @@ struct PlaybackControl {
   std::string id{};
 };
 
-using ClientMessage = std::variant<Subscribe, Unsubscribe, Advertise, Unadvertise, Publish, GetParameters,
-                                   SetParameters, FollowParameters, ServiceCall, PlaybackControl>;
+using ClientMessage =
+    std::variant<Subscribe, Unsubscribe, Advertise, Unadvertise, Publish, GetParameters, SetParameters,
+                 FollowParameters, ServiceCall, FollowGraph, FetchAsset, PlaybackControl>;
 
 struct DecodedMessage {
   std::optional<ClientMessage> message{};
@@ -92,11 +104,11 @@ struct DecodedMessage {
 [[nodiscard]] DecodedMessage decode_binary(std::string_view bytes);
 
 // A JSON object, such as that of a service call; an empty text is an empty object. None, with the problem, for other
-// texts, and for one that is nested deeper than a message of this protocol can be.
+// texts, and for one that is nested deeper.
 struct DecodedObject {
   std::optional<Json> object{};
   std::string problem{};
 };
-[[nodiscard]] DecodedObject decode_object(std::string_view text);
+[[nodiscard]] DecodedObject decode_object(std::string_view text, int deepest = kDeepestMessage);
 
 }  // namespace slew::gateway

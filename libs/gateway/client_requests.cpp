@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "gateway/connection_graph.h"
 #include "gateway/gateway.h"
 
 namespace slew::gateway {
@@ -41,6 +42,9 @@ void Gateway::take(ClientId, Client& client, const Subscribe& message, std::int6
     } else if (channel->kind == Kind::log) {
       for (const LogEvent& event : log_.kept())
         push(client, binary_frame(message_head(wanted.id, event.time_ns), event.body));
+    } else if (channel->kind == Kind::wire) {
+      for (const WireMessage& kept : kept_wire_.of(channel->topic))
+        client.wire.push(binary_frame(message_head(wanted.id, kept.time_ns), kept.body));
     } else if (revision_ > 0) {
       client.outbox.mark(index + 1);
     }
@@ -131,7 +135,7 @@ void Gateway::take(ClientId id, Client& client, const SetParameters& message, st
       }
       push(found->second, text_frame(parameter_values_text(parameters_.values({name}), request)));
     };
-    parameters_.set(change.name, change.value, std::nullopt, done, now_ns);
+    parameters_.set(change.name, change.value, std::nullopt, id, done, now_ns);
   }
 }
 
@@ -155,6 +159,46 @@ void Gateway::publish_parameter(const std::string& name) {
     if (client.follows_all || client.followed.contains(name))
       push(client, text_frame(parameter_values_text(parameters_.values({name}), "")));
   }
+}
+
+// ---- connection graph
+// -------------------------------------------------------------------------------------------------
+
+void Gateway::take(ClientId, Client& client, const FollowGraph& message, std::int64_t) {
+  client.follows_graph = message.wanted == Wanted::yes;
+  if (client.follows_graph) push(client, text_frame(graph_text()));
+}
+
+std::string Gateway::graph_text() const {
+  std::vector<ChannelInfo> infos;
+  for (const Channel& channel : channels_) infos.push_back(channel.info);
+  return connection_graph_text(
+      {.roles = seen_.roles, .channels = infos, .services = services_, .inputs = inputs_.channels()});
+}
+
+void Gateway::publish_graph() {
+  for (auto& [id, client] : clients_) {
+    if (client.follows_graph) push(client, text_frame(graph_text()));
+  }
+}
+
+// ---- assets
+// -----------------------------------------------------------------------------------------------------------
+
+void Gateway::take(ClientId, Client& client, const FetchAsset& message, std::int64_t) {
+  const std::shared_ptr<const std::string> found = asset(asset_of_uri(message.uri));
+  std::string problem;
+  if (found == nullptr) {
+    problem = fmt::format("there is no asset '{}'; the models of /slewring/scene name them", message.uri);
+  } else if (client.outbox.waiting_bytes() + found->size() > def_.most_event_bytes / 2) {
+    // the other half is for what cannot be requested again
+    problem = fmt::format(
+        "'{}' and what this client has not read yet have more than {} bytes; read first, or take "
+        "the asset by HTTP, GET /assets/{}",
+        message.uri, def_.most_event_bytes / 2, asset_of_uri(message.uri));
+  }
+  push(client, problem.empty() ? binary_frame(asset_head(message.request), found)
+                               : binary_frame(asset_failure_bytes(message.request, problem)));
 }
 
 // ---- playback

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kMaxTarget = 2048;
 constexpr std::string_view kTokenKey = "token=";
-constexpr std::string_view kSessionPath = "session.json";
+constexpr std::string_view kSessionPath = "session.json", kWorkspacePath = "workspace.json";
+constexpr std::string_view kAssetFolder = "assets/", kAssetEnding = ".glb";
 
 Verdict error(unsigned status, std::string text) {
   Verdict verdict;
@@ -127,24 +128,29 @@ Verdict judge(const DoorDef& door, const Request& request) {
                  "the page that made this request is not the gateway's own; nothing was sent; allow its origin with "
                  "--allow-origin, such as --allow-origin https://app.foxglove.dev");
   }
-  if (request.method != "GET" && request.method != "HEAD")
-    return error(405, "the method is not supported; nothing was changed; use GET");
   if (request.target.size() > kMaxTarget) return error(414, "the address is too long; nothing was sent");
   const std::size_t mark = request.target.find('?');
   const std::optional<std::string> path = plain_path(request.target.substr(0, mark));
   if (!path) {
     return error(404, "there is no such file; paths have letters, digits, '-', '_', '.' and '/', and no hidden names");
   }
+  const bool is_workspace = *path == kWorkspacePath;
+  if (request.method != "GET" && request.method != "HEAD" && !(is_workspace && request.method == "PUT"))
+    return error(405, "the method is not supported; nothing was changed; use GET, or PUT for /workspace.json");
   const std::string_view query = mark == std::string_view::npos ? std::string_view() : request.target.substr(mark + 1);
-  const bool needs_token = request.is_upgrade || *path == kSessionPath;
+  const bool is_asset = path->starts_with(kAssetFolder) && path->ends_with(kAssetEnding);
+  const bool needs_token = request.is_upgrade || is_asset || is_workspace || *path == kSessionPath;
   if (needs_token && !door.token.empty() && !is_same(token_of(query), door.token)) {
     return error(401, "the token is missing or wrong; nothing was sent; add ?token=... to the address");
   }
   if (request.is_upgrade) return judge_upgrade(request);
   Verdict verdict;
   verdict.status = 200;
-  verdict.service = *path == kSessionPath ? Service::session : Service::file;
-  verdict.path = *path;
+  verdict.service = *path == kSessionPath ? Service::session
+                    : is_workspace        ? Service::workspace
+                    : is_asset            ? Service::asset
+                                          : Service::file;
+  verdict.path = is_asset ? path->substr(kAssetFolder.size()) : *path;
   return verdict;
 }
 

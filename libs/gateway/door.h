@@ -33,13 +33,20 @@ struct Request {
   bool is_upgrade = false;
 };
 
-enum class Service : std::uint8_t { error, websocket, session, file };  // session: /session.json
+enum class Service : std::uint8_t {
+  error,
+  websocket,
+  session,    // /session.json
+  asset,      // /assets/NAME.glb: of the session, as the protocol has it
+  workspace,  // /workspace.json: of the page, also with PUT
+  file
+};
 
 struct Verdict {
   Service service = Service::error;
   unsigned status = 400;  // of HTTP
   std::string text;       // error: what happened, what to do
-  std::string path{};     // file: relative, of plain names; "index.html" for /
+  std::string path{};     // file: relative, of plain names, "index.html" for /; asset: its name
   Subprotocol subprotocol = Subprotocol::sdk_v1;
 };
 

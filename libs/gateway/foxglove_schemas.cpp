@@ -86,6 +86,13 @@ std::string scene_update_schema() {
                                  {"color", color_schema()},
                                  {"colors", list_of(color_schema())},
                                  {"indices", list_of(typed("integer"))}});
+  const Json model = object({{"pose", pose_schema()},
+                             {"scale", vector_schema()},
+                             {"color", color_schema()},
+                             {"override_color", typed("boolean")},
+                             {"url", typed("string")},
+                             {"media_type", typed("string")},
+                             {"data", {{"type", "string"}, {"contentEncoding", "base64"}}}});
   const Json entity = object({{"timestamp", time_schema("time")},
                               {"frame_id", typed("string")},
                               {"id", typed("string")},
@@ -99,7 +106,7 @@ std::string scene_update_schema() {
                               {"lines", list_of(line)},
                               {"triangles", list_of(triangles)},
                               {"texts", list_of(object({}))},
-                              {"models", list_of(object({}))}});
+                              {"models", list_of(model)}});
   const Json deletion =
       object({{"timestamp", time_schema("time")}, {"type", typed("integer")}, {"id", typed("string")}});
   return text_of(object({{"deletions", list_of(deletion)}, {"entities", list_of(entity)}}), "foxglove.SceneUpdate");

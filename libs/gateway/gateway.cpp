@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "gateway/foxglove_schemas.h"
@@ -16,15 +17,6 @@ constexpr std::int64_t kOneSecondNs = 1'000'000'000;
 constexpr std::int64_t kFrameNs = kOneSecondNs / 60;
 constexpr std::int64_t kStandstillNs = 250'000'000;      // no whole step for so long: the newest values are shown
 constexpr std::int64_t kDirectoryNs = 5 * kOneSecondNs;  // longest wait for the names of all variables
-constexpr std::uint64_t kReportedLeftOut = 10;           // values; one or two are the jitter of any client
-constexpr std::int64_t kReportEveryNs = 5 * kOneSecondNs;
-constexpr std::size_t kAdvertisedAtOnce = 100;  // channels in one message
-constexpr std::size_t kTimeState = 0;           // state of an outbox: the time; then the channels
-constexpr const char* kLeftOutId = "left_out";
-
-std::size_t state_of(std::size_t channel) noexcept {
-  return channel + 1;
-}
 
 std::vector<InputChannel> inputs_of(const scene::Scene& scene) {
   std::vector<InputChannel> channels;
@@ -56,7 +48,7 @@ std::string session_schema() {
 Gateway::Gateway(GatewayDef def, scene::Scene scene)
     : def_(std::move(def)),
       scene_(std::move(scene)),
-      frames_(scene_),
+      frames_(scene_, def_.assets),
       requests_(def_.send_request),
       parameters_(scene_, requests_, [this](const std::string& name) { publish_parameter(name); }),
       inputs_(inputs_of(scene_), def_.controller, def_.send_input),
@@ -70,125 +62,17 @@ Gateway::Gateway(GatewayDef def, scene::Scene scene)
   add(Kind::scene, "/slewring/scene", "foxglove.SceneUpdate", scene_update_schema());
   add(Kind::log, "/slewring/log", "foxglove.Log", log_schema());
   add(Kind::session, "/slewring/session", "slewring.Session", session_schema());
+  for (const WireChannelDef& wire : def_.wire) {
+    Channel& channel = channels_.emplace_back();
+    channel.info = channel_info(wire, ++last_channel_);
+    channel.kind = Kind::wire;
+    channel.topic = wire.topic;
+  }
 }
 
 std::span<const Call> Gateway::calls() const noexcept {
-  if (def_.playback != nullptr) return recording_calls();
+  if (def_.playback != nullptr) return def_.continuation != nullptr ? continued_calls() : recording_calls();
   return is_steering() ? session_calls() : std::span<const Call>();
-}
-
-// ---- clients
-// ----------------------------------------------------------------------------------------------------------
-
-std::string Gateway::server_info() const {
-  ServerInfo info;
-  info.name = "Slewring: " + def_.name;
-  info.capabilities = {"time"};
-  if (is_steering())
-    for (const char* name : {"parameters", "parametersSubscribe", "clientPublish"})
-      info.capabilities.emplace_back(name);
-  if (!services_.empty()) info.capabilities.emplace_back("services");
-  if (def_.playback != nullptr) info.capabilities.emplace_back("playbackControl");
-  // clients forget the time before a reset
-  info.session_id = fmt::format("{}-{}", def_.session_id, def_.playback != nullptr ? 0 : epoch_.value_or(0));
-  info.metadata = {{"session", def_.name}, {"scene", scene_.name}, {"inputs", "/inputs/<input>"}};
-  info.range = def_.range;
-  return to_text(info);
-}
-
-std::optional<ClientId> Gateway::connect() {
-  if (clients_.size() >= kMostClients) return std::nullopt;
-  const ClientId id = ++last_client_;
-  Client& client = clients_.try_emplace(id, def_.most_event_bytes).first->second;
-  push(client, text_frame(server_info()));
-  std::vector<ChannelInfo> infos;
-  for (const Channel& channel : channels_) infos.push_back(channel.info);
-  for (std::size_t first = 0; first < infos.size(); first += kAdvertisedAtOnce) {
-    const std::size_t count = std::min(kAdvertisedAtOnce, infos.size() - first);
-    push(client, text_frame(advertise_text(std::span(infos).subspan(first, count))));
-  }
-  if (!services_.empty()) push(client, text_frame(advertise_services_text(services_)));
-  if (revision_ > 0) client.outbox.mark(kTimeState);
-  return id;
-}
-
-void Gateway::disconnect(ClientId client) {
-  inputs_.leave(client);
-  clients_.erase(client);
-}
-
-const std::string& Gateway::close_reason(ClientId client) const {
-  static const std::string kGone = "the gateway has closed this client";
-  const auto found = clients_.find(client);
-  return found == clients_.end() ? kGone : found->second.close_reason;
-}
-
-void Gateway::push(Client& client, Frame event) {
-  if (client.outbox.push(std::move(event)) || !client.close_reason.empty()) return;
-  client.close_reason = fmt::format("more than {} bytes of events wait for this client; read them, or connect again",
-                                    def_.most_event_bytes);
-}
-
-void Gateway::send_status(Client& client, StatusLevel level, std::string_view message, std::string_view id) {
-  push(client, text_frame(status_text(level, message, id)));
-}
-
-std::optional<Frame> Gateway::next_frame(ClientId id) {
-  const auto found = clients_.find(id);
-  if (found == clients_.end()) return std::nullopt;
-  Client& client = found->second;
-  while (true) {
-    Outbox::Next next = client.outbox.next();
-    if (auto* const event = std::get_if<Frame>(&next)) return std::move(*event);
-    const auto* const state = std::get_if<std::size_t>(&next);
-    if (state == nullptr) return std::nullopt;
-    if (*state == kTimeState) return binary_frame(time_bytes(time_ns_));
-    const std::size_t index = *state - 1;
-    if (index >= client.subscription.size() || !client.subscription[index]) continue;
-    return binary_frame(message_head(*client.subscription[index], time_ns_), body_of(channels_[index]));
-  }
-}
-
-std::shared_ptr<const std::string> Gateway::body_of(Channel& channel) {
-  if (channel.revision == revision_ && channel.body != nullptr) return channel.body;
-  std::string body;
-  if (channel.kind == Kind::transforms) {
-    frames_.encode_transforms(snapshot_, time_ns_, body);
-  } else if (channel.kind == Kind::session) {
-    body = session_body();
-  } else {
-    channel.signal.encode(snapshot_, body);
-  }
-  channel.revision = revision_;
-  channel.body = std::make_shared<const std::string>(std::move(body));
-  return channel.body;
-}
-
-std::string Gateway::session_body() const {
-  Json nodes = Json::array();
-  for (const wire::Role role : wire::kNodeRoles) {
-    const observer::NodeView& node = view_->node(role);
-    if (!node.is_known) continue;
-    nodes.push_back({{"role", node::to_text(role)},
-                     {"state", node::to_text(node.status.state)},
-                     {"overruns", node.health.overruns},
-                     {"refused", node.health.refused_messages}});
-  }
-  Json holders = Json::object();
-  for (const auto& [input, holder] : seen_.holders) holders[input] = holder;
-  return Json({{"step", snapshot_.step()},
-               {"time", static_cast<double>(time_ns_) * 1e-9},
-               {"is_paused", seen_.is_paused},
-               {"clients", clients_.size()},
-               {"holders", std::move(holders)},
-               {"nodes", std::move(nodes)}})
-      .dump();
-}
-
-void Gateway::send_scene(Client& client) {
-  if (client.subscription.size() < 2 || !client.subscription[1] || revision_ == 0) return;
-  push(client, binary_frame(message_head(*client.subscription[1], time_ns_),
-                            std::make_shared<const std::string>(frames_.scene_update(snapshot_, time_ns_))));
 }
 
 // ---- the session
@@ -279,19 +163,9 @@ void Gateway::build_channels(const observer::SessionView& view) {
     std::erase_if(client.channels, [&](const auto& entry) { return entry.second >= kept; });
     client.subscription.resize(std::min(client.subscription.size(), kept));
     if (!old.empty()) push(client, text_frame(unadvertise_text(old)));
-    for (std::size_t first = 0; first < infos.size(); first += kAdvertisedAtOnce) {
-      const std::size_t count = std::min(kAdvertisedAtOnce, infos.size() - first);
-      push(client, text_frame(advertise_text(std::span(infos).subspan(first, count))));
-    }
+    advertise(client, infos);
   }
-}
-
-void Gateway::mark_states(Client& client) {
-  client.outbox.mark(kTimeState);
-  for (const auto& [subscription, channel] : client.channels) {
-    const Kind kind = channels_[channel].kind;
-    if (kind != Kind::scene && kind != Kind::log) client.outbox.mark(state_of(channel));
-  }
+  publish_graph();
 }
 
 void Gateway::publish(std::uint64_t time_ns) {
@@ -321,6 +195,9 @@ void Gateway::watch_nodes(const observer::SessionView& view) {
     seen_.has_changed = true;
     add_event(LogLevel::info, "io", is_paused ? "the session is paused" : "the session goes on");
   }
+  std::uint32_t roles = 0;
+  for (const wire::Role role : wire::kNodeRoles) roles |= view.node(role).is_known ? bit(role) : 0;
+  if (roles != std::exchange(seen_.roles, roles)) publish_graph();
   for (const wire::Role role : wire::kNodeRoles) {
     const observer::NodeView& node = view.node(role);
     wire::NodeState& state = seen_.states[static_cast<std::size_t>(role)];
@@ -330,20 +207,6 @@ void Gateway::watch_nodes(const observer::SessionView& view) {
     const bool is_bad = state == wire::NodeState::fault || (state == wire::NodeState::holding && !seen_.is_paused);
     add_event(is_bad ? LogLevel::warning : LogLevel::info, std::string(node::to_text(role)),
               fmt::format("{}{}{}", node::to_text(state), node.status.reason.empty() ? "" : ": ", node.status.reason));
-  }
-}
-
-void Gateway::report_left_out(std::int64_t now_ns) {
-  for (auto& [id, client] : clients_) {
-    client.left_out += client.outbox.take_left_out();
-    if (now_ns < client.next_report_ns || client.left_out - client.reported_left_out < kReportedLeftOut) continue;
-    client.next_report_ns = now_ns + kReportEveryNs;
-    client.reported_left_out = client.left_out;
-    send_status(client, StatusLevel::warning,
-                fmt::format("this client reads more slowly than values come: {} values were replaced by newer ones "
-                            "before they were sent; subscribe to fewer channels",
-                            client.left_out),
-                kLeftOutId);
   }
 }
 

@@ -7,9 +7,11 @@
 //                /slewring/scene       foxglove.SceneUpdate with its shapes, at each subscription and reset
 //                /slewring/log         foxglove.Log: events, the last 100 at each subscription
 //                /slewring/session     state of the session and its nodes
+//                /wire/<topic>         messages of the wire, unchanged (wire_channels.h)
 //   parameters   the live ones (live_parameters.h), where the gateway may steer
 //   services     services.h
 //   publishing   on /inputs/<input>, JSON {"value": 0.3}: moves the input (client_inputs.h)
+//   assets       package://slewring/<Graphic>.glb: meshes for the eye, which the scene's models name
 //   playback     of a recording
 //
 // Values are sent 60 times a second at most, all of one step; the time of every message is the session's. A client
@@ -40,6 +42,7 @@
 #include "gateway/services.h"
 #include "gateway/signal_channels.h"
 #include "gateway/step_snapshot.h"
+#include "gateway/wire_channels.h"
 #include "observer/session_view.h"
 #include "scene/scene.h"
 
@@ -70,6 +73,29 @@ class SavedStates {
   virtual void load(const std::string& name, Done done) = 0;
 };
 
+// A live session that goes on from a time of a recording.
+enum class ContinuationInput : std::uint8_t { none, script };
+struct ContinuationRequest {
+  double time = 0;  // s
+  ContinuationInput input = ContinuationInput::none;
+  double duration = 0;  // s, end of the session's time; 0: none
+};
+class Continuation {
+ public:
+  Continuation() = default;
+  Continuation(const Continuation&) = delete;
+  Continuation& operator=(const Continuation&) = delete;
+  virtual ~Continuation() = default;
+  struct Answer {
+    std::string problem{};           // of a refusal; empty: the session runs
+    std::string session{};           // its name
+    std::string page{}, foxglove{};  // addresses of its window
+  };
+  // done is called once.
+  using Done = std::function<void(const Answer&)>;
+  virtual void start(const ContinuationRequest& request, Done done) = 0;
+};
+
 struct GatewayDef {
   std::string name;             // of the session
   std::string session_id;       // text
@@ -80,6 +106,9 @@ struct GatewayDef {
   std::size_t most_event_bytes = 32u << 20;  // events that wait for one client
   Playback* playback = nullptr;              // of a recording; outlives the gateway
   std::optional<DataRange> range{};          // of a recording
+  Continuation* continuation = nullptr;      // of a recording; outlives the gateway; null: none is started
+  Assets assets{};                           // meshes for the eye
+  std::vector<WireChannelDef> wire{};        // topics that are passed on
 };
 
 class Gateway final : public observer::Receiver {
@@ -100,6 +129,9 @@ class Gateway final : public observer::Receiver {
 
   // ---- the session
   void take_block(const wire::VariableBlock& block, std::span<const std::byte> bytes, double time) override;
+  void take_wire(wire::Topic topic, std::span<const std::byte> bytes, double time) override;
+  // A client has subscribed to a topic of the wire.
+  [[nodiscard]] bool wants_wire() const noexcept;
   void take_lease(const wire::ControllerLease& lease) override;
   void take_reply(const wire::ControlReply& reply) override;
   // Called about every 5 ms.
@@ -114,29 +146,36 @@ class Gateway final : public observer::Receiver {
   // No client stays; their inputs are given back.
   void end(const std::string& reason);
 
+  // Null: there is no such one.
+  [[nodiscard]] std::shared_ptr<const std::string> asset(std::string_view name) const;
   // Names, units, inputs, parameters and services, for /session.json.
   [[nodiscard]] Json description(const observer::SessionView& view) const;
 
  private:
-  enum class Kind : std::uint8_t { transforms, scene, log, session, signal };
+  enum class Kind : std::uint8_t { transforms, scene, log, session, wire, signal };
   struct Channel {
     ChannelInfo info;
     Kind kind = Kind::signal;
     SignalChannel signal{};
+    wire::Topic topic = wire::Topic::count;     // of wire
     std::uint64_t revision = 0;                 // of the body
     std::shared_ptr<const std::string> body{};  // the message now
   };
   struct Client {
     explicit Client(std::size_t most_event_bytes) : outbox(most_event_bytes) {}
     Outbox outbox;
+    WireQueue wire{};
+    bool is_wire_next = false;                                 // states and messages of the wire take turns
     std::map<std::uint32_t, std::size_t> channels{};           // by subscription
     std::vector<std::optional<std::uint32_t>> subscription{};  // by channel
     std::map<std::uint32_t, std::string> published{};          // input by the client's channel
     std::set<std::string> followed{};                          // parameters
     bool follows_all = false;
     bool has_controlled_playback = false;
+    bool follows_graph = false;
     std::uint64_t left_out = 0, reported_left_out = 0;
-    std::int64_t next_report_ns = 0;
+    std::uint64_t wire_left_out = 0, reported_wire_left_out = 0;
+    std::int64_t next_report_ns = 0, next_wire_report_ns = 0;
     std::string close_reason{};
   };
 
@@ -144,18 +183,24 @@ class Gateway final : public observer::Receiver {
   [[nodiscard]] std::string server_info() const;
   [[nodiscard]] std::span<const Call> calls() const noexcept;
 
-  // gateway.cpp
-  void begin_epoch(std::uint32_t epoch);
-  void build_channels(const observer::SessionView& view);
-  void publish(std::uint64_t time_ns);
-  void mark_states(Client& client);
+  // client_frames.cpp
+  void advertise(Client& client, std::span<const ChannelInfo> channels);
+  [[nodiscard]] std::optional<Frame> next_state(Client& client);
   [[nodiscard]] std::shared_ptr<const std::string> body_of(Channel& channel);
-  [[nodiscard]] std::string session_body() const;
-  void watch_nodes(const observer::SessionView& view);
+  void mark_states(Client& client);
   void push(Client& client, Frame event);
   void send_status(Client& client, StatusLevel level, std::string_view message, std::string_view id = {});
   void report_left_out(std::int64_t now_ns);
   void send_scene(Client& client);
+  [[nodiscard]] std::string session_body() const;
+  [[nodiscard]] std::string graph_text() const;
+  void publish_graph();
+
+  // gateway.cpp
+  void begin_epoch(std::uint32_t epoch);
+  void build_channels(const observer::SessionView& view);
+  void publish(std::uint64_t time_ns);
+  void watch_nodes(const observer::SessionView& view);
 
   // client_requests.cpp
   void take(ClientId id, Client& client, const Subscribe& message, std::int64_t now_ns);
@@ -167,6 +212,8 @@ class Gateway final : public observer::Receiver {
   void take(ClientId id, Client& client, const SetParameters& message, std::int64_t now_ns);
   void take(ClientId id, Client& client, const FollowParameters& message, std::int64_t now_ns);
   void take(ClientId id, Client& client, const ServiceCall& message, std::int64_t now_ns);
+  void take(ClientId id, Client& client, const FollowGraph& message, std::int64_t now_ns);
+  void take(ClientId id, Client& client, const FetchAsset& message, std::int64_t now_ns);
   void take(ClientId id, Client& client, const PlaybackControl& message, std::int64_t now_ns);
   void publish_parameter(const std::string& name);
 
@@ -178,6 +225,7 @@ class Gateway final : public observer::Receiver {
   void run_call(const CallPlace& place, Call call, const Json& request, std::int64_t now_ns);
   void keep(const CallPlace& place, Call call, const std::string& name);
   void control(const CallPlace& place, wire::ControlAction action, double value, std::int64_t now_ns);
+  void take_over(const CallPlace& place, const Json& request);
   void play(const CallPlace& place, const PlaybackControl& request, std::int64_t now_ns);
   void respond(const CallPlace& place, const Json& response);
   void respond(const CallPlace& place, const std::string& problem, StepIndex step);
@@ -199,6 +247,7 @@ class Gateway final : public observer::Receiver {
   std::uint32_t last_channel_ = 0;  // id
   std::size_t built_places_ = 0;    // variables that the channels have
 
+  KeptWireMessages kept_wire_;
   StepSnapshot snapshot_;
   std::uint64_t time_ns_ = 0;   // of the snapshot in the session
   std::uint64_t revision_ = 0;  // of the snapshot; 0: none
@@ -212,6 +261,7 @@ class Gateway final : public observer::Receiver {
   struct {
     bool is_paused = false;
     std::array<wire::NodeState, wire::kRoles> states{};
+    std::uint32_t roles = 0;                       // bits of the nodes that take part
     std::map<std::string, std::string> holders{};  // by input
     bool has_changed = false;                      // since the last values
   } seen_;                                         // what the events have stated

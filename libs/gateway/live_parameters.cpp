@@ -10,8 +10,6 @@
 namespace slew::gateway {
 namespace {
 
-constexpr std::size_t kMostGets = 16;  // requests for values that wait at once: changes go beside them
-
 std::string range_of(const scene::ParameterInfo& parameter) {
   return parameter.is_choice() ? scene::choice_list(parameter.choices)
                                : scene::range_text(parameter.range, parameter.dimension);
@@ -58,7 +56,8 @@ Json LiveParameters::values(const std::vector<std::string>& names) const {
 }
 
 void LiveParameters::set(const std::string& name, const std::variant<double, std::string>& value,
-                         std::optional<SimDuration> over, const Done& done, std::int64_t now_ns) {
+                         std::optional<SimDuration> over, Requests::Owner owner, const Done& done,
+                         std::int64_t now_ns) {
   const auto* const text = std::get_if<std::string>(&value);
   const scene::Assignment assignment = text != nullptr ? directory_.parse_assignment(name + "=" + *text, over)
                                                        : directory_.check(name, std::get<double>(value), over);
@@ -69,7 +68,7 @@ void LiveParameters::set(const std::string& name, const std::variant<double, std
   request.value = assignment.value;
   request.over_ns = assignment.over.ns;
   requests_.send(
-      request,
+      request, owner,
       [this, path = assignment.path, target = assignment.value, done](const Requests::Answer& answer) {
         if (answer.is_accepted) take_value(path, target, answer.step);
         done(answer.is_accepted ? "" : answer.reason, answer.step);
@@ -100,13 +99,13 @@ void LiveParameters::take(const wire::ControlReply& reply) {
 }
 
 void LiveParameters::poll(std::int64_t now_ns) {
-  while (!to_request_.empty() && requests_.waiting() < kMostGets) {
+  while (!to_request_.empty() && requests_.waiting_of(Requests::kGateway) < Requests::kMostOfOwner) {
     wire::ControlRequest request;
     request.action = wire::ControlAction::get_parameter;
     request.path = to_request_.front();
     to_request_.pop_front();
     requests_.send(
-        request,
+        request, Requests::kGateway,
         [this, path = request.path](const Requests::Answer& answer) {
           if (answer.is_accepted) take_value(path, answer.value, answer.step);
         },

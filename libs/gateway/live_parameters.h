@@ -34,9 +34,9 @@ class LiveParameters {
 
   // Empty: the session has accepted the change, which holds from the step on. Else the reason of the refusal.
   using Done = std::function<void(const std::string& problem, StepIndex step)>;
-  // value: SI, or a text as for `slewring param set`: "1500kg", the name of a choice.
+  // value: SI, or a text as for `slewring param set`: "1500kg", the name of a choice. owner: client.
   void set(const std::string& name, const std::variant<double, std::string>& value, std::optional<SimDuration> over,
-           const Done& done, std::int64_t now_ns);
+           Requests::Owner owner, const Done& done, std::int64_t now_ns);
 
   // Requests all values again.
   void refresh();

@@ -63,10 +63,10 @@ void put_transform(const std::string& time, const char* parent, const std::strin
 }
 
 Json entity(const std::string& name, const std::string& frame, std::uint64_t time_ns, const Json& shapes) {
-  Json json = {{"timestamp", time_json(time_ns)}, {"frame_id", frame},      {"id", name},
-               {"lifetime", time_json(0)},        {"frame_locked", true},   {"metadata", Json::array()},
-               {"arrows", Json::array()},         {"texts", Json::array()}, {"models", Json::array()}};
-  for (const char* kind : {"cubes", "spheres", "cylinders", "lines", "triangles"}) {
+  Json json = {{"timestamp", time_json(time_ns)}, {"frame_id", frame},     {"id", name},
+               {"lifetime", time_json(0)},        {"frame_locked", true},  {"metadata", Json::array()},
+               {"arrows", Json::array()},         {"texts", Json::array()}};
+  for (const char* kind : {"cubes", "spheres", "cylinders", "lines", "triangles", "models"}) {
     const Json* list = shapes.find(kind);
     json[kind] = list != nullptr ? *list : Json::array();
   }
@@ -77,7 +77,7 @@ Json entity(const std::string& name, const std::string& frame, std::uint64_t tim
 struct Star {
   Vec3 hub;
   bool has_hub = false;
-  bool has_shapes = false;
+  bool has_shapes = false, has_graphics = false;
   std::vector<Vec3> points;
 };
 
@@ -92,7 +92,16 @@ double size_of(const multibody::MechanicsDef& mechanics, const std::vector<Star>
 
 }  // namespace
 
-MachineFrames::MachineFrames(const scene::Scene& scene) : q_WG_(ground_in_world(scene.mechanics.gravity)) {
+std::string asset_name(const scene::GraphicDef& graphic) {
+  return graphic.name + ".glb";
+}
+
+std::string_view asset_of_uri(std::string_view uri) noexcept {
+  return uri.starts_with(kAssetScheme) ? uri.substr(kAssetScheme.size()) : std::string_view();
+}
+
+MachineFrames::MachineFrames(const scene::Scene& scene, const Assets& assets)
+    : q_WG_(ground_in_world(scene.mechanics.gravity)) {
   const multibody::MechanicsDef& mechanics = scene.mechanics;
   std::map<std::string, std::size_t> index = {{"Ground", 0}};
   bodies_.push_back({"Ground"});
@@ -114,19 +123,31 @@ MachineFrames::MachineFrames(const scene::Scene& scene) : q_WG_(ground_in_world(
     if (index.contains(force.body1)) stars[index.at(force.body1)].points.emplace_back(force.point1);
     if (index.contains(force.body2)) stars[index.at(force.body2)].points.emplace_back(force.point2);
   }
+  add_graphics(scene, assets);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) stars[i].has_graphics = bodies_[i].shapes.find("models") != nullptr;
   for (const multibody::ShapeDef& shape : mechanics.shapes) {
     const auto body = index.find(shape.body);
-    if (body == index.end()) continue;
+    if (body == index.end() || stars[body->second].has_graphics) continue;
     stars[body->second].has_shapes = true;
     add_shape(shape, color_of(body->second), bodies_[body->second].shapes);
   }
   size_ = size_of(mechanics, stars);
   for (std::size_t i = 1; i < bodies_.size(); ++i) {
-    if (stars[i].has_shapes) continue;
+    if (stars[i].has_shapes || stars[i].has_graphics) continue;
     stars[i].points.emplace_back(mechanics.bodies[i - 1].center_of_mass);
     add_star(stars[i].hub, stars[i].points, kStarThickness * size_, color_of(i), bodies_[i].shapes);
   }
   add_cylinders(scene);
+}
+
+void MachineFrames::add_graphics(const scene::Scene& scene, const Assets& assets) {
+  for (const scene::GraphicDef& graphic : scene.graphics) {
+    const std::string name = asset_name(graphic);
+    const auto body = std::ranges::find(bodies_, graphic.body, &Body::name);
+    if (body == bodies_.end() || !assets.contains(name)) continue;
+    add_model(std::string(kAssetScheme) + name, Vec3(graphic.position),
+              math::quaternion_of(math::rotation_zxz(graphic.orientation)), body->shapes);
+  }
 }
 
 void MachineFrames::add_cylinders(const scene::Scene& scene) {

@@ -5,14 +5,19 @@
 // eye on body 1 and `El/rod` at its eye on body 2, whose z axes point at each other's eye. All motion is in the
 // transforms (foxglove.FrameTransforms), so that the shapes are sent once (foxglove.SceneUpdate).
 //
-// A body has its contact shapes; without any it is a star of lines from the joint that carries it to the points at
-// which joints and forces act and to its centre of mass. Bending is not drawn.
+// A body has its meshes for the eye (scene/graphics.h), if their files are there; else its contact shapes; without any
+// it is a star of lines from the joint that carries it to the points at which joints and forces act and to its centre
+// of mass. Bending is not drawn.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/json.h"
@@ -24,9 +29,18 @@
 
 namespace slew::gateway {
 
+// Files for clients by name: binary glTF of the scene's graphics.
+using Assets = std::map<std::string, std::shared_ptr<const std::string>, std::less<>>;
+
+[[nodiscard]] std::string asset_name(const scene::GraphicDef& graphic);  // "Cab_View.glb"
+// The name of an asset in the protocol, and the asset's name in such a one; empty: it is none.
+inline constexpr std::string_view kAssetScheme = "package://slewring/";
+[[nodiscard]] std::string_view asset_of_uri(std::string_view uri) noexcept;
+
 class MachineFrames {
  public:
-  explicit MachineFrames(const scene::Scene& scene);
+  // assets: names of the files that clients can fetch, asset_name() of each graphic whose mesh is there.
+  MachineFrames(const scene::Scene& scene, const Assets& assets);
 
   // Finds the variables of the poses; bodies without them are not shown.
   void find_places(const observer::SessionView& view);
@@ -57,6 +71,7 @@ class MachineFrames {
     double shortest = 0;               // m; 0: not stated
   };
 
+  void add_graphics(const scene::Scene& scene, const Assets& assets);
   void add_cylinders(const scene::Scene& scene);
   [[nodiscard]] std::optional<Pose> pose(const Body& body, const StepSnapshot& snapshot) const noexcept;
   void put_cylinder(const Cylinder& cylinder, const StepSnapshot& snapshot, const std::string& time,

@@ -12,13 +12,19 @@ constexpr std::int64_t kGiveUpNs = 3'000'000'000;
 
 }  // namespace
 
-void Requests::send(wire::ControlRequest request, Done done, std::int64_t now_ns) {
-  if (entries_.size() >= kMostWaiting) {
-    done({.reason = "64 requests wait for their answers; nothing was changed; send it again later"});
-    return;
-  }
+void Requests::send(wire::ControlRequest request, Owner owner, Done done, std::int64_t now_ns) {
+  if (waiting_of(owner) >= kMostOfOwner)
+    return done(
+        {.reason = "16 requests of this client wait for their answers; nothing was changed; send it again later"});
+  if (entries_.size() >= kMostWaiting)
+    return done(
+        {.reason = "128 requests of all clients wait for their answers; nothing was changed; send it again later"});
   request.request = send_(request);
-  entries_.push_back({std::move(request), std::move(done), now_ns, now_ns + kRepeatNs});
+  entries_.push_back({std::move(request), owner, std::move(done), now_ns, now_ns + kRepeatNs});
+}
+
+std::size_t Requests::waiting_of(Owner owner) const noexcept {
+  return static_cast<std::size_t>(std::ranges::count(entries_, owner, &Entry::owner));
 }
 
 bool Requests::take(const wire::ControlReply& reply) {

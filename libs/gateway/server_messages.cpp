@@ -7,7 +7,7 @@
 namespace slew::gateway {
 namespace {
 
-enum class Opcode : std::uint8_t { message = 1, time = 2, service_response = 3, playback_state = 5 };
+enum class Opcode : std::uint8_t { message = 1, time = 2, service_response = 3, asset = 4, playback_state = 5 };
 
 constexpr std::uint64_t kSecondNs = 1'000'000'000;
 
@@ -70,11 +70,12 @@ std::string remove_status_text(std::string_view id) {
 std::string advertise_text(std::span<const ChannelInfo> channels) {
   Json list = Json::array();
   for (const ChannelInfo& channel : channels) {
+    const bool is_json = channel.encoding == ChannelEncoding::json;
     list.push_back({{"id", channel.id},
                     {"topic", channel.topic},
-                    {"encoding", "json"},
+                    {"encoding", is_json ? "json" : "cdr"},
                     {"schemaName", channel.schema_name},
-                    {"schemaEncoding", "jsonschema"},
+                    {"schemaEncoding", is_json ? "jsonschema" : "omgidl"},
                     {"schema", channel.schema}});
   }
   return Json({{"op", "advertise"}, {"channels", std::move(list)}}).dump();
@@ -125,6 +126,22 @@ std::string service_response_bytes(std::uint32_t service, std::uint32_t call, co
   put(bytes, call);
   put(bytes, std::string_view("json"));
   bytes += response.dump();
+  return bytes;
+}
+
+std::string asset_head(std::uint32_t request) {
+  std::string bytes = begin(Opcode::asset);
+  put(bytes, request);
+  bytes.push_back('\0');  // success
+  put(bytes, std::string_view());
+  return bytes;
+}
+
+std::string asset_failure_bytes(std::uint32_t request, std::string_view message) {
+  std::string bytes = begin(Opcode::asset);
+  put(bytes, request);
+  bytes.push_back('\1');
+  put(bytes, message);
   return bytes;
 }
 

@@ -29,12 +29,16 @@ struct ServerInfo {
   std::optional<DataRange> range{};  // of a recording
 };
 
-// A channel of the server. The schema is a JSON schema, messages are JSON.
+// json: the schema is a JSON schema; cdr: it is an interface definition (OMG IDL).
+enum class ChannelEncoding : std::uint8_t { json, cdr };
+
+// A channel of the server.
 struct ChannelInfo {
   std::uint32_t id = 0;
   std::string topic;
   std::string schema_name;
   std::string schema;
+  ChannelEncoding encoding = ChannelEncoding::json;
 };
 
 struct ServiceInfo {
@@ -71,6 +75,9 @@ struct PlaybackState {
 [[nodiscard]] std::string message_head(std::uint32_t subscription, std::uint64_t time_ns);
 [[nodiscard]] std::string time_bytes(std::uint64_t time_ns);
 [[nodiscard]] std::string service_response_bytes(std::uint32_t service, std::uint32_t call, const Json& response);
+// Head of an asset; its bytes follow. Or the reason why there is none.
+[[nodiscard]] std::string asset_head(std::uint32_t request);
+[[nodiscard]] std::string asset_failure_bytes(std::uint32_t request, std::string_view message);
 [[nodiscard]] std::string playback_state_bytes(const PlaybackState& state);
 
 }  // namespace slew::gateway

@@ -5,12 +5,14 @@
 #include <utility>
 
 #include "core/failure.h"
+#include "gateway/body_shapes.h"
 #include "gateway/gateway.h"
 
 namespace slew::gateway {
 namespace {
 
 constexpr double kLongestChange = 3600;  // s
+constexpr double kLongestSession = 1e9;  // s
 constexpr std::int64_t kMostSteps = 1'000'000'000;
 
 const char* to_text(PlaybackStatus status) noexcept {
@@ -89,7 +91,7 @@ void Gateway::run_call(const CallPlace& place, Call call, const Json& request, s
       const auto wanted = value.is_number() ? std::variant<double, std::string>(value.number())
                                             : std::variant<double, std::string>(value.text());
       return parameters_.set(
-          request.at("name").text(), wanted, over_of(request),
+          request.at("name").text(), wanted, over_of(request), place.client,
           [this, place](const std::string& problem, StepIndex step) { respond(place, problem, step); }, now_ns);
     }
     case Call::save:
@@ -120,7 +122,30 @@ void Gateway::run_call(const CallPlace& place, Call call, const Json& request, s
       wanted.seek_ns = static_cast<std::uint64_t>(std::llround(seconds * 1e9));
       return play(place, wanted, now_ns);
     }
+    case Call::take_over:
+      return take_over(place, request);
   }
+}
+
+void Gateway::take_over(const CallPlace& place, const Json& request) {
+  ContinuationRequest wanted;
+  wanted.time = request.at("time").number();
+  const double end = def_.range ? static_cast<double>(def_.range->to_ns) * 1e-9 : 0;
+  if (!(wanted.time >= 0 && wanted.time <= end))
+    return fail(place, "'time' is no time of the recording; nothing was started");
+  const std::string input = request.text_or("input", "none");
+  if (input != "none" && input != "script") return fail(place, "'input' is not none or script; nothing was started");
+  if (input == "script") wanted.input = ContinuationInput::script;
+  if (const Json* duration = request.find("duration")) wanted.duration = duration->number();
+  if (!(wanted.duration == 0 || (wanted.duration > wanted.time && wanted.duration <= kLongestSession)))
+    return fail(place, "'duration' is neither 0 nor a time behind 'time' of at most 1e9 s; nothing was started");
+  def_.continuation->start(wanted, [this, place](const Continuation::Answer& answer) {
+    respond(place, Json({{"accepted", answer.problem.empty()},
+                         {"reason", answer.problem},
+                         {"session", answer.session},
+                         {"page", answer.page},
+                         {"foxglove", answer.foxglove}}));
+  });
 }
 
 void Gateway::keep(const CallPlace& place, Call call, const std::string& name) {
@@ -137,7 +162,7 @@ void Gateway::control(const CallPlace& place, wire::ControlAction action, double
   request.action = action;
   request.value = value;
   requests_.send(
-      request,
+      request, place.client,
       [this, place](const Requests::Answer& answer) {
         respond(place, answer.is_accepted ? "" : answer.reason, answer.step);
       },
@@ -161,7 +186,7 @@ void Gateway::play(const CallPlace& place, const PlaybackControl& request, std::
 // ----------------------------------------------------------------------------------------------------
 
 Json Gateway::description(const observer::SessionView& view) const {
-  Json variables = Json::array(), inputs = Json::array(), calls = Json::array();
+  Json variables = Json::array(), inputs = Json::array(), calls = Json::array(), graphics = Json::array();
   for (const observer::VariableView* variable : view.variables())
     variables.push_back({{"name", variable->name}, {"unit", variable->unit}});
   for (const InputChannel& input : inputs_.channels()) {
@@ -169,6 +194,15 @@ Json Gateway::description(const observer::SessionView& view) const {
                       {"topic", "/inputs/" + input.name},
                       {"is_digital", input.is_digital},
                       {"is_lockstep", input.is_lockstep}});
+  }
+  for (const scene::GraphicDef& graphic : scene_.graphics) {
+    const std::string name = asset_name(graphic);
+    if (!def_.assets.contains(name)) continue;
+    const math::Quaternion orientation = math::quaternion_of(math::rotation_zxz(graphic.orientation));
+    graphics.push_back({{"name", graphic.name},
+                        {"body", graphic.body},
+                        {"path", "/assets/" + name},
+                        {"pose", pose_json(math::Vec3(graphic.position), orientation)}});
   }
   for (const ServiceInfo& service : services_) calls.push_back({{"name", service.name}, {"request", service.request}});
   return {{"session", def_.name},
@@ -178,6 +212,7 @@ Json Gateway::description(const observer::SessionView& view) const {
           {"variables", std::move(variables)},
           {"inputs", std::move(inputs)},
           {"services", std::move(calls)},
+          {"graphics", std::move(graphics)},
           {"parameters", is_steering() ? parameters_.values({}) : Json::array()}};
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array kSessionCalls = {Call::pause, Call::resume, Call::step,  Call::reset,  Call::set_parameter,
                                       Call::save,  Call::load,   Call::lease, Call::release};
-constexpr std::array kRecordingCalls = {Call::play, Call::pause, Call::speed, Call::seek};
+constexpr std::array kContinuedCalls = {Call::play, Call::pause, Call::speed, Call::seek, Call::take_over};
 
 Json member(const char* type, const char* description) {
   return {{"type", type}, {"description", description}};
@@ -29,6 +29,14 @@ Json playback_schema() {
   return object_schema({{"status", member("string", "playing, paused or ended")},
                         {"time", member("number", "s")},
                         {"speed", member("number", "over real time")}});
+}
+
+Json continuation_schema() {
+  return object_schema({{"accepted", member("boolean", "")},
+                        {"reason", member("string", "of a refusal")},
+                        {"session", member("string", "name of the live session")},
+                        {"page", member("string", "address of its window")},
+                        {"foxglove", member("string", "the same for the protocol")}});
 }
 
 ServiceInfo info_of(Call call) {
@@ -66,6 +74,13 @@ ServiceInfo info_of(Call call) {
       return make("speed", object_schema({{"factor", member("number", "over real time, 0.01 to 100")}}, {"factor"}));
     case Call::seek:
       return make("seek", object_schema({{"time", member("number", "s")}}, {"time"}));
+    case Call::take_over:
+      return make(
+          "take_over",
+          object_schema({{"time", member("number", "s, of the recording")},
+                         {"input", member("string", "none (as without it), or script: the recorded scene's")},
+                         {"duration", member("number", "s, end of the session's time; 0, as without it: none")}},
+                        {"time"}));
   }
   return {};
 }
@@ -84,15 +99,19 @@ std::span<const Call> session_calls() noexcept {
 }
 
 std::span<const Call> recording_calls() noexcept {
-  return kRecordingCalls;
+  return std::span(kContinuedCalls).first<kContinuedCalls.size() - 1>();
+}
+
+std::span<const Call> continued_calls() noexcept {
+  return kContinuedCalls;
 }
 
 std::vector<ServiceInfo> service_infos(std::span<const Call> calls) {
   std::vector<ServiceInfo> infos;
-  const bool is_recording = calls.data() == kRecordingCalls.data();
+  const bool is_recording = calls.data() == kContinuedCalls.data();
   for (const Call call : calls) {
     infos.push_back(info_of(call));
-    if (is_recording) infos.back().response = playback_schema();
+    if (is_recording) infos.back().response = call == Call::take_over ? continuation_schema() : playback_schema();
   }
   return infos;
 }

@@ -11,9 +11,7 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr double kPositionScale = 1e-3;  // m: at rtol 1e-4 an error of 0.1 um, a few newtons of oil spring
-constexpr double kSpeedScale = 0.1;      // m/s
-constexpr double kNearFloor = 2;         // in pressure scales: range where air makes oil soft
+constexpr double kNearFloor = 2;  // in pressure scales: range where air makes oil soft
 
 }  // namespace
 
@@ -48,8 +46,8 @@ Circuit::Circuit(const HydraulicsDef& def)
   add_contents(builder);
 
   scale_.assign(at(volume_count()), def.pressure_scale);
-  scale_.insert(scale_.end(), at(actuator_count()), kPositionScale);
-  scale_.insert(scale_.end(), at(actuator_count()), kSpeedScale);
+  for (const Actuator& actuator : actuators_) scale_.push_back(actuator.position_scale);
+  for (const Actuator& actuator : actuators_) scale_.push_back(actuator.speed_scale);
   for (const ComponentState& state : states_) scale_.push_back(state.scale);
   relative_.assign(at(size_), 1);
   for (int j = 0; j < actuator_count(); ++j) relative_[at(position(j))] = 0;
@@ -104,11 +102,11 @@ void Circuit::add_contents(const CircuitBuilder& builder) {
     const Piece& piece = pieces_[k];
     if (piece.position < 0) continue;
     const int actuator = piece.position - volume_count();
-    lines_[2 * at(actuator) + (piece.slope > 0 ? 0 : 1)] = {.volume = piece.volume_index,
-                                                            .position = piece.position,
-                                                            .speed = piece.position + actuator_count(),
-                                                            .slope = piece.slope,
-                                                            .piece = k};
+    lines_[2 * at(actuator) + (piece.sweep() > 0 ? 0 : 1)] = {.volume = piece.volume_index,
+                                                              .position = piece.position,
+                                                              .speed = piece.position + actuator_count(),
+                                                              .slope = piece.sweep(),
+                                                              .piece = k};
   }
 }
 

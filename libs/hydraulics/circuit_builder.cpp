@@ -56,7 +56,9 @@ int CircuitBuilder::add_actuator(const std::string& component, const ActuatorDef
                         .area_b = actuator.area_b,
                         .coordinate = actuator.coordinate,
                         .line_force = actuator.line_force,
-                        .start = actuator.start});
+                        .start = actuator.start,
+                        .position_scale = actuator.position_scale,
+                        .speed_scale = actuator.speed_scale});
   return static_cast<int>(actuators_.size()) - 1;
 }
 

@@ -23,11 +23,15 @@ struct WallLaw {
 // Oil in a hose, chamber or block: V = volume + slope x, at least `smallest`.
 struct Content {
   StateIndex volume_index = 0;
-  double volume = 0;         // m3, at x = 0
-  double slope = 0;          // m2, dV/dx
-  StateIndex position = -1;  // position of x; -1: constant
-  double smallest = 0;       // m3
+  double volume = 0;             // m3, at x = 0
+  double slope = 0;              // m2, dV/dx
+  StateIndex position = -1;      // position of x; -1: constant
+  double smallest = 0;           // m3
+  double swept_by_position = 0;  // m2, oil that leaves per x where it is not `slope`: a motor's displacement
   WallLaw wall = {};
+
+  // Oil that leaves the volume per x [m2].
+  [[nodiscard]] double sweep() const noexcept { return swept_by_position != 0 ? swept_by_position : slope; }
 };
 
 // A cylinder as the power port sees it.
@@ -39,6 +43,7 @@ struct Actuator {
   PortCoordinate coordinate = {};  // x = offset + ratio * element coordinate
   LineForceParameters line_force = {};
   StartRule start = StartRule::return_pressure;
+  double position_scale = 1, speed_scale = 1;  // m, m/s, typical sizes
 };
 
 // A valve that relieves a volume even if all other connections are closed.

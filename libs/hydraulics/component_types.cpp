@@ -11,12 +11,18 @@
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose.h"
+#include "hydraulics/components/hose_burst_valve.h"
+#include "hydraulics/components/hydraulic_motor.h"
 #include "hydraulics/components/l90ls_valve.h"
 #include "hydraulics/components/ls_pump.h"
 #include "hydraulics/components/ls_shuttle.h"
+#include "hydraulics/components/pump.h"
 #include "hydraulics/components/relief_valve.h"
 #include "hydraulics/components/restrictions.h"
+#include "hydraulics/components/single_acting_cylinder.h"
 #include "hydraulics/components/slew_cylinder.h"
+#include "hydraulics/components/sources.h"
+#include "hydraulics/components/spool_valve.h"
 
 namespace slew::hydraulics {
 
@@ -25,9 +31,12 @@ std::span<const ComponentType> component_types() {
       hose_type(),
       double_acting_cylinder_type(),
       double_rod_cylinder_type(),
+      single_acting_cylinder_type(),
       slew_cylinder_type(),
+      hydraulic_motor_type(),
       l90ls_valve_type(),
       four_way_valve_type(),
+      spool_valve_type(),
       ls_shuttle_type(),
       relief_valve_type(),
       direct_relief_valve_type(),
@@ -36,9 +45,13 @@ std::span<const ComponentType> component_types() {
       pilot_check_valve_type(),
       double_pilot_check_valve_type(),
       counterbalance_valve_type(),
+      hose_burst_valve_type(),
       accumulator_type(),
       compensated_orifice_type(),
       ls_pump_type(),
+      pump_type(),
+      flow_source_type(),
+      pressure_source_type(),
       bleed_type(),
       orifice_type(),
       laminar_restriction_type(),

@@ -40,7 +40,7 @@ struct LineState {
 
 struct LineChamber {
   StateIndex volume = 0, position = 0, speed = 0;
-  double slope = 0;       // S [m2]
+  double slope = 0;       // S [m2], of a motor its displacement [m3/rad]
   std::size_t piece = 0;  // piece of the circuit
   bool is_line = false;
   double delay = 0;  // T [s]

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 #include "hydraulics/oil.h"
@@ -44,11 +45,14 @@ void find_unrelieved_pumps(const HydraulicsDef& def, Problems& warnings) {
   const PumpLines lines = lines_of(def);
   for (const PumpLines::Pump& pump : lines.pumps) {
     if (is_relieved(lines, pump)) continue;
+    const std::string end = std::isfinite(pump.pressure)
+                                ? fmt::format("ends where the pump's controller does, {:.6g} bar above tank, or beyond",
+                                              pump.pressure / kBar)
+                                : std::string("rises without limit");
     warnings.push_back(
-        {pump.name + ".port_a",
-         fmt::format("the pump's line has no relief valve: where '{}' is closed off, its pressure ends "
-                     "where the pump's controller does, {:.6g} bar above tank, or beyond",
-                     pump.outlet, pump.pressure / kBar),
+        {pump.name + "." + pump.key,
+         fmt::format("the pump's line has no relief valve: where '{}' is closed off, its pressure {}", pump.outlet,
+                     end),
          fmt::format("a relief_valve on the line, set below {:g} bar", OilCompressibility::kHighest / kBar), ""});
   }
 }

@@ -27,9 +27,10 @@ struct PumpLines {
     bool is_one_way = false;                                // from a to b only
   };
   struct Pump {
-    std::string name, outlet;  // component, volume
-    double flow = 0;           // m3/s, the most that it delivers
-    double pressure = 0;       // Pa above tank, at which its controller ends
+    std::string name, outlet;    // component, volume
+    std::string key = "port_a";  // field that a warning names
+    double flow = 0;             // m3/s, the most that it delivers
+    double pressure = 0;         // Pa above tank, at which its controller ends; infinite: it has none
   };
   double oil_density = 0;            // kg/m3
   std::vector<Connection> open{};    // volumes that are connected whatever the signals

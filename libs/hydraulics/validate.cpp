@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "core/dimension.h"
@@ -111,12 +112,20 @@ void check_curve(const CurveDef& curve, Problems& errors) {
   }
 }
 
+// The component is an actuator with a chamber in the volume.
+bool is_at_port(const ComponentDef& component, const VolumeDef& volume) {
+  const std::optional<ActuatorDef> actuator = component.actuator();
+  return actuator && (actuator->port_a == volume.name || actuator->port_b == volume.name);
+}
+
 // Volumes filled by a hose or chamber.
 bool has_content(const HydraulicsDef& def, const VolumeDef& volume) {
   if (volume.fixed || volume.rigid_volume > 0) return true;
   for (const auto& component : def.components) {
     const ComponentType* type = find_component_type(component->type_name());
-    if (type == nullptr || !(component->actuator() || type->name == "hose")) continue;
+    if (type == nullptr) continue;
+    if (is_at_port(*component, volume)) return true;
+    if (type->name != "hose") continue;
     for (const Field& row : type->fields) {
       if (row.reference == "volume" && member<std::string>(row, component->address()) == volume.name) return true;
     }
@@ -245,13 +254,7 @@ void check_circuit_numbers(const HydraulicsDef& def, Problems& errors) {
 
 const ComponentDef* find_chamber(const HydraulicsDef& def, const VolumeDef& volume) {
   for (const auto& component : def.components) {
-    const ComponentType* type = find_component_type(component->type_name());
-    if (type == nullptr || !component->actuator()) continue;
-    for (const Field& row : type->fields) {
-      if (row.reference == "volume" && member<std::string>(row, component->address()) == volume.name) {
-        return component.get();
-      }
-    }
+    if (is_at_port(*component, volume)) return component.get();
   }
   return nullptr;
 }

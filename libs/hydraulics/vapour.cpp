@@ -66,7 +66,7 @@ double Circuit::chamber_growth(std::size_t volume) const noexcept {
   for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
     const Piece& piece = pieces_[k];
     if (piece.position >= 0 && piece.lumped == 1)
-      dV += piece.slope * displacement_[static_cast<std::size_t>(piece.position - volume_count())];
+      dV += piece.sweep() * displacement_[static_cast<std::size_t>(piece.position - volume_count())];
   }
   return dV;
 }
@@ -122,7 +122,7 @@ bool Circuit::is_closed(std::size_t volume, const double* y, const double* f) co
   for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
     const Piece& piece = pieces_[k];
     if (piece.position < 0) continue;
-    const double swept = piece.slope * y[piece.position + actuator_count()];
+    const double swept = piece.sweep() * y[piece.position + actuator_count()];
     if (piece.lumped == 1) sum += swept;
     size += std::fabs(swept);
   }

@@ -9,7 +9,6 @@
 #include "keys/certificates.h"
 #include "keys/key_files.h"
 #include "keys/key_store.h"
-#include "keys/openssl.h"
 #include "keys/security_documents.h"
 #include "node/open_transport.h"
 #include "transport/protection.h"
@@ -19,29 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string line_of(std::string text) {
-  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
-  return text;
-}
-
 bool others_may_read(const fs::path& path) {
   struct stat status {};
   return ::stat(path.c_str(), &status) == 0 && (status.st_mode & (S_IRWXG | S_IRWXO)) != 0;
 }
 
-// openssl's message on one line
-std::string reason_of(const std::string& output) {
-  const std::size_t from = output.find("error ");
-  std::string line = output.substr(from == std::string::npos ? 0 : from);
-  line = line.substr(0, line.find('\n'));
-  return line;
-}
-
 std::string problem_of_signature(const std::string& document, const std::string& authority) {
-  std::string output;
-  const bool is_good =
-      try_openssl({"smime", "-verify", "-in", document, "-CAfile", authority, "-text", "-out", "/dev/null"}, output);
-  return is_good ? "" : fmt::format("{} is not signed by {}", document, authority);
+  return is_signed_by(document, authority) ? "" : fmt::format("{} is not signed by {}", document, authority);
 }
 
 // Problem of a signed governance document: it differs from the present text, line ends apart.
@@ -69,16 +52,12 @@ KeyFinding check_identity(const fs::path& folder, const std::string& name) {
   transport::Network network;
   require(transport::protect(network, {folder.string(), name}));
   const transport::SecurityFiles& files = *network.security;
-  std::string output;
-  if (!try_openssl({"verify", "-CAfile", files.identity_authority, files.certificate}, output)) {
-    finding.problem = fmt::format("the certificate is not good: {}", reason_of(output));
+  if (const std::string why = problem_of_certificate(files.certificate, files.identity_authority); !why.empty()) {
+    finding.problem = fmt::format("the certificate is not good: {}", why);
     return finding;
   }
-  finding.expires = line_of(run_openssl({"x509", "-in", files.certificate, "-noout", "-enddate"}));
-  finding.expires = finding.expires.substr(finding.expires.find('=') + 1);
-  const std::string of_certificate = run_openssl({"x509", "-in", files.certificate, "-noout", "-pubkey"});
-  const std::string of_key = run_openssl({"pkey", "-in", files.private_key, "-pubout"});
-  if (of_certificate != of_key) {
+  finding.expires = end_of(files.certificate);
+  if (!is_key_of(files.private_key, files.certificate)) {
     finding.problem = "the private key is not that of the certificate";
   } else if (others_may_read(files.private_key)) {
     finding.problem = fmt::format("other users may read the private key; chmod 600 {}", files.private_key);
@@ -120,8 +99,7 @@ std::vector<KeyFinding> check_keys(const fs::path& folder) {
                                          (folder / transport::kPermissionsAuthority).string());
   }
   if (whole.problem.empty()) whole.problem = problem_of_governance(folder / transport::kGovernance);
-  whole.expires = line_of(run_openssl({"x509", "-in", authority.string(), "-noout", "-enddate"}));
-  whole.expires = whole.expires.substr(whole.expires.find('=') + 1);
+  whole.expires = end_of(authority);
   std::vector<KeyFinding> findings = {whole};
   for (const std::string& name : names) findings.push_back(check_identity(folder, name));
   return findings;

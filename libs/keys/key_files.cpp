@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "keys/key_files.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -24,6 +26,13 @@ void write_file(const fs::path& path, const std::string& text) {
   file << text;
   file.close();
   if (!file) throw storage_failure(path, "cannot be written");
+}
+
+void write_private_file(const fs::path& path, const std::string& text) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (file < 0) throw storage_failure(path, std::strerror(errno));
+  ::close(file);
+  write_file(path, text);
 }
 
 std::string read_file(const fs::path& path) {

@@ -14,6 +14,8 @@ namespace slew::keys {
 
 // Throws Failure when it cannot be written.
 void write_file(const std::filesystem::path& path, const std::string& text);
+// The same for a new file that only its owner may read, whatever the umask.
+void write_private_file(const std::filesystem::path& path, const std::string& text);
 // Empty when it cannot be read.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 

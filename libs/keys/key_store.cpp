@@ -153,7 +153,7 @@ CertificateFiles KeyStore::permissions_authority() const {
 void KeyStore::make_authorities(int days) const {
   const auto make = [&](const char* what, const CertificateFiles& files) {
     make_key(files.key);
-    make_authority(files, fmt::format("/O=Slewring/CN=authority of {} {}", what, random_number()), validity_of(days));
+    make_authority(files, fmt::format("authority of {} {}", what, random_number()), validity_of(days));
   };
   make("identities", identity_authority());
   make("permissions", permissions_authority());
@@ -170,7 +170,7 @@ void KeyStore::make_identity(const KeyIdentity& identity) const {
     const CertificateFiles files{certificate, folder / transport::kPrivateKey};
     const Validity validity = validity_of(identity.days);
     make_key(files.key);
-    make_certificate(files, identity_authority(), "/O=Slewring/CN=" + identity.name, validity);
+    make_certificate(files, identity_authority(), identity.name, validity);
     const Allowed allowed = allowed_to(identity.role).value();
     write_file(permissions, permissions_xml({identity.name, subject_of(certificate), identity.session, allowed.writes,
                                              allowed.reads, validity.from, validity.to}));

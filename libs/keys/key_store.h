@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A key store: the authorities of a set of machines, and an identity with keys for every role that takes part. Made and
-// changed with the openssl command line; read by nodes through transport/protection.h.
+// A key store: the authorities of a set of machines, and an identity with keys for every role that takes part. Nodes
+// read it through transport/protection.h.
 //
 // The packaged DDS has no list of revoked certificates: to revoke an identity, the authorities and all other identities
 // are made again, and their holders need the new ones.
@@ -28,7 +28,7 @@ struct KeyIdentity {
 struct KeyFinding {
   std::string identity;  // empty: the store as a whole
   std::string problem;   // empty: good
-  std::string expires;   // as openssl writes it; empty: unknown
+  std::string expires;   // "Nov 23 00:00:00 2027 GMT"; empty: unknown
 };
 
 class KeyStore {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <ranges>
 
 #include "core/index.h"
 
@@ -116,20 +115,23 @@ void Semidefinite::factorize(std::span<const double> a, std::span<const double> 
   factorize_rows<Columns::some>(a, reference, tolerance);
 }
 
-template <Semidefinite::Columns kColumns, typename Rows>
-void Semidefinite::solve_rows(const Rows& rows, std::span<double> b) const noexcept {
-  for (const int k : rows) {
-    double x = b[at(k)];
-    for_each_run<kColumns>(at(k), [&](const Run& run) {
+// row_at(0) to row_at(count - 1) rise
+template <Semidefinite::Columns kColumns, typename RowAt>
+void Semidefinite::solve_rows(std::size_t count, const RowAt& row_at, std::span<double> b) const noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t k = row_at(i);
+    double x = b[k];
+    for_each_run<kColumns>(k, [&](const Run& run) {
       const double* L = lower_.data() + run.offset;
       for (std::size_t j = run.begin; j < run.end; ++j) x -= L[j] * b[j];
     });
-    b[at(k)] = is_redundant_[at(k)] != 0 ? 0 : x;
+    b[k] = is_redundant_[k] != 0 ? 0 : x;
   }
-  for (const int k : rows) b[at(k)] *= pivot_[at(k)];
-  for (const int k : std::views::reverse(rows)) {
-    const double x = b[at(k)];
-    for_each_run<kColumns>(at(k), [&](const Run& run) {
+  for (std::size_t i = 0; i < count; ++i) b[row_at(i)] *= pivot_[row_at(i)];
+  for (std::size_t i = count; i-- > 0;) {
+    const std::size_t k = row_at(i);
+    const double x = b[k];
+    for_each_run<kColumns>(k, [&](const Run& run) {
       const double* L = lower_.data() + run.offset;
       for (std::size_t j = run.begin; j < run.end; ++j) b[j] -= L[j] * x;
     });
@@ -137,14 +139,15 @@ void Semidefinite::solve_rows(const Rows& rows, std::span<double> b) const noexc
 }
 
 void Semidefinite::solve(std::span<double> b) const noexcept {
-  const auto all = std::views::iota(0, size());
-  if (columns_ == Columns::all) return solve_rows<Columns::all>(all, b);
-  solve_rows<Columns::some>(all, b);
+  const auto row_at = [](std::size_t i) { return i; };
+  if (columns_ == Columns::all) return solve_rows<Columns::all>(at(size()), row_at, b);
+  solve_rows<Columns::some>(at(size()), row_at, b);
 }
 
 void Semidefinite::solve(std::span<const int> rows, std::span<double> b) const noexcept {
-  if (columns_ == Columns::all) return solve_rows<Columns::all>(rows, b);
-  solve_rows<Columns::some>(rows, b);
+  const auto row_at = [rows](std::size_t i) { return at(rows[i]); };
+  if (columns_ == Columns::all) return solve_rows<Columns::all>(rows.size(), row_at, b);
+  solve_rows<Columns::some>(rows.size(), row_at, b);
 }
 
 }  // namespace slew::math

@@ -67,8 +67,8 @@ class Semidefinite {
   [[nodiscard]] double eliminate(std::size_t k, std::span<const double> a) noexcept;
   template <Columns kColumns>
   void factorize_rows(std::span<const double> a, std::span<const double> reference, double tolerance) noexcept;
-  template <Columns kColumns, typename Rows>
-  void solve_rows(const Rows& rows, std::span<double> b) const noexcept;
+  template <Columns kColumns, typename RowAt>
+  void solve_rows(std::size_t count, const RowAt& row_at, std::span<double> b) const noexcept;
 
   Columns columns_ = Columns::all;
   std::vector<Row> rows_;

@@ -40,7 +40,7 @@ SceneEquations::SceneEquations(const scene::Scene& scene)
       u_rate_(state_.u.size()),
       port_states_(scene.ports.size()) {
   for (const scene::PortDef& port : scene.ports) {
-    ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});
+    ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force), port.unit});
   }
   u_ = state_.q.size();
   z_ = u_ + state_.u.size();
@@ -371,9 +371,10 @@ void SceneEquations::list_variables() {
   for (ElementVariable& variable : multibody::reaction_variables(model_)) variables_.push_back(std::move(variable));
   reaction_variables_ = variables_.size() - model_variables_;
   for (const Port& port : ports_) {
-    variables_.push_back({port.name + ".line_force", Dimension::force});
-    variables_.push_back({port.name + ".friction_force", Dimension::force});
-    variables_.push_back({port.name + ".end_stop_force", Dimension::force});
+    const Dimension force = coupling::dimensions_of(port.unit).force;
+    variables_.push_back({port.name + ".line_force", force});
+    variables_.push_back({port.name + ".friction_force", force});
+    variables_.push_back({port.name + ".end_stop_force", force});
   }
   if (circuit_ == nullptr) return;
   const std::span<const ElementVariable> circuit = circuit_->variables();

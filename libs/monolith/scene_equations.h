@@ -126,6 +126,7 @@ class SceneEquations {
     std::string name;
     double offset, ratio;
     coupling::LineForceLaw law;
+    coupling::PortUnit unit;
   };
 
   void take_state(double t, const double* y) noexcept;

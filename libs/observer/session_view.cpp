@@ -33,9 +33,9 @@ void SessionView::take(Topic topic, Bytes bytes, std::optional<double> time, Rec
     if (pending_.size() < kMostPending) pending_.push_back({topic, {bytes.begin(), bytes.end()}, time});
     return;
   }
+  if (topic == Topic::session) take_session(bytes, receiver);
+  if (receiver != nullptr) pass_on(topic, bytes, time, *receiver);
   switch (topic) {
-    case Topic::session:
-      return take_session(bytes, receiver);
     case Topic::node_status:
       return take_status(bytes);
     case Topic::health:
@@ -57,6 +57,15 @@ void SessionView::take(Topic topic, Bytes bytes, std::optional<double> time, Rec
     default:
       return;
   }
+}
+
+void SessionView::pass_on(Topic topic, Bytes bytes, std::optional<double> time, Receiver& receiver) {
+  wire::Header header;
+  const bool has_header = topic != Topic::controller_input && topic != Topic::control_request;
+  if (has_header && (!transport::decode_header(bytes, header) || node_of(header) == nullptr)) return;
+  if (!has_header && !time) return;  // a live one may be of another session
+  const StepIndex step = std::max<StepIndex>(header.step, 0);
+  receiver.take_wire(topic, bytes, time ? *time : static_cast<double>(start_of(step, {session_->step_ns}).ns) / 1e9);
 }
 
 void SessionView::take_status(Bytes bytes) {

@@ -65,6 +65,9 @@ class Receiver {
   virtual ~Receiver() = default;
   // Another session has become the view's one, or none is left: messages from before belong to the earlier one.
   virtual void begin_session() {}
+  // Every message of the session, as it came, before it is read; of a recording also those that name no session. time:
+  // of the message, or its step, in the session [s].
+  virtual void take_wire(wire::Topic, std::span<const std::byte> /*bytes*/, double /*time*/) {}
   virtual void take_directory(const wire::VariableDirectory&) {}
   // In phase RUNNING. time: of the block in the session [s].
   virtual void take_block(const wire::VariableBlock&, std::span<const std::byte> /*bytes*/, double /*time*/) {}
@@ -130,6 +133,7 @@ class SessionView {
  private:
   using Bytes = std::span<const std::byte>;
 
+  void pass_on(wire::Topic topic, Bytes bytes, std::optional<double> time, Receiver& receiver);
   void take_session(Bytes bytes, Receiver* receiver);
   void look_at(std::optional<wire::SessionDescription> session, Receiver* receiver);
   void take_lease(Bytes bytes, Receiver* receiver);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/assets.h"
+#include "scene/scope.h"
 #include "scene/sections.h"
 #include "scene/table_file.h"
 
@@ -178,6 +179,10 @@ std::string value_text(const Field& field, void* def) {
 }
 
 std::string yaml_text(const std::string& text) {
+  return yaml_scalar(is_expression(text) || is_escaped(text) ? "$" + text : text);
+}
+
+std::string yaml_scalar(const std::string& text) {
   if (is_plain_word(text)) return text;
   std::string quoted = "\"";
   for (const char c : text) {
@@ -202,6 +207,11 @@ std::string canonical_text(Scene& scene, Problems& problems) {
   if (!scene.description.empty()) text += "description: " + yaml_text(scene.description) + "\n";
   if (!scene.assets.empty()) {
     text += "assets: " + list_text(scene.assets, [](const Asset& asset) { return yaml_text(asset.name); }) + "\n";
+  }
+  if (!scene.other_payloads.empty()) {
+    std::vector<std::string> payloads = scene.other_payloads;
+    payloads.insert(payloads.begin(), scene.mechanics.payload);
+    text += "payload: " + list_text(payloads, yaml_text) + "\n";
   }
   const std::vector<ElementRef> all = elements(scene);
   for (const ElementRef& single : single_sections(scene)) {

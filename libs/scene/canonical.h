@@ -19,7 +19,11 @@ namespace slew::scene {
 // The value of one field as YAML; empty if a scene cannot express it.
 [[nodiscard]] std::string value_text(const Field& field, void* def);
 
-// A text as a YAML scalar: plain where that is safe, else in double quotes.
+// A text as a value of a scene: a YAML scalar, plain where that is safe, else in double quotes; `${` at its begin,
+// which begins an expression, as `$${`.
 [[nodiscard]] std::string yaml_text(const std::string& text);
+
+// The YAML scalar alone.
+[[nodiscard]] std::string yaml_scalar(const std::string& text);
 
 }  // namespace slew::scene

@@ -53,9 +53,7 @@ bool Report::is_override(const Mark& mark) const noexcept {
 }
 
 int Report::layer(const Mark& mark) const noexcept {
-  const auto count = static_cast<int>(sources_.size());
-  // the scene's own file is read first, then included files, then the overrides
-  return is_override(mark) ? 2 * count : mark.source == 0 ? count : mark.source;
+  return is_override(mark) ? layers_ + 1 : sources_[static_cast<std::size_t>(mark.source)].layer;
 }
 
 Diagnostic Report::at(const Mark& mark, std::string path, ValueProblem problem) const {

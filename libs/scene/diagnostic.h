@@ -68,6 +68,8 @@ class Report {
   [[nodiscard]] bool is_override(const Mark& mark) const noexcept;
   // Layer of a place: included files, the scene's own file over them, overrides over both.
   [[nodiscard]] int layer(const Mark& mark) const noexcept;
+  // Puts an included file's layer over those that were put before.
+  void put_on_top(int source) noexcept { sources_[static_cast<std::size_t>(source)].layer = ++layers_; }
   // The diagnostic at this place, for warnings and problems.
   [[nodiscard]] Diagnostic at(const Mark& mark, std::string path, ValueProblem problem) const;
 
@@ -86,8 +88,10 @@ class Report {
   struct Source {
     std::string label;
     Lines lines;
+    int layer = 0;
   };
   std::vector<Source> sources_;
+  int layers_ = 0;
   std::vector<Entry> entries_;
 };
 

@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/expand.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "core/suggestion.h"
 #include "scene/assets.h"
+#include "scene/element_table.h"
+#include "scene/field_reader.h"
+#include "scene/instances.h"
+#include "scene/named_points.h"
+#include "scene/scope.h"
 #include "scene/sections.h"
 #include "scene/setting.h"
 #include "scene/source.h"
+#include "scene/tree_merge.h"
 
 namespace slew::scene {
 namespace {
@@ -20,63 +29,137 @@ std::optional<Node> read_tree(const std::string& path, int source, Report& repor
   return text ? parse_yaml(*text, report) : std::nullopt;
 }
 
-// Maps merge key by key, anything else is replaced; new keys go to the end.
-void merge(Node& base, Node overlay) {
-  if (base.kind != Node::Kind::map || overlay.kind != Node::Kind::map) {
-    base = std::move(overlay);
-    return;
+// ---- includes
+
+// Reads the files of a scene: each file is laid over those that it includes. A file with a prefix stays apart, as
+// instances.h expects it.
+class IncludeReader {
+ public:
+  IncludeReader(LoadContext load_context, Includes includes, Report& report)
+      : load_context_(std::move(load_context)), includes_(includes), report_(report) {}
+
+  // The scene with what it includes; empty after a problem. file: its name in its folder.
+  std::optional<Node> read(const std::string& path, const std::string& file) {
+    open_.push_back(file);
+    return read(path);
   }
-  base.mark = overlay.mark;
-  std::move(overlay.duplicates.begin(), overlay.duplicates.end(), std::back_inserter(base.duplicates));
-  for (Node::Entry& entry : overlay.entries) {
-    if (Node::Entry* found = base.find(entry.key)) {
-      found->mark = entry.mark;
-      merge(found->value, std::move(entry.value));
+
+ private:
+  std::optional<Node> read(const std::string& path) {
+    const int source = report_.add_source(path);
+    std::optional<Node> tree = read_tree(path, source, report_);
+    if (!tree) return std::nullopt;
+    const auto include = take(*tree, kIncludeKey);
+    if (include && !add_included(include->value, *tree)) return std::nullopt;
+    report_.put_on_top(source);
+    return tree;
+  }
+
+  bool add_included(const Node& include, Node& tree) {
+    Node base, apart;
+    base.kind = apart.kind = Node::Kind::map;
+    bool is_complete = true;
+    const auto add = [&](const Node& item) { is_complete = add_file(item, base, apart) && is_complete; };
+    if (include.kind == Node::Kind::sequence) {
+      for (const Node& item : include.items) add(item);
     } else {
-      base.entries.push_back(std::move(entry));
+      add(include);
+    }
+    if (!is_complete) return false;
+    if (base.entries.empty() && apart.entries.empty()) return true;
+    merge(base, std::move(tree));
+    tree = std::move(base);
+    add_apart(tree, std::move(apart));
+    return true;
+  }
+
+  // files with a prefix, of this file and of those under it
+  static void add_apart(Node& tree, Node apart) {
+    if (apart.entries.empty()) return;
+    Node::Entry* present = tree.find(kIncludedFiles);
+    if (present == nullptr) {
+      tree.entries.push_back({std::string(kIncludedFiles), tree.mark, std::move(apart)});
+    } else {
+      std::move(apart.entries.begin(), apart.entries.end(), std::back_inserter(present->value.entries));
     }
   }
-}
 
-// File names in `include: file` or `include: [file, file]`.
-std::vector<const Node*> included_files(const Node& include, Report& report) {
-  std::vector<const Node*> files;
-  const auto add = [&](const Node& node) {
-    if (node.kind == Node::Kind::scalar && !node.text.empty()) {
-      files.push_back(&node);
-    } else {
-      report.add(node.mark, "include", {"is " + describe(node), "the name of a file, or a list of names", ""});
+  bool add_file(const Node& item, Node& base, Node& apart) {
+    const bool has_prefix = item.kind == Node::Kind::map && includes_ == Includes::with_prefix;
+    const Node* name = &item;
+    if (has_prefix) {
+      if (!check_keys(item)) return false;
+      name = &item.find("file")->value;
     }
-  };
-  if (include.kind == Node::Kind::sequence) {
-    for (const Node& item : include.items) add(item);
-  } else {
-    add(include);
+    if (name->kind != Node::Kind::scalar || name->text.empty()) {
+      const char* expected = includes_ == Includes::with_prefix
+                                 ? "the name of a file, {file: name, prefix: Left_}, or a list of these"
+                                 : "the name of a file, or a list of names";
+      report_.add(name->mark, "include", {"is " + describe(*name), expected, ""});
+      return false;
+    }
+    std::optional<Node> tree = read_included(*name);
+    if (!tree) return false;
+    if (!has_prefix) {
+      const auto inner = take(*tree, kIncludedFiles);
+      merge(base, std::move(*tree));
+      if (inner) add_apart(base, std::move(inner->value));
+      return true;
+    }
+    Node::Entry entry{name->text, item.mark, item};
+    entry.value.entries.push_back({std::string(kIncludedTree), item.mark, std::move(*tree)});
+    apart.entries.push_back(std::move(entry));
+    return true;
   }
-  return files;
-}
 
-std::optional<Node> read_included(const Node& name, const LoadContext& load_context, Report& report) {
-  if (auto refusal = load_context.refusal_of(name.text)) {
-    report.add(name.mark, "include", std::move(*refusal));
-    return std::nullopt;
+  bool check_keys(const Node& item) {
+    constexpr std::string_view kKeys[] = {"file", "prefix", "parameters"};
+    const std::size_t problems = report_.size();
+    report_duplicates(item, "include", report_);
+    for (const Node::Entry& entry : item.entries) {
+      if (std::find(std::begin(kKeys), std::end(kKeys), entry.key) != std::end(kKeys)) continue;
+      report_.add(entry.mark, "include." + entry.key, {"unknown key", "file, prefix or parameters", ""});
+    }
+    for (const std::string_view key : {kKeys[0], kKeys[1]}) {
+      const Node::Entry* entry = item.find(key);
+      if (entry != nullptr && entry->value.kind == Node::Kind::scalar) continue;
+      report_.add(
+          item.mark, "include",
+          {fmt::format("the key '{}' is missing or no text", key), "such as {file: side.yaml, prefix: Left_}", ""});
+    }
+    return report_.size() == problems;
   }
-  const std::string path = load_context.path_of(name.text);
-  std::optional<Node> tree = read_tree(path, report.add_source(path), report);
-  if (!tree) {
-    report.add(name.mark, "include", {describe(name) + " cannot be included", "", ""});
-    return std::nullopt;
-  }
-  if (const Node::Entry* nested = tree->find("include")) {
-    report.add(nested->mark, "include", {"an included file includes another", "one level of includes", ""});
-    return std::nullopt;
-  }
-  return tree;
-}
 
-void erase(Node& map, std::string_view key) {
-  std::erase_if(map.entries, [&](const Node::Entry& entry) { return entry.key == key; });
-}
+  std::optional<Node> read_included(const Node& name) {
+    if (auto refusal = load_context_.refusal_of(name.text)) {
+      report_.add(name.mark, "include", std::move(*refusal));
+      return std::nullopt;
+    }
+    const std::string file = std::filesystem::path(name.text).lexically_normal().string();
+    if (std::find(open_.begin(), open_.end(), file) != open_.end()) {
+      report_.add(name.mark, "include", {describe(name) + " includes itself", "includes without a circle", ""});
+      return std::nullopt;
+    }
+    if (open_.size() >= kMaxIncludeDepth || files_ >= kMaxIncludedFiles) {
+      report_.add(name.mark, "include",
+                  {"too many files include each other",
+                   fmt::format("at most {} levels and {} files", kMaxIncludeDepth, kMaxIncludedFiles), ""});
+      return std::nullopt;
+    }
+    ++files_;
+    open_.push_back(file);
+    std::optional<Node> tree = read(load_context_.path_of(name.text));
+    open_.pop_back();
+    if (!tree) report_.add(name.mark, "include", {describe(name) + " cannot be included", "", ""});
+    return tree;
+  }
+
+  const LoadContext load_context_;
+  const Includes includes_;
+  Report& report_;
+  std::vector<std::string> open_;  // files around the present one
+  std::size_t files_ = 0;
+};
 
 // ---- overrides
 
@@ -85,23 +168,24 @@ bool is_single_section(std::string_view name) {
                                          [&](const SingleTable& table) { return table.section == name; });
 }
 
+Node& section_of(Node& root, const std::string& name, const Mark& mark) {
+  if (Node::Entry* present = root.find(name)) return present->value;
+  Node section;
+  section.kind = Node::Kind::map;
+  section.mark = mark;
+  root.entries.push_back({name, mark, std::move(section)});
+  return root.entries.back().value;
+}
+
 // The map named by a path's first part: a single section (created if missing) or an element.
 Node* owner_of(Node& root, const std::string& name, const Mark& mark) {
-  if (is_single_section(name)) {
-    if (root.find(name) == nullptr) {
-      Node section;
-      section.kind = Node::Kind::map;
-      section.mark = mark;
-      root.entries.push_back({name, mark, std::move(section)});
-    }
-    return &root.find(name)->value;
-  }
+  if (is_single_section(name)) return &section_of(root, name, mark);
   for (const std::string_view section : element_sections()) {
     Node::Entry* entry = root.find(section);
     Node::Entry* element = entry != nullptr ? entry->value.find(name) : nullptr;
     if (element != nullptr) return &element->value;
   }
-  return nullptr;
+  return name == kStartKey ? &section_of(root, name, mark) : nullptr;
 }
 
 std::string closest_owner(const Node& root, const std::string& name) {
@@ -116,23 +200,41 @@ std::string closest_owner(const Node& root, const std::string& name) {
 }
 
 constexpr const char* kSetting = "Element.key=value, such as 'Bag.mass=1500kg'";
+constexpr const char* kSettingOrParameter =
+    "Element.key=value, such as 'Bag.mass=1500kg', or Parameter=value, such as 'L=3m'";
 
-void apply_override(Node& root, const std::string& text, Report& report) {
-  std::optional<Setting> setting = parse_setting(text, kSetting, report);
-  if (!setting) return;
-  const std::size_t dot = setting->path.find('.');
-  if (dot == std::string::npos) {
-    report.add(setting->mark, "", {"is not a setting", kSetting, ""});
+bool is_of_parameter(const Setting& setting) {
+  return setting.path.find('.') == std::string::npos;
+}
+
+// Values of the scene's own parameters.
+void set_parameter(Node& root, Setting setting, Report& report) {
+  Node::Entry* parameters = root.find(kParametersKey);
+  if (parameters == nullptr || parameters->value.kind != Node::Kind::map) {
+    report.add(setting.mark, "", {"is not a setting", kSetting, ""});
     return;
   }
-  const std::string owner_name = setting->path.substr(0, dot);
-  Node* owner = owner_of(root, owner_name, setting->mark);
+  if (parameters->value.find(setting.path) == nullptr) {
+    std::vector<std::string_view> names;
+    for (const Node::Entry& entry : parameters->value.entries) names.push_back(entry.key);
+    report.add(setting.mark, "",
+               {"there is no parameter '" + setting.path + "'", kSettingOrParameter, closest(setting.path, names)});
+    return;
+  }
+  set_key(parameters->value, setting.path, std::move(setting.value), setting.mark);
+}
+
+void set_value(Node& root, Setting setting, Scope& scope, Report& report) {
+  const std::size_t dot = setting.path.find('.');
+  const std::string owner_name = setting.path.substr(0, dot);
+  Node* owner = owner_of(root, owner_name, setting.mark);
   if (owner == nullptr) {
-    report.add(setting->mark, "", {"no element or section '" + owner_name + "'", "", closest_owner(root, owner_name)});
+    report.add(setting.mark, "", {"no element or section '" + owner_name + "'", "", closest_owner(root, owner_name)});
     return;
   }
   if (owner->kind != Node::Kind::map) return;  // reported when the section is read
-  set_key(*owner, setting->path.substr(dot + 1), std::move(setting->value), setting->mark);
+  scope.substitute(setting.value, setting.path);
+  set_key(*owner, setting.path.substr(dot + 1), std::move(setting.value), setting.mark);
 }
 
 }  // namespace
@@ -151,28 +253,33 @@ std::optional<ValueProblem> LoadContext::refusal_of(const std::string& file) con
                       "a file in that folder or below", ""};
 }
 
-std::optional<Node> read_with_includes(const std::string& path, Report& report) {
-  std::optional<Node> scene = read_tree(path, report.add_source(path), report);
-  if (!scene) return std::nullopt;
-  const Node::Entry* include = scene->find("include");
-  if (include == nullptr) return scene;
-  const LoadContext load_context{true, std::filesystem::path(path).parent_path().string()};
-  Node base;
-  base.kind = Node::Kind::map;
-  bool is_complete = true;
-  for (const Node* name : included_files(include->value, report)) {
-    std::optional<Node> tree = read_included(*name, load_context, report);
-    is_complete = is_complete && tree;
-    if (tree) merge(base, std::move(*tree));
-  }
-  if (!is_complete) return std::nullopt;
-  erase(*scene, "include");
-  merge(base, std::move(*scene));
-  return base;
+std::optional<Node> read_with_includes(const std::string& path, Report& report, Includes includes) {
+  const std::filesystem::path file(path);
+  IncludeReader reader(LoadContext{true, file.parent_path().string()}, includes, report);
+  return reader.read(path, file.filename().string());
 }
 
-void apply_overrides(Node& root, const Overrides& overrides, Report& report) {
-  for (const std::string& text : overrides) apply_override(root, text, report);
+bool expand(Node& root, const Overrides& overrides, Report& report, std::vector<std::string>* warnings) {
+  std::vector<Setting> settings;
+  for (const std::string& text : overrides) {
+    std::optional<Setting> setting = parse_setting(text, kSetting, report);
+    if (!setting) continue;
+    if (is_of_parameter(*setting)) {
+      set_parameter(root, std::move(*setting), report);
+    } else {
+      settings.push_back(std::move(*setting));
+    }
+  }
+  ScopeContext context{report};
+  Scope scope(context, nullptr);
+  std::size_t problems = report.size();
+  expand_instances(root, scope, context, warnings);
+  bool is_sound = report.size() == problems;
+  for (Setting& setting : settings) set_value(root, std::move(setting), scope, report);
+  problems = report.size();
+  place_named_points(root, report);
+  is_sound = is_sound && report.size() == problems;
+  return is_sound;
 }
 
 }  // namespace slew::scene

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// From files and overrides to one tree: included files, the scene over them, `--set` over both.
+// From files and overrides to one tree: included files, the scene over them, `--set` over both, and all that the scene
+// language abbreviates written out.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 #include "scene/yaml_tree.h"
@@ -27,10 +31,20 @@ struct LoadContext {
   [[nodiscard]] std::optional<ValueProblem> refusal_of(const std::string& file) const;
 };
 
-// Reads the file and merges it over the files its `include` names (one level); problems go to the report.
-[[nodiscard]] std::optional<Node> read_with_includes(const std::string& path, Report& report);
+inline constexpr std::size_t kMaxIncludeDepth = 8;
+inline constexpr std::size_t kMaxIncludedFiles = 256;
 
-// Sets the value of each "PATH=VALUE" in the tree; its problems have the label "--set PATH=VALUE".
-void apply_overrides(Node& root, const Overrides& overrides, Report& report);
+// with_prefix: an entry of `include` may be {file: , prefix: , parameters: }, a group of elements (instances.h).
+enum class Includes : std::uint8_t { plain, with_prefix };
+
+// Reads the file and lays it over the files its `include` names, and those that they include; all names are relative to
+// the folder of the file. Problems go to the report.
+[[nodiscard]] std::optional<Node> read_with_includes(const std::string& path, Report& report,
+                                                     Includes includes = Includes::plain);
+
+// The scene's tree without parameters, expressions, templates, groups and named points. overrides: "PARAMETER=VALUE" is
+// set before, "PATH=VALUE" after instances are made; their problems have the label "--set PATH=VALUE". warnings: those
+// of instances.h. False: problems were reported that leave the tree unfinished.
+[[nodiscard]] bool expand(Node& root, const Overrides& overrides, Report& report, std::vector<std::string>* warnings);
 
 }  // namespace slew::scene

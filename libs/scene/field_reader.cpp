@@ -85,6 +85,11 @@ class ValueReader {
       report_problem(node.mark, {"is " + describe(node), expected_quantity(dimension), ""});
       return std::nullopt;
     }
+    if (node.origin == Node::Origin::ratio && !is_plain_number(dimension)) {
+      report_problem(node.mark, {"the expression gives the number " + node.text + ", in which all units cancelled",
+                                 expected_quantity(dimension), ""});
+      return std::nullopt;
+    }
     QuantityResult result = read_quantity(node.text, writing_of(node), dimension, context_.units);
     if (!result.value) {
       report_problem(node.mark, std::move(result.problem));

@@ -8,6 +8,7 @@
 #include "core/json.h"
 #include "flex/field_tables.h"
 #include "scene/defs.h"
+#include "scene/element_table.h"
 #include "scene/field_reader.h"
 #include "scene/mesh_inertia.h"
 #include "scene/schema.h"
@@ -20,6 +21,11 @@ namespace {
 // a number, then a unit
 constexpr const char* kQuantityPattern =
     R"(^\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*(1/)?[A-Za-z%°µ].*$)";
+// a quantity, or an expression of a scene
+constexpr const char* kValuePattern =
+    R"(^(\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*(1/)?[A-Za-z%°µ].*|\$\{.*\})$)";
+constexpr const char* kExpressionPattern = R"(^\$\{.*\}$)";
+constexpr const char* kPointPattern = R"(^([A-Za-z_][A-Za-z0-9_]*\.[A-Za-z_][A-Za-z0-9_]*|\$\{.*\})$)";
 constexpr const char* kNamePattern = "^[A-Za-z_][A-Za-z0-9_]*$";
 
 Json bounded(Json schema, const Range& range) {
@@ -28,9 +34,22 @@ Json bounded(Json schema, const Range& range) {
   return schema;
 }
 
-Json quantity(const Range& range) {
-  const Json text = {{"type", "string"}, {"pattern", kQuantityPattern}};
-  return {{"anyOf", Json::array({bounded({{"type", "number"}}, range), text})}};
+// Kind of file: expressions are part of scenes alone.
+enum class Values { of_scene, plain };
+
+Json text_like(const char* pattern) {
+  return {{"type", "string"}, {"pattern", pattern}};
+}
+
+Json quantity(const Range& range, Values values) {
+  const char* pattern = values == Values::of_scene ? kValuePattern : kQuantityPattern;
+  return {{"anyOf", Json::array({bounded({{"type", "number"}}, range), text_like(pattern)})}};
+}
+
+// an integer, a truth value or a choice
+Json or_expression(Json schema, Values values) {
+  if (values == Values::plain) return schema;
+  return {{"anyOf", Json::array({std::move(schema), text_like(kExpressionPattern)})}};
 }
 
 Json list_of(Json items, int length) {
@@ -42,28 +61,35 @@ Json list_of(Json items, int length) {
   return list;
 }
 
-Json point(const Field& field) {
+Json point(const Field& field, Values values) {
   Json pair = {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}};
-  pair["prefixItems"] = Json::array({quantity(Range{}), quantity(field.range)});
+  pair["prefixItems"] = Json::array({quantity(Range{}, values), quantity(field.range, values)});
   return pair;
 }
 
-Json type_of(const Field& field) {
+// a list of three, or the name of a point
+Json or_point(Json schema, const Field& field, Values values) {
+  const bool may_be_point = field.key.starts_with("point") || field.key == "position";
+  if (values == Values::plain || field.dimension != Dimension::length || !may_be_point) return schema;
+  return {{"anyOf", Json::array({std::move(schema), text_like(kPointPattern)})}};
+}
+
+Json type_of(const Field& field, Values values) {
   switch (field.type) {
     case FieldType::number:
-      return quantity(field.range);
+      return quantity(field.range, values);
     case FieldType::integer:
-      return bounded({{"type", "integer"}}, field.range);
+      return or_expression(bounded({{"type", "integer"}}, field.range), values);
     case FieldType::boolean:
-      return {{"type", "boolean"}};
+      return or_expression({{"type", "boolean"}}, values);
     case FieldType::text:
       return {{"type", "string"}};
     case FieldType::triple:
-      return list_of(quantity(field.range), 3);
+      return or_point(list_of(quantity(field.range, values), 3), field, values);
     case FieldType::triples:
-      return list_of(list_of(quantity(field.range), 3), 0);
+      return list_of(or_point(list_of(quantity(field.range, values), 3), field, values), 0);
     case FieldType::table: {
-      Json table = list_of(point(field), 0);
+      Json table = list_of(point(field, values), 0);
       table["minItems"] = 1;
       const Json name = {{"type", "string"}, {"pattern", "\\.csv$"}};
       const Json text = {{"type", "string"}};
@@ -74,17 +100,17 @@ Json type_of(const Field& field) {
       return {{"anyOf", Json::array({std::move(table), name, file})}};
     }
     case FieldType::numbers:
-      return list_of(quantity(field.range), 0);
+      return list_of(quantity(field.range, values), 0);
     case FieldType::texts:
       return list_of({{"type", "string"}}, 0);
     case FieldType::choice:
-      return {{"enum", field.choices}};
+      return or_expression({{"enum", field.choices}}, values);
   }
   return {};
 }
 
-Json property(const Field& field) {
-  Json schema = type_of(field);
+Json property(const Field& field, Values values) {
+  Json schema = type_of(field, values);
   std::string description(field.doc);
   const bool has_unit = field.type == FieldType::number || field.type == FieldType::triple ||
                         field.type == FieldType::triples || field.type == FieldType::numbers;
@@ -95,7 +121,8 @@ Json property(const Field& field) {
   return schema;
 }
 
-Json object_of(std::span<const Field> fields, std::string_view doc, std::string_view type, bool is_default = false) {
+Json object_of(std::span<const Field> fields, std::string_view doc, std::string_view type, Values values,
+               bool is_default = false) {
   Json schema = {{"type", "object"}, {"description", std::string(doc)}, {"additionalProperties", false}};
   Json required = Json::array();
   Json& properties = schema["properties"] = Json::object();
@@ -104,18 +131,26 @@ Json object_of(std::span<const Field> fields, std::string_view doc, std::string_
     if (!is_default) required.push_back("type");
   }
   for (const Field& field : fields) {
-    properties[std::string(field.key)] = property(field);
-    if (field.presence == Presence::required) required.push_back(std::string(field.key));
+    properties[std::string(field.key)] = property(field, values);
+    // a named point gives its body
+    const bool may_follow_point =
+        values == Values::of_scene && field.reference == "body" && field.key.starts_with("bod");
+    if (field.presence == Presence::required && !may_follow_point) required.push_back(std::string(field.key));
   }
   if (!required.items().empty()) schema["required"] = std::move(required);
   return schema;
+}
+
+Json named(Json element) {
+  return {{"type", "object"}, {"additionalProperties", std::move(element)}};
 }
 
 // A body with its inertia from a mesh: the remaining fields of a body, and those of the mesh.
 Json mesh_body(const ElementTable& table) {
   std::vector<Field> fields = fields_beside_mesh(table.fields);
   fields.insert(fields.end(), mesh_inertia_fields().begin(), mesh_inertia_fields().end());
-  Json schema = object_of(fields, "rigid body, inertia from a closed mesh", table.type, table.is_default);
+  Json schema =
+      object_of(fields, "rigid body, inertia from a closed mesh", table.type, Values::of_scene, table.is_default);
   schema["properties"]["inertia"] = {{"const", std::string(kFromMesh)}};
   schema["required"].push_back("inertia");
   const Json density = {{"required", Json::array({"density"})}}, mass = {{"required", Json::array({"mass"})}};
@@ -136,7 +171,46 @@ Json flexible_body(const ElementTable& table) {
       fields.push_back(field);
     }
   }
-  return object_of(fields, table.doc, table.type);
+  return object_of(fields, table.doc, table.type, Values::of_scene);
+}
+
+// keys that the loader resolves: templates, named points, frames
+void add_language_keys(Json& type, const ElementTable& table) {
+  Json& properties = type["properties"];
+  if (table.section == "bodies") {
+    const Json position = list_of(quantity(Range{}, Values::of_scene), 3);
+    Json frame = {{"type", "object"}, {"additionalProperties", false}, {"required", Json::array({"position"})}};
+    frame["properties"] = {{"position", position}, {"orientation", position}};
+    properties[kPointsKey] = named({{"anyOf", Json::array({position, std::move(frame)})}});
+    properties[kPointsKey]["description"] = "named points, usable as Body.name; the orientation is a joint frame's";
+  }
+  for (const char* number : {"", "1", "2"}) {
+    const auto has = [&](const std::string& key) {
+      return std::any_of(table.fields.begin(), table.fields.end(),
+                         [&](const Field& field) { return field.key == key; });
+    };
+    const std::string suffix = number, key = std::string(kFrameKey) + suffix;
+    if (has(key) || !has("body" + suffix) || !has("point" + suffix) || !has("orientation" + suffix)) continue;
+    properties[key] = text_like(kPointPattern);
+    properties[key]["description"] = "named point that gives body, point and orientation";
+  }
+}
+
+// An element under a template, which may give any of its keys.
+Json element_of_template(std::string_view section) {
+  Json schema = {{"type", "object"}, {"required", Json::array({std::string(kUseKey)})}};
+  Json& properties = schema["properties"] = Json::object();
+  const Json text = {{"type", "string"}};
+  properties[kUseKey] = {{"anyOf", Json::array({text, list_of(text, 0)})},
+                         {"description", "template, or list of templates, that this element is laid over"}};
+  for (const ElementTable& table : element_tables()) {
+    if (table.section != section) continue;
+    for (const Field& field : table.fields) {
+      // keys of several types may take different values
+      if (!properties.find(field.key)) properties[field.key] = {{"description", std::string(field.doc)}};
+    }
+  }
+  return schema;
 }
 
 Json elements_of(std::string_view section) {
@@ -144,22 +218,24 @@ Json elements_of(std::string_view section) {
   for (const ElementTable& table : element_tables()) {
     if (table.section != section) continue;
     const bool is_flexible = section == "bodies" && !table.is_default;
-    Json type = is_flexible ? flexible_body(table) : object_of(table.fields, table.doc, table.type, table.is_default);
+    Json type = is_flexible ? flexible_body(table)
+                            : object_of(table.fields, table.doc, table.type, Values::of_scene, table.is_default);
     for (const ListTable& list : table.lists) {
-      type["properties"][std::string(list.key)] = list_of(object_of(list.fields, list.doc, ""), 0);
+      type["properties"][std::string(list.key)] = list_of(object_of(list.fields, list.doc, "", Values::of_scene), 0);
     }
+    add_language_keys(type, table);
     types.push_back(std::move(type));
     if (section == "bodies" && table.is_default) types.push_back(mesh_body(table));
   }
-  Json element = types.items().size() == 1 ? types.items().front() : Json{{"oneOf", types}};
+  types.push_back(element_of_template(section));
   return {{"type", "object"},
           {"propertyNames", {{"pattern", kNamePattern}, {"maxLength", kMaxNameLength}}},
-          {"additionalProperties", std::move(element)}};
+          {"additionalProperties", Json{{"oneOf", types}}}};
 }
 
 Json script() {
-  Json schema = object_of(script_fields(), "the scene's own operator", "");
-  Json change = object_of(script_change_fields(), "change of a live parameter", "");
+  Json schema = object_of(script_fields(), "the scene's own operator", "", Values::of_scene);
+  Json change = object_of(script_change_fields(), "change of a live parameter", "", Values::of_scene);
   // name of a choice
   change["properties"]["value"] = {{"type", Json::array({"number", "string"})}};
   change["required"].push_back("value");
@@ -169,24 +245,21 @@ Json script() {
   properties["columns"] = list_of(text, 0);
   properties["columns"]["description"] = "used columns of the CSV file; default: those of inputs";
   properties["sha256"] = {{"type", "string"}, {"description", "content that the CSV file must have"}};
-  properties["inputs"] = {{"type", "object"}, {"additionalProperties", property(script_track_fields().front())}};
+  properties["inputs"] = {{"type", "object"},
+                          {"additionalProperties", property(script_track_fields().front(), Values::of_scene)}};
   properties["parameters"] = list_of(std::move(change), 0);
   return schema;
-}
-
-Json named(Json element) {
-  return {{"type", "object"}, {"additionalProperties", std::move(element)}};
 }
 
 Json flexible_section() {
   Json shapes = Json::array();
   for (const flex::SectionType& type : flex::section_types()) {
-    Json schema = object_of(type.fields, type.doc, "");
+    Json schema = object_of(type.fields, type.doc, "", Values::plain);
     schema["properties"]["shape"] = {{"const", std::string(type.name)}};
     schema["required"].push_back("shape");
     if (type.shape == flex::SectionShape::given)
       schema["properties"]["stress_points"] =
-          list_of(object_of(flex::stress_point_fields(), "points of stress output", ""), 0);
+          list_of(object_of(flex::stress_point_fields(), "points of stress output", "", Values::plain), 0);
     shapes.push_back(std::move(schema));
   }
   return {{"oneOf", std::move(shapes)}};
@@ -195,30 +268,63 @@ Json flexible_section() {
 }  // namespace
 
 std::string flexible_json_schema() {
-  Json schema = object_of(flex::body_fields(), "a flexible body", "");
+  Json schema = object_of(flex::body_fields(), "a flexible body", "", Values::plain);
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "Slewring flexible body";
   const Json text = {{"type", "string"}};
   Json& properties = schema["properties"];
   properties["include"] = {{"anyOf", Json::array({text, list_of(text, 0)})},
                            {"description", "files that this one is merged over"}};
-  properties["materials"] = named(object_of(flex::material_fields(), "material", ""));
+  properties["materials"] = named(object_of(flex::material_fields(), "material", "", Values::plain));
   properties["sections"] = named(flexible_section());
-  properties["line"] = object_of(flex::line_fields(), "nodes 1, 2, ... at equal distances", "");
+  properties["line"] = object_of(flex::line_fields(), "nodes 1, 2, ... at equal distances", "", Values::plain);
   properties["nodes"] = {{"type", "object"},
                          {"propertyNames", {{"pattern", "^[0-9]+$"}}},
-                         {"additionalProperties", property(flex::node_field())}};
-  properties["elements"] = list_of(object_of(flex::element_fields(), "elements in a row", ""), 0);
-  properties["matrices"] = object_of(flex::matrix_file_fields(), "files of another finite element code", "");
-  properties["reduction"] = object_of(flex::reduction_fields(), "reduction of the body", "");
+                         {"additionalProperties", property(flex::node_field(), Values::plain)}};
+  properties["elements"] = list_of(object_of(flex::element_fields(), "elements in a row", "", Values::plain), 0);
+  properties["matrices"] =
+      object_of(flex::matrix_file_fields(), "files of another finite element code", "", Values::plain);
+  properties["reduction"] = object_of(flex::reduction_fields(), "reduction of the body", "", Values::plain);
   // with an include the names may stand there
   schema.erase("required");
   return schema.dump(2, Json::Order::as_put) + "\n";
 }
 
+namespace {
+
+// the top-level keys that the loader resolves
+void add_language_sections(Json& properties) {
+  const Json text = {{"type", "string"}}, any = {{"type", "object"}};
+  const Json value = {{"type", Json::array({"number", "string", "boolean"})}};
+  const Json declared = {{"type", Json::array({"number", "string", "boolean", "null"})}};
+  const auto object = [](const char* first, const Json& type, std::vector<std::string> required) {
+    Json schema = {{"type", "object"}, {"additionalProperties", false}, {"required", Json(required)}};
+    schema["properties"] = {{first, type}, {"prefix", Json{{"type", "string"}}}};
+    return schema;
+  };
+  Json file = object("file", text, {"file", "prefix"}), instance = object("group", text, {"group"});
+  for (Json* schema : {&file, &instance}) (*schema)["properties"]["parameters"] = named(value);
+  const Json entry = {{"anyOf", Json::array({text, std::move(file)})}};
+  properties["include"] = {{"anyOf", Json::array({text, list_of(entry, 0)})},
+                           {"description", "files that this one is merged over; with a prefix: groups of elements"}};
+  const auto put = [&properties](std::string_view key, Json schema, const char* description) {
+    properties[key] = std::move(schema);
+    properties[key]["description"] = description;
+  };
+  put(kParametersKey, named(declared), "values for ${name}, or as parts of expressions");
+  put(kTemplatesKey, named(any), "keys of elements by the name for `use`");
+  put(kGroupsKey, named(any), "groups of elements: sections, with parameters of their own");
+  put(kInstancesKey, named(std::move(instance)), "groups with a prefix before the names of their elements");
+  const Json coordinate = quantity(Range{}, Values::of_scene);
+  put(kStartKey, named({{"anyOf", Json::array({coordinate, list_of(coordinate, 2)})}}),
+      "start coordinates of joints; loops are closed");
+  put(kPayloadKey, {{"anyOf", Json::array({text, list_of(text, 0)})}}, "bodies that the machine lifts");
+}
+
+}  // namespace
+
 std::string json_schema() {
   const Json text = {{"type", "string"}};
-  const Json texts = list_of(text, 0);
   Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                  {"title", "Slewring scene"},
                  {"type", "object"},
@@ -227,13 +333,12 @@ std::string json_schema() {
   for (const std::string_view key : top_level_keys()) properties[std::string(key)] = Json::object();
   properties["scene"] = {{"type", "string"}, {"description", "name of the scene"}};
   properties["description"] = {{"type", "string"}, {"description", "description of the scene"}};
-  properties["include"] = {{"anyOf", Json::array({text, texts})},
-                           {"description", "files that this one is merged over"}};
+  add_language_sections(properties);
   properties["assets"] = list_of(text, 0);
   properties["assets"]["description"] = "files that every machine of a session must have alike";
   properties["script"] = script();
   for (const SingleTable& table : single_tables()) {
-    properties[std::string(table.section)] = object_of(table.fields, table.doc, "");
+    properties[std::string(table.section)] = object_of(table.fields, table.doc, "", Values::of_scene);
   }
   for (const std::string_view section : element_sections()) properties[std::string(section)] = elements_of(section);
   return schema.dump(2, Json::Order::as_put) + "\n";

@@ -12,9 +12,11 @@
 #include "multibody/model/model.h"
 #include "scene/assets.h"
 #include "scene/canonical.h"
+#include "scene/element_table.h"
 #include "scene/expand.h"
 #include "scene/field_reader.h"
 #include "scene/flexible_bodies.h"
+#include "scene/graphics.h"
 #include "scene/mesh_assets.h"
 #include "scene/mesh_inertia.h"
 #include "scene/names.h"
@@ -26,6 +28,7 @@
 #include "scene/sections.h"
 #include "scene/sensors.h"
 #include "scene/source.h"
+#include "scene/start_reader.h"
 #include "scene/table_file.h"
 #include "scene/units.h"
 #include "scene/without_effect.h"
@@ -69,6 +72,7 @@ class SceneReader {
     read_inputs();
     read_recorded();
     read_devices_and_outputs();
+    read_graphics();
     if (const Node::Entry* script = root_.find("script")) {
       read_script(script->value, script->mark, load_context_, names_, scene_, context_);
     }
@@ -122,8 +126,11 @@ class SceneReader {
     report_duplicates(root_, "", report_);
     const auto& keys = top_level_keys();
     for (const Node::Entry& entry : root_.entries) {
-      if (std::find(keys.begin(), keys.end(), entry.key) == keys.end()) {
-        report_.add(entry.mark, entry.key, {"unknown section", "", closest(entry.key, keys)});
+      const bool is_known = entry.key == kStartKey || entry.key == kPayloadKey;
+      if (!is_known && std::find(keys.begin(), keys.end(), entry.key) == keys.end()) {
+        std::vector<std::string_view> known = keys;
+        known.insert(known.end(), language_keys().begin(), language_keys().end());
+        report_.add(entry.mark, entry.key, {"unknown section", "", closest(entry.key, known)});
       }
       places_.add(entry.key, entry.mark);
     }
@@ -269,14 +276,11 @@ class SceneReader {
 
   // The table of the element's type; null after a reported problem.
   const ElementTable* table_of(std::string_view section, const Node::Entry& element) {
+    if (const ElementTable* table = find_element_table(section, element.value)) return table;
     std::vector<std::string_view> types;
     const Node::Entry* type = element.value.find("type");
     for (const ElementTable& table : element_tables()) {
-      if (table.section != section) continue;
-      if (table.type.empty() || (type == nullptr && table.is_default) ||
-          (type != nullptr && type->value.kind == Node::Kind::scalar && type->value.text == table.type))
-        return &table;
-      types.push_back(table.type);
+      if (table.section == section) types.push_back(table.type);
     }
     std::string list;
     for (const std::string_view name : types)
@@ -299,13 +303,18 @@ class SceneReader {
   bool read_mechanics() {
     const std::size_t problems = report_.size();
     for (const std::string_view section : kMechanicsSections) read_section(section);
+    if (const Node::Entry* payload = root_.find(kPayloadKey)) read_payload(payload->value, scene_, context_);
     resolve_references();
     if (report_.size() > problems || !has_sound_names_) return false;
     check_problems([&](Problems& errors, Problems& warnings) {
       read_meshes(load_context_, scene_.mechanics, errors);
       read_flexible_bodies(load_context_, scene_, errors, warnings);
       if (lacks_files()) return;
+      const Node::Entry* start = root_.find(kStartKey);
+      if (start != nullptr && errors.empty()) read_start(start->value, scene_, context_, errors);
+      if (report_.size() > problems) return;
       if (errors.empty()) multibody::validate(scene_.mechanics, errors);
+      if (errors.empty() && !scene_.other_payloads.empty()) check_payloads(scene_, errors);
       if (errors.empty()) check_motion_ends(errors);
       if (errors.empty() && scene_.session.solution == Solution::split) {
         multibody::check_element_speeds(scene_.mechanics, mechanics_substep(scene_.session, scene_.mechanics), errors);
@@ -429,6 +438,14 @@ class SceneReader {
       check_variables(named.path, {named.variable});
   }
 
+  void read_graphics() {
+    const std::size_t problems = report_.size();
+    read_section("graphics");
+    resolve_references();
+    if (report_.size() > problems) return;
+    check_problems([&](Problems& errors, Problems&) { check_graphics(load_context_, scene_, errors); });
+  }
+
   template <typename Device>
   void read_database_of(Device& device, Problems& errors) const {
     const std::string& file = device.bus.database;
@@ -484,9 +501,13 @@ class SceneReader {
 
 Scene read_tree(Node root, LoadContext load_context, const std::string& name, const Overrides& overrides,
                 Report& report) {
-  apply_overrides(root, overrides, report);
+  std::vector<std::string> warnings;
+  // the text of a session or a recording is expanded already
+  if (!expand(root, overrides, report, load_context.has_folder ? &warnings : nullptr))
+    report.fail(kMaxReportedProblems);
   Scene scene = SceneReader(root, std::move(load_context), report).read(name);
   if (!report.is_clean()) report.fail(kMaxReportedProblems);
+  scene.warnings.insert(scene.warnings.begin(), warnings.begin(), warnings.end());
   return scene;
 }
 
@@ -528,7 +549,7 @@ void read_back(const Scene& scene) {
 Scene load_file(const std::string& path, const Overrides& overrides) {
   return guarded(path, [&] {
     Report report;
-    std::optional<Node> root = read_with_includes(path, report);
+    std::optional<Node> root = read_with_includes(path, report, Includes::with_prefix);
     if (!root) report.fail(kMaxReportedProblems);
     const std::filesystem::path file(path);
     LoadContext load_context{true, file.parent_path().string()};

@@ -13,12 +13,6 @@
 namespace slew::scene {
 namespace {
 
-bool is_word(std::string_view name) {
-  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-  return !name.empty() && is_letter(name.front()) &&
-         std::all_of(name.begin(), name.end(), [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
-}
-
 bool is_reserved(std::string_view name) {
   const auto& keys = top_level_keys();
   return name == multibody::kGroundName || std::find(keys.begin(), keys.end(), name) != keys.end();
@@ -54,6 +48,12 @@ std::string with_article(std::string_view kind) {
 }
 
 }  // namespace
+
+bool is_word(std::string_view name) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  return !name.empty() && is_letter(name.front()) &&
+         std::all_of(name.begin(), name.end(), [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
+}
 
 void NameTable::declare_all(const Node& root, Report& report) {
   for (const std::string_view section : element_sections()) {

@@ -37,6 +37,9 @@ class NameTable {
   std::set<std::string, std::less<>> flexible_;  // bodies whose nodes are bodies as well: "Boom.Node20"
 };
 
+// True for letters, digits and _ that begin with a letter or _.
+[[nodiscard]] bool is_word(std::string_view name);
+
 // True if a pattern with * (any characters) and ? (one character) matches the whole text.
 [[nodiscard]] bool fits_pattern(std::string_view text, std::string_view pattern);
 

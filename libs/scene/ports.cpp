@@ -21,6 +21,7 @@ constexpr double kStrokeTolerance = 1e-6;  // m
 // the hydraulics' choices equal the coupling's
 static_assert(static_cast<int>(hydraulics::PortCoupling::session) == static_cast<int>(coupling::PortLevel::session));
 static_assert(static_cast<int>(hydraulics::PortCoupling::tlm) == static_cast<int>(coupling::PortLevel::tlm));
+static_assert(static_cast<int>(hydraulics::PortUnit::radian) == static_cast<int>(coupling::PortUnit::radian));
 
 template <typename Def>
 bool has_element(const std::vector<Def>& defs, std::string_view name) {
@@ -41,6 +42,12 @@ PortDef port_of(const std::string& name, const hydraulics::ActuatorDef& actuator
   port.line_force.stroke_max = actuator.line_force.maximum_stroke;
   port.line_force.stop_stiffness = actuator.line_force.end_stiffness;
   port.line_force.stop_damping = actuator.line_force.end_damping;
+  port.line_force.seal_speed = actuator.line_force.seal_speed;
+  port.unit = static_cast<coupling::PortUnit>(actuator.coordinate.unit);
+  if (actuator.line_force.friction_curve.empty() &&
+      actuator.line_force.friction_without_curve == hydraulics::FrictionWithoutCurve::constant) {
+    port.line_force.friction_curve = {{0, 0}, {actuator.line_force.seal_speed, 1}};
+  }
   return port;
 }
 
@@ -68,8 +75,7 @@ void check_force(const PortDef& port, hydraulics::Motion motion, const Scene& sc
 }
 
 // Piston positions at the start, from the poses of the scene.
-std::vector<double> start_strokes(const Scene& scene) {
-  const multibody::Model model = multibody::build_model(scene.mechanics, row_names(scene));
+std::vector<double> start_strokes(const Scene& scene, const multibody::Model& model) {
   multibody::Workspace workspace(model);
   multibody::evaluate(model, multibody::start_state(model), workspace);
   std::vector<double> strokes;
@@ -77,6 +83,22 @@ std::vector<double> start_strokes(const Scene& scene) {
     strokes.push_back(scene.ports[i].offset + scene.ports[i].ratio * workspace.row_x[i]);
   }
   return strokes;
+}
+
+// A port whose coordinate is an angle turns on and on: its angle must count full turns.
+void check_turns(const Scene& scene, const multibody::Model& model, Problems& problems) {
+  for (const PortDef& port : scene.ports) {
+    if (port.unit != coupling::PortUnit::radian) continue;
+    for (const multibody::AngleElement& angle : model.angles) {
+      if (angle.name != port.force || angle.is_coaxial) continue;
+      problems.push_back(
+          {port.name + ".force",
+           fmt::format("the angle of '{}' cannot count full turns: revolute joints about its axis do not "
+                       "connect its bodies",
+                       port.force),
+           "a rotational force about the axis of the revolute joint between its bodies", ""});
+    }
+  }
 }
 
 }  // namespace
@@ -94,6 +116,13 @@ void make_ports(Scene& scene, Problems& problems) {
     if (port.level == coupling::PortLevel::session) continue;
     const std::string_view obstacle = obstacle_of(scene.session, coupling::level_of(port.level));
     if (!obstacle.empty()) problems.push_back({port.name + ".coupling", std::string(obstacle), "session", ""});
+  }
+  for (const PortDef& port : scene.ports) {
+    const bool is_tlm = port.level == coupling::PortLevel::session && scene.session.coupling == coupling::Level::tlm;
+    if (port.unit != coupling::PortUnit::radian || !is_tlm) continue;
+    problems.push_back({port.name + ".coupling",
+                        "level tlm is not for motors: the oil of one step is a large part of the motor's own",
+                        "coupling: two for this port, or another session.coupling", ""});
   }
   if (scene.ports.size() > coupling::kMaxPorts) {
     problems.push_back({scene.ports[coupling::kMaxPorts].name,
@@ -116,7 +145,9 @@ std::vector<std::string> row_names(const Scene& scene) {
 }
 
 void check_start(const Scene& scene, Problems& problems) {
-  const std::vector<double> strokes = start_strokes(scene);
+  const multibody::Model model = multibody::build_model(scene.mechanics, row_names(scene));
+  check_turns(scene, model, problems);
+  const std::vector<double> strokes = start_strokes(scene, model);
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     const PortDef& port = scene.ports[i];
     const double min = port.line_force.stroke_min, max = port.line_force.stroke_max;

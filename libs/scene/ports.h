@@ -21,8 +21,8 @@ void make_ports(Scene& scene, Problems& problems);
 // Coupling levels of the ports in the scene.
 [[nodiscard]] coupling::PortLevels port_levels(const Scene& scene);
 
-// Reports pistons that start inside an end stop by the scene's poses, which would throw the machine. Pre-condition: no
-// problem with ports and rows.
+// Reports pistons that start inside an end stop by the scene's poses, which would throw the machine, and motors whose
+// angle cannot count full turns. Pre-condition: no problem with ports and rows.
 void check_start(const Scene& scene, Problems& problems);
 
 }  // namespace slew::scene

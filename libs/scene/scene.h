@@ -17,11 +17,13 @@
 
 #include "core/status.h"
 #include "coupling/line_force.h"
+#include "coupling/port_unit.h"
 #include "hydraulics/hydraulics_def.h"
 #include "multibody/model/defs.h"
 #include "scene/defs.h"
 #include "scene/devices.h"
 #include "scene/diagnostic.h"
+#include "scene/graphics.h"
 #include "sensors/sensors.h"
 
 namespace slew::flex {
@@ -35,10 +37,11 @@ namespace slew::scene {
 struct PortDef {
   std::string name;   // name of the actuator component
   std::string force;  // name of the force element
-  double offset = 0;  // m
-  double ratio = 1;   // 1 for a line, m/rad for an axis
+  double offset = 0;  // m; rad where unit is the radian
+  double ratio = 1;   // 1 for a line, m/rad for an axis, 1 for an axis by its angle
   coupling::LineForceDef line_force;
   coupling::PortLevel level = coupling::PortLevel::session;
+  coupling::PortUnit unit = coupling::PortUnit::metre;
 };
 
 // A file that belongs to the scene and must be the same on every machine.
@@ -77,12 +80,14 @@ struct Scene {
   ScriptDef script;
   RecordingDef recording;
   std::vector<PlotDef> plots;
+  std::vector<GraphicDef> graphics;
   std::vector<PortDef> ports;  // one per actuator, in component order
   std::vector<std::string> warnings;
   std::vector<FlexibleBody> flexible_bodies;  // with modes, in the bodies' order; none in a scene without files
   std::vector<Asset> assets;
-  std::vector<TableFile> table_files;      // tables that stay in their files; the read ones are among the assets
-  std::vector<MeshInertia> mesh_inertias;  // results of the files read; none in a scene from its expanded text
+  std::vector<TableFile> table_files;       // tables that stay in their files; the read ones are among the assets
+  std::vector<std::string> other_payloads;  // bodies that the machine lifts beside mechanics.payload
+  std::vector<MeshInertia> mesh_inertias;   // results of the files read; none in a scene from its expanded text
 
   // The scene after includes and overrides as canonical YAML in SI: reading it gives the same Scene (assets by name).
   std::string expanded_text;

@@ -211,6 +211,13 @@ void add_own(std::vector<ElementTable>& tables) {
        .doc = "button, raw value 0 or 1",
        .fields = input_fields(),
        .append = [](Scene& scene, const std::string& name) { return append_input(scene, name, InputType::digital); }});
+  tables.push_back(
+      {.section = "graphics",
+       .type = "",
+       .kind = "graphic",
+       .doc = "mesh for the eye, which no physics reads",
+       .fields = graphic_fields(),
+       .append = [](Scene& scene, const std::string& name) { return append_named(scene.graphics, name); }});
   tables.push_back({.section = "plots",
                     .type = "",
                     .kind = "plot",
@@ -316,7 +323,7 @@ const std::vector<SingleTable>& single_tables() {
 const std::vector<std::string_view>& element_sections() {
   static const std::vector<std::string_view> names = {
       "bodies",  "joints",     "forces", "dummies", "shapes", "contacts", "frictions", "motions", "gears",
-      "volumes", "components", "curves", "sensors", "inputs", "outputs",  "devices",   "plots"};
+      "volumes", "components", "curves", "sensors", "inputs", "outputs",  "devices",   "plots",   "graphics"};
   return names;
 }
 
@@ -324,7 +331,7 @@ const std::vector<std::string_view>& top_level_keys() {
   static const std::vector<std::string_view> keys = {
       "scene",   "description", "include",  "assets",    "session", "mechanics", "bodies",     "joints",  "forces",
       "dummies", "shapes",      "contacts", "frictions", "motions", "gears",     "hydraulics", "volumes", "components",
-      "curves",  "sensors",     "inputs",   "outputs",   "devices", "script",    "recording",  "plots"};
+      "curves",  "sensors",     "inputs",   "outputs",   "devices", "script",    "recording",  "plots",   "graphics"};
   return keys;
 }
 
@@ -352,6 +359,7 @@ std::vector<ElementRef> elements(Scene& scene) {
   collect(refs, table_of("devices", "can_out"), scene.devices.can_outs);
   collect(refs, table_of("devices", "motion_platform"), scene.devices.platforms);
   collect(refs, table_of("plots", ""), scene.plots);
+  collect(refs, table_of("graphics", ""), scene.graphics);
   return refs;
 }
 

@@ -180,14 +180,23 @@ std::string name_of(Dimension dimension) {
   return article(info(dimension).name);
 }
 
-// Dimensions with these exponents, for messages: "a torque or an energy".
-std::string name_of(const Unit& unit) {
-  std::string names;
-  if (unit.has_other_base) return names;
+// The dimensions with these powers.
+std::vector<Dimension> dimensions_of(const Exponents& exponent) {
+  std::vector<Dimension> found;
   for (int i = 0; i < static_cast<int>(Dimension::number_of_dimensions); ++i) {
     const auto dimension = static_cast<Dimension>(i);
     if (dimension == Dimension::flow_coefficient || dimension == Dimension::electric_signal) continue;
-    if (info(dimension).exponent == unit.exponent) names += (names.empty() ? "" : " or ") + name_of(dimension);
+    if (info(dimension).exponent == exponent) found.push_back(dimension);
+  }
+  return found;
+}
+
+// "a torque or an energy"; empty where no dimension has the unit.
+std::string names_of(const Unit& unit) {
+  std::string names;
+  if (unit.has_other_base) return names;
+  for (const Dimension dimension : dimensions_of(unit.exponent)) {
+    names += (names.empty() ? "" : " or ") + name_of(dimension);
   }
   return names;
 }
@@ -298,6 +307,26 @@ std::string expected_quantity(Dimension dimension) {
          std::string(about.si_unit);
 }
 
+std::string name_of(const Exponents& exponent) {
+  if (exponent == Exponents{}) return "a number";
+  const std::string names = names_of(Unit{.exponent = exponent});
+  return names.empty() ? "a quantity in " + si_unit_of(exponent) : names;
+}
+
+std::string si_unit_of(const Exponents& exponent) {
+  if (exponent == Exponents{}) return "";
+  const std::vector<Dimension> dimensions = dimensions_of(exponent);
+  if (!dimensions.empty()) return std::string(info(dimensions.front()).si_unit);
+  constexpr std::string_view kBases[] = {"kg", "m", "s", "K", "rad"};
+  std::string text;
+  for (std::size_t i = 0; i < exponent.size(); ++i) {
+    if (exponent[i] == 0) continue;
+    text += fmt::format("{}{}", text.empty() ? "" : " ", kBases[i]);
+    if (exponent[i] != 1) text += std::to_string(exponent[i]);
+  }
+  return text;
+}
+
 std::string with_unit(double value, Dimension dimension) {
   std::string text = fmt::format("{}", value);
   if (!is_plain_number(dimension)) text += fmt::format(" {}", info(dimension).si_unit);
@@ -311,7 +340,7 @@ UnitResult find_unit(std::string_view text, Dimension dimension, UnitSystem& uni
   const Unit* unit = units.find(text);
   if (unit == nullptr) return {nullptr, unknown_unit(text, dimension, units)};
   if (has_dimension(*unit, dimension)) return {unit, {}};
-  const std::string found = name_of(*unit);
+  const std::string found = names_of(*unit);
   std::string what = fmt::format("'{}' is {}", quantity, found.empty() ? "not " + name_of(dimension) : found);
   return {nullptr, {std::move(what), expected_quantity(dimension), ""}};
 }

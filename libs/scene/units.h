@@ -19,11 +19,13 @@
 
 namespace slew::scene {
 
+using Exponents = std::array<std::int8_t, 5>;  // powers of kg, m, s, K, rad
+
 struct Unit {
-  long double scale = 1;                  // SI value = number * scale + offset
-  long double offset = 0;                 // degC, degF
-  std::array<std::int8_t, 5> exponent{};  // powers of kg, m, s, K, rad
-  bool has_other_base = false;            // mole, ampere, candela, ...
+  long double scale = 1;        // SI value = number * scale + offset
+  long double offset = 0;       // degC, degF
+  Exponents exponent{};         // powers of kg, m, s, K, rad
+  bool has_other_base = false;  // mole, ampere, candela, ...
 };
 
 // Not for use by two threads at once; the instances of one process share UDUNITS' database, under a lock.
@@ -62,6 +64,12 @@ struct UnitResult {
 
 // "a pressure such as '250 bar', or a bare number in Pa"
 [[nodiscard]] std::string expected_quantity(Dimension dimension);
+
+// Dimensions with these powers, for messages: "a torque or an energy", "a quantity in kg m s-2 rad", "a number".
+[[nodiscard]] std::string name_of(const Exponents& exponent);
+
+// SI unit with these powers, as a scene may state it: "N m", "kg m2 rad"; empty for a number.
+[[nodiscard]] std::string si_unit_of(const Exponents& exponent);
 
 // A value with its SI unit for messages: "0.5 kg", "0.5".
 [[nodiscard]] std::string with_unit(double value, Dimension dimension);

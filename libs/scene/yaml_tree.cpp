@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/printable.h"
+#include "scene/expression_signs.h"
 
 namespace slew::scene {
 namespace {
@@ -37,7 +38,9 @@ bool is_null(std::string_view plain) {
 // Builds the tree event by event. Each step returns false after a problem that makes the rest meaningless.
 class TreeBuilder {
  public:
-  TreeBuilder(const SourceText& source, Report& report) : source_(source), report_(report) {}
+  enum class Expressions : std::uint8_t { none, hidden };  // hidden: without_signs()
+  TreeBuilder(const SourceText& source, Expressions expressions, Report& report)
+      : source_(source), report_(report), has_expressions_(expressions == Expressions::hidden) {}
 
   bool take(const yaml_event_t& event) {
     const yaml_mark_t& mark = event.start_mark;
@@ -179,6 +182,7 @@ class TreeBuilder {
     Node node;
     node.mark = place(event.start_mark);
     node.text.assign(reinterpret_cast<const char*>(scalar.value), scalar.length);
+    if (has_expressions_) restore_signs(node.text);
     node.is_quoted = scalar.style != YAML_PLAIN_SCALAR_STYLE;
     if (!node.is_quoted && is_null(node.text)) {
       node.text.clear();
@@ -276,6 +280,7 @@ class TreeBuilder {
 
   const SourceText& source_;
   Report& report_;
+  const bool has_expressions_;
   int documents_ = 0;
   std::vector<Open> open_;
   std::optional<Node> root_;
@@ -319,8 +324,16 @@ std::optional<Node> read_document(const SourceText& source, Report& report) {
                {"a line break that no editor shows (U+0085, U+2028 or U+2029)", "a line feed", ""});
     return std::nullopt;
   }
-  Parser parser(source.text);
-  TreeBuilder builder(source, report);
+  const std::string hidden = without_signs(source.text);
+  const std::size_t odd = hidden.empty() ? std::string::npos : source.text.find(kSignPlane);
+  if (odd != std::string::npos) {
+    report.add(source.mark_at(odd), "",
+               {"a character of the private plane U+F0000 in a file with expressions", "another character", ""});
+    return std::nullopt;
+  }
+  using Expressions = TreeBuilder::Expressions;
+  Parser parser(hidden.empty() ? source.text : hidden);
+  TreeBuilder builder(source, hidden.empty() ? Expressions::none : Expressions::hidden, report);
   const std::size_t problems = report.size();
   Parser::End end = Parser::End::none;
   while (end == Parser::End::none) end = parser.advance(builder);

@@ -2,9 +2,11 @@
 // A YAML document as a tree of our own, with the place of every key and value.
 //
 // Stricter than libyaml, whose events it is built from: one document, a map at its root, no anchors, aliases
-// or tags, keys are words, duplicate keys are found, quotes must be closed, at most kMaxDepth levels.
+// or tags, keys are words, duplicate keys are found, quotes must be closed, at most kMaxDepth levels. Behind `${` up to
+// the next `}` the signs of YAML are text, so that an expression (expression.h) may stand in brackets without quotes.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,8 +28,13 @@ struct Node {
     Mark first;
   };
 
+  // Source of a scalar: the file, an expression, or an expression whose result is a ratio, never a quantity in SI.
+  enum class Origin : std::uint8_t { file, expression, ratio };
+
   Kind kind = Kind::empty;
-  bool is_quoted = false;             // scalar in quotes or a block: text, never a number
+  bool is_quoted = false;  // scalar in quotes or a block: text, never a number
+  Origin origin = Origin::file;
+  std::uint8_t level = 0;             // nested instances around the place where the text stands; 0: none (instances.h)
   std::string text;                   // scalar
   std::vector<Node> items;            // sequence
   std::vector<Entry> entries;         // map, in file order

@@ -194,6 +194,12 @@ void keep_assets(const scene::Scene& scene, const std::string& folder, const std
                                          folder);
   };
   for (const scene::Asset& asset : scene.assets) keep(std::filesystem::path(folder) / asset.name, asset.name);
+  // a saved session may continue without the meshes for the eye
+  for (const scene::GraphicDef& graphic : scene.graphics) {
+    const std::filesystem::path from = std::filesystem::path(folder) / graphic.file;
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(from, ignored)) keep(from, graphic.file);
+  }
   if (scene.script.file && !scene.script.file->found.empty()) keep(scene.script.file->found, scene.script.file->file);
 }
 

@@ -96,7 +96,8 @@ struct ClosingCounts {
 // Folder beside a recording with the files of its scene: those of flexible bodies, of which a session's text has only
 // the names.
 [[nodiscard]] std::string recorded_assets(const std::string& recording);
-// Copies the scene's files there; nothing when it has none. Throws Failure.
+// Copies the scene's files there; nothing when it has none. Meshes for the eye that are not in the folder are left out.
+// Throws Failure.
 void keep_assets(const scene::Scene& scene, const std::string& folder, const std::string& recording);
 
 // The text of the scene that was run: the attached one, or where that is missing or damaged the same text in the

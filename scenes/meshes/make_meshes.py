@@ -182,11 +182,47 @@ def bag():
     return sack
 
 
+CAB = [(3.90, 0.75), (5.60, 0.75), (5.65, 1.60), (5.35, 2.75), (3.90, 2.75)]
+
+
+def both_sides(low, high):
+    """A box and its mirror image in the plane z = 0."""
+    return box(low, high) + box((low[0], low[1], -high[2]), (high[0], high[1], -low[2]))
+
+
+def truck_frame():
+    """Frame, tanks, bumper, steps, outriggers on their feet, the cylinder that slews the crane."""
+    foot = (2.84, 0.0, 1.36)
+    return (box((-4.30, 0.55, -0.42), (5.40, 0.80, 0.42)) + box((2.75, 0.50, -0.70), (3.70, 0.79, 0.70)) +
+            box((5.40, 0.50, -1.15), (5.68, 0.76, 1.15)) + both_sides((3.95, 0.42, 0.75), (4.15, 0.52, 1.22)) +
+            box((2.90, 0.60, -1.42), (3.10, 0.74, 1.42)) +
+            both_sides((2.92, 0.05, 1.42), (3.08, 0.78, 1.56)) + both_sides(foot, (3.16, 0.05, 1.62)) +
+            both_sides((0.20, 0.42, 0.50), (1.60, 0.78, 1.05)) + prism(circle(0.11, 16, (2.98, 0.93)), -0.70, 0.70))
+
+
 def truck_body():
-    """Frame, bed, cab with a slanted front."""
-    cab = [(3.90, 0.75), (5.60, 0.75), (5.65, 1.60), (5.35, 2.75), (3.90, 2.75)]
-    return (box((-4.30, 0.55, -0.42), (5.40, 0.80, 0.42)) + box((-4.35, 0.78, -1.25), (2.60, 1.10, 1.25)) +
-            prism(cab, -1.20, 1.20) + box((2.75, 0.50, -0.70), (3.70, 0.79, 0.70)))
+    """Bed with its boards, the headboard behind the crane."""
+    return (box((-4.35, 0.78, -1.25), (2.60, 1.10, 1.25)) + both_sides((-4.34, 1.08, 1.20), (2.59, 1.48, 1.24)) +
+            box((-4.33, 1.09, -1.21), (-4.30, 1.47, 1.21)) + box((2.52, 1.07, -1.21), (2.58, 1.90, 1.21)) +
+            both_sides((-1.00, 1.02, 1.235), (-0.92, 1.50, 1.275)) + both_sides((0.80, 1.02, 1.235), (0.88, 1.50, 1.275)))
+
+
+def truck_cab():
+    """Cab with a slanted front, mirrors, a raised roof; it covers the tops of the front wheels."""
+    return (prism(CAB, -1.23, 1.23) + prism([(3.95, 2.74), (5.30, 2.74), (5.10, 2.86), (4.05, 2.95)], -1.05, 1.05) +
+            both_sides((5.36, 1.80, 1.27), (5.46, 2.30, 1.45)) + both_sides((5.38, 2.02, 1.18), (5.42, 2.06, 1.28)))
+
+
+def truck_glass():
+    """Windscreen and side windows, 2 cm in front of the cab."""
+    screen = [(5.62, 1.68), (5.655, 1.69), (5.40, 2.66), (5.365, 2.65)]
+    side = [(4.35, 1.75), (5.45, 1.75), (5.27, 2.55), (4.35, 2.55)]
+    return prism(screen, -1.08, 1.08) + plates(side, 1.20, 1.25)
+
+
+def truck_lights():
+    return (both_sides((5.55, 0.86, 0.72), (5.66, 1.02, 1.08)) + both_sides((5.62, 0.58, 0.80), (5.70, 0.68, 1.05)) +
+            both_sides((5.20, 2.84, 0.55), (5.28, 2.90, 0.75)) + box((4.30, 2.90, -0.12), (4.54, 3.04, 0.12)))
 
 
 def truck_wheels():
@@ -195,6 +231,14 @@ def truck_wheels():
         for z in (0.90, -1.20):
             wheels += prism(circle(0.50, 24, (x, 0.50)), z, z + 0.30)
     return wheels
+
+
+def truck_rims():
+    rims = []
+    for x in (4.70, -1.90, -3.10):
+        for z in (1.19, -1.215):
+            rims += prism(circle(0.27, 12, (x, 0.50)), z, z + 0.025)
+    return rims
 
 
 def cylinder(bore, chamber, attachment):
@@ -214,7 +258,12 @@ def piston(bore, rod, rod_length, piston_length):
 
 
 MESHES = {
+    "Truck_Frame.stl": truck_frame,
     "Truck_Body.stl": truck_body,
+    "Truck_Cab.stl": truck_cab,
+    "Truck_Glass.stl": truck_glass,
+    "Truck_Lights.stl": truck_lights,
+    "Truck_Rims.stl": truck_rims,
     "Truck_Wheels.stl": truck_wheels,
     "Truck_Pillar.stl": pillar,
     "Truck_LiftBoom.stl": lift_boom,
@@ -228,7 +277,7 @@ MESHES = {
     "Dummy_LiftBoomPiston.stl": lambda: piston(0.160, 0.090, 0.900, 0.050),
     "COLL_Truck_Ground.stl": lambda: box((-40, -1, -40), (40, 0, 40)),
     "COLL_Truck_Body.stl": lambda: box((-4.35, 0.20, -1.25), (3.15, 1.10, 1.25)),
-    "COLL_Truck_Body_Cab.stl": lambda: prism([(3.90, 0.75), (5.60, 0.75), (5.65, 1.60), (5.35, 2.75), (3.90, 2.75)], -1.2, 1.2),
+    "COLL_Truck_Body_Cab.stl": lambda: prism(CAB, -1.2, 1.2),
     "COLL_Truck_Pillar.stl": lambda: box((-0.36, 0.0, -0.21), (0.44, 1.60, 0.21)),
     "COLL_Truck_LiftBoom.stl": lambda: box((-2.68, -0.13, -0.16), (0.09, 0.13, 0.16)),
     "COLL_Truck_JibBoom.stl": jib_boom_hull,

@@ -101,8 +101,10 @@ class Finder {
     }
     for (std::size_t i = 0; i < m; ++i) {
       const scene::PortDef& port = scene_.ports[i];
-      result.ports.push_back(
-          {.name = port.name, .stroke = port.offset + port.ratio * ws.row_x[i], .static_force = F[i]});
+      result.ports.push_back({.name = port.name,
+                              .unit = port.unit,
+                              .stroke = port.offset + port.ratio * ws.row_x[i],
+                              .static_force = F[i]});
     }
     mechanics_node::payload_slopes(model, state, ws, ratio, payload, result.mass, slope);
     for (std::size_t i = 0; i < m; ++i) {
@@ -228,10 +230,33 @@ LiftableLoad find_liftable(scene::Scene& scene, const LiftingPose& pose, ListedS
   return Finder(scene, pose).find(settings);
 }
 
+std::vector<LiftableLoad> find_liftable_of_each(scene::Scene& scene, const LiftingPose& pose, ListedSettings settings) {
+  std::vector<LiftableLoad> loads = {find_liftable(scene, pose, settings)};
+  const std::string first = scene.mechanics.payload;
+  for (const std::string& payload : scene.other_payloads) {
+    scene.mechanics.payload = payload;
+    loads.push_back(find_liftable(scene, pose, settings));
+  }
+  scene.mechanics.payload = first;
+  return loads;
+}
+
+namespace {
+
+std::string position_text(const LiftingPort& port, double x) {
+  return quantity_text(x, info(coupling::dimensions_of(port.unit).position).si_unit);
+}
+
+std::string force_text(const LiftingPort& port, double F) {
+  return quantity_text(F, info(coupling::dimensions_of(port.unit).force).si_unit);
+}
+
+}  // namespace
+
 std::string limit_text(const LiftableLoad& load) {
   const LiftingPort& port = load.limit();
   return fmt::format("{} kg of {}: {} presses with {} at most, {} in {}", std::round(std::max(0.0, port.load)),
-                     load.payload, port.name, quantity_text(std::fabs(port.largest_force), "N"),
+                     load.payload, port.name, force_text(port, std::fabs(port.largest_force)),
                      quantity_text(port.pressure, "Pa"), port.chamber);
 }
 
@@ -246,15 +271,15 @@ std::string report_text(const LiftableLoad& load, std::size_t width) {
       {"cylinder", "stroke", "static force", "a kg more", "largest force", "pressure", "loaded by", "load"});
   for (const LiftingPort& port : load.ports) {
     if (!port.carries()) {
-      table.add({port.name, quantity_text(port.stroke, "m"), quantity_text(port.static_force, "N"), "none", "-", "-",
+      table.add({port.name, position_text(port, port.stroke), force_text(port, port.static_force), "none", "-", "-",
                  "-", "carries nothing of it"});
       continue;
     }
     std::string limit = fmt::format("{:.0f} kg", port.load);
     if (port.is_at_end) limit += ", but the piston stands at its end";
     if (!port.is_steady) limit += ", pressure still rising after 30 s";
-    table.add({port.name, quantity_text(port.stroke, "m"), quantity_text(port.static_force, "N"),
-               quantity_text(port.force_per_kg, "N"), quantity_text(port.largest_force, "N"),
+    table.add({port.name, position_text(port, port.stroke), force_text(port, port.static_force),
+               force_text(port, port.force_per_kg), force_text(port, port.largest_force),
                quantity_text(port.pressure, "Pa"),
                port.input.empty() ? "always" : fmt::format("{} at {:+g}", port.input, port.stick), limit});
   }

@@ -30,6 +30,7 @@ struct LimitingSetting {
 
 struct LiftingPort {
   std::string name{};                       // name of the cylinder
+  coupling::PortUnit unit{};                // of the stroke; the forces are torques where it is the radian
   double stroke = 0;                        // m
   double static_force = 0;                  // N, with the scene's payload
   double force_per_kg = 0;                  // m/s2; 0: it does not carry the payload
@@ -69,6 +70,10 @@ enum class ListedSettings { named, left_out };
 // scene is left as it was; its pressures are changed meanwhile. Throws Failure. A scene without payload, ports or
 // hydraulics has no answer.
 [[nodiscard]] LiftableLoad find_liftable(scene::Scene& scene, const LiftingPose& pose, ListedSettings settings);
+
+// The same for each body that the scene's `payload` names, at least for the one of find_liftable().
+[[nodiscard]] std::vector<LiftableLoad> find_liftable_of_each(scene::Scene& scene, const LiftingPose& pose,
+                                                              ListedSettings settings);
 
 // "Cyl_Lift lifts 2.96 t of Bag at most (...)": one line; the table for people adds the other cylinders.
 [[nodiscard]] std::string limit_text(const LiftableLoad& load);

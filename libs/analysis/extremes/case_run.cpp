@@ -48,7 +48,8 @@ class Ceiling {
         take(field == "shock_pressure_rise" ? rise_ : relief_, one.value);
       }
       if (field == "opening_pressure_rise" || field == "nominal_pressure_drop") take(rise_, one.value);
-      if (field == "maximum_ls_pressure" || field == "set_pressure" || field == "standby_pressure")
+      if (field == "maximum_ls_pressure" || field == "set_pressure" || field == "standby_pressure" ||
+          field == "maximum_pressure")
         take(pump_, one.value);
     }
     for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) {

@@ -38,6 +38,14 @@ ErrorLimit parse(const std::string& text) {
   return {text.substr(0, space), text.substr(text.find_first_not_of(' ', space))};
 }
 
+// The position of each payload that the scene names, within a millimetre.
+std::vector<std::string> errors_of_payloads(const scene::Scene& scene) {
+  std::vector<std::string> errors;
+  if (!scene.mechanics.payload.empty()) errors.push_back(scene.mechanics.payload + ".position 1mm");
+  for (const std::string& payload : scene.other_payloads) errors.push_back(payload + ".position 1mm");
+  return errors;
+}
+
 class Simplifier {
  public:
   Simplifier(const SimplifyOptions& options, const SimplifyProgress& progress, const SimplifyCost& cost)
@@ -49,10 +57,12 @@ class Simplifier {
       throw Failure(ExitCode::bad_input,
                     "the scene runs until it is stopped; nothing was run; set --until to the time to try");
     }
-    if (options.errors.empty()) {
+    errors_ = options.errors;
+    if (errors_.empty()) errors_ = errors_of_payloads(*base_);
+    if (errors_.empty()) {
       throw Failure(ExitCode::bad_input,
-                    "no tolerance is given; nothing was run; name a variable and its tolerance with --error, such as "
-                    "'Bag.position 1mm'");
+                    "no tolerance is given and the scene names no payload; nothing was run; name a variable and its "
+                    "tolerance with --error, such as 'Bag.position 1mm', or the body in `payload:` of the scene");
     }
     sample_ = {kStepsPerSample * base_->session.step_duration().ns};
     until_ = {base_->session.steps() * base_->session.step_duration().ns / sample_.ns * sample_.ns};
@@ -104,7 +114,7 @@ class Simplifier {
     const std::vector<ElementVariable> variables = session::DirectSession(*base_).variables();
     std::vector<std::string> names;
     for (const ElementVariable& variable : variables) names.push_back(variable.name);
-    for (const std::string& text : options_.errors) {
+    for (const std::string& text : errors_) {
       const ErrorLimit limit = parse(text);
       // the name of a vector stands for all of its parts
       std::vector<std::string> patterns = {limit.name};
@@ -281,6 +291,7 @@ class Simplifier {
   const SimplifyOptions& options_;
   const SimplifyProgress& progress_;
   const SimplifyCost& cost_;
+  std::vector<std::string> errors_;  // those of the options, or of the scene's payload
   std::optional<scene::Scene> base_;
   SimDuration sample_, until_;
   std::vector<std::string> names_;

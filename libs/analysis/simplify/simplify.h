@@ -23,9 +23,10 @@ namespace slew::analysis {
 inline constexpr double kLeastSaving = 0.01;
 
 struct SimplifyOptions {
-  scene::SceneOptions scene;        // duration: run time; empty: the scene's
-  std::vector<std::string> errors;  // "Bag.position 1mm", "Cyl_Lift.force 1%": of its range in the base
-  int repeats = 3;                  // timed runs
+  scene::SceneOptions scene;  // duration: run time; empty: the scene's
+  // "Bag.position 1mm", "Cyl_Lift.force 1%": of its range in the base; empty: 1 mm of each `payload` of the scene
+  std::vector<std::string> errors;
+  int repeats = 3;  // timed runs
 };
 
 struct Watched {

@@ -69,9 +69,8 @@ Axis narrowed(const Axis& axis, const std::string_view (&to)[N]) {
 
 Axis parse_axis(const std::string& text) {
   const std::size_t equals = text.find('=');
-  const std::size_t dot = text.find('.');
   Axis axis;
-  if (equals != std::string::npos && dot < equals) {
+  if (equals != std::string::npos && equals > 0) {
     axis.path = text.substr(0, equals);
     std::string value;
     int depth = 0;
@@ -88,7 +87,8 @@ Axis parse_axis(const std::string& text) {
   }
   if (axis.values.empty()) {
     throw Failure(ExitCode::bad_input, fmt::format("--axis {}: is no axis; nothing was run; expected a path and its "
-                                                   "values, such as session.step=0.5ms,1ms,2ms",
+                                                   "values, such as session.step=0.5ms,1ms,2ms, or a parameter "
+                                                   "of the scene and its values",
                                                    text));
   }
   return axis;

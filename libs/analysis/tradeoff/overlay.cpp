@@ -10,6 +10,7 @@
 #include "core/failure.h"
 #include "core/input_file.h"
 #include "scene/canonical.h"
+#include "scene/element_table.h"
 #include "scene/sections.h"
 #include "scene/setting.h"
 #include "scene/yaml_tree.h"
@@ -28,7 +29,7 @@ std::string flow_text(const Node& node) {
     case Node::Kind::empty:
       return "";
     case Node::Kind::scalar:
-      return node.is_quoted ? scene::yaml_text(node.text) : node.text;
+      return node.is_quoted ? scene::yaml_scalar(node.text) : node.text;
     case Node::Kind::sequence:
       for (const Node& item : node.items) add(flow_text(item));
       return '[' + text + ']';
@@ -103,6 +104,11 @@ std::string overlay_text(const std::string& file, scene::Scene& scene, const sce
     std::optional<scene::Setting> setting = scene::parse_setting(text, "Element.key=value", report);
     if (!setting) report.fail(scene::kMaxReportedProblems);
     const std::size_t dot = setting->path.find('.');
+    if (dot == std::string::npos) {
+      Node& parameters = map_at(root, std::string(scene::kParametersKey));
+      scene::set_key(parameters, setting->path, std::move(setting->value), setting->mark);
+      continue;
+    }
     const std::string owner = setting->path.substr(0, dot), section = section_of(scene, owner);
     Node& map = section.empty() ? map_at(root, owner) : map_at(map_at(root, section), owner);
     scene::set_key(map, setting->path.substr(dot + 1), std::move(setting->value), setting->mark);

@@ -87,12 +87,15 @@ class Trader {
     if (result_.axes.empty()) result_.axes = default_axes(base_);
   }
 
-  // name of the last rigid body that moves; empty: there is none
-  [[nodiscard]] std::string payload_name() const {
-    if (!base_.has_mechanics()) return "";
+  // names of the bodies that are lifted; without mechanics none
+  [[nodiscard]] std::vector<std::string> payload_names() const {
+    if (!base_.has_mechanics()) return {};
     const multibody::Model model = multibody::build_model(base_.mechanics);
     const int payload = mechanics_node::payload_of(base_.mechanics, model);
-    return payload > 0 ? model.bodies[static_cast<std::size_t>(payload)].name : base_.mechanics.bodies.back().name;
+    std::vector<std::string> names = base_.other_payloads;
+    names.insert(names.begin(), payload > 0 ? model.bodies[static_cast<std::size_t>(payload)].name
+                                            : base_.mechanics.bodies.back().name);
+    return names;
   }
 
   void choose_variables() {
@@ -102,8 +105,7 @@ class Trader {
     std::vector<std::string> patterns = options_.variables;
     if (patterns.empty()) {
       for (const scene::PortDef& port : base_.ports) patterns.push_back(port.name + ".force");
-      const std::string lifted = payload_name();
-      if (!lifted.empty()) patterns.push_back(lifted + ".position.?");
+      for (const std::string& lifted : payload_names()) patterns.push_back(lifted + ".position.?");
       if (patterns.empty()) patterns.emplace_back("*.pressure");
     }
     // the name of a vector stands for its parts

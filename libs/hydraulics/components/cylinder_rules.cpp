@@ -24,26 +24,26 @@ void check_chamber(const std::string& name, const CylinderParameters& c, char po
                     "a stroke inside the chamber, a stiffer stop or a dead volume", ""});
 }
 
-void check_friction_curve(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& c,
+}  // namespace
+
+void check_friction_curve(const HydraulicsDef& circuit, const std::string& element, const std::string& name,
                           Problems& errors) {
   for (const CurveDef& curve : circuit.curves) {
-    if (curve.name != c.friction_curve) continue;
+    if (curve.name != name) continue;
     bool is_braking = curve.odd;
     for (const auto& point : curve.points) is_braking = is_braking && point[0] >= 0 && point[1] >= 0;
     if (is_braking) return;
-    errors.push_back({name + ".friction_curve", "the curve '" + curve.name + "' would drive the piston",
+    errors.push_back({element + ".friction_curve", "the curve '" + curve.name + "' would drive the actuator",
                       "odd: true with coefficients >= 0 over speeds >= 0", ""});
   }
 }
-
-}  // namespace
 
 void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& c,
                     double rod_diameter, Problems& errors) {
   if (c.port_a == c.port_b) {
     errors.push_back({name + ".port_b", "both ports are connected to '" + c.port_a + "'", "two volumes", ""});
   }
-  check_friction_curve(circuit, name, c, errors);
+  check_friction_curve(circuit, name, c.friction_curve, errors);
   if (!(c.piston_travel() > 0)) {
     errors.push_back(
         {name + ".chamber_length", "the chamber is not longer than the piston", "more than piston_length", ""});

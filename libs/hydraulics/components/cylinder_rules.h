@@ -9,6 +9,10 @@
 
 namespace slew::hydraulics {
 
+// The curve only brakes. element: the actuator's name; curve: its friction curve, empty for none.
+void check_friction_curve(const HydraulicsDef& circuit, const std::string& element, const std::string& curve,
+                          Problems& errors);
+
 // Checks that strokes are in order, chambers are positive over the stroke and the stops' compression, ports differ, and
 // the friction curve only brakes. name: the cylinder's; rod_diameter: 0 without a rod [m].
 void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& cylinder,

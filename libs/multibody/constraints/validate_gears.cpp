@@ -20,7 +20,8 @@ class GearRules {
   GearRules(const MechanicsDef& mechanics, Problems& problems) : m_(mechanics), problems_(problems) {}
 
   bool check(const GearDef& gear) {
-    const bool both = check_joint(gear, "joint1", gear.joint1, 0) & check_joint(gear, "joint2", gear.joint2, 1);
+    const bool is_first_right = check_joint(gear, "joint1", gear.joint1, 0);
+    const bool both = check_joint(gear, "joint2", gear.joint2, 1) && is_first_right;
     if (!both || gear.joint1 != gear.joint2) return both;
     add(gear.name + ".joint2", fmt::format("both joints are '{}'", gear.joint2), "two different joints");
     return false;

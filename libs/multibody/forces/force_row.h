@@ -54,6 +54,9 @@ struct ForceType {
   std::span<const Field> (*fields)();  // of the Def
   std::vector<Def> Lists::*list;
 };
+template <typename Lists, typename Def>
+ForceType(const char*, const char*, const char*, std::span<const Field> (*)(), std::vector<Def> Lists::*)
+    -> ForceType<Lists, Def>;  // clang 14 does not deduce an aggregate's arguments
 
 // A body by name, and the point in its frame; null: the element has no point there.
 using VisitPoint = std::function<void(std::string& body, Triple* point)>;

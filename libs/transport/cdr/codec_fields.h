@@ -57,6 +57,9 @@ struct Bounded {
 };
 
 template <typename N>
+Bounded(N&, std::int64_t, std::int64_t) -> Bounded<N>;
+
+template <typename N>
 [[nodiscard]] Bounded<N> step(N& value) {
   return {value, kJoinStep, wire::kMaxStep};
 }

@@ -110,7 +110,7 @@ missing_as_root() {
   call 0 "$tree/launch_scripts/run" scenes/first_steps.yaml
   local install="apt-get install -y --no-install-recommends slewring-absent-tool"
   printf '%s\n' "id -u" "$install" "apt-get update" "$install" "cmake --preset release -DSLEWRING_BUILD_TESTS=OFF" \
-    "cmake --build build/release --target slewring" "slewring run scenes/first_steps.yaml" > "$scratch/expected"
+    "cmake --build build/release --target slewring page" "slewring run scenes/first_steps.yaml" > "$scratch/expected"
   cmp -s "$scratch/expected" "$calls" || fail "expected these calls: $(cat "$scratch/expected")"
   # an installation that fails ends it, with the reason
   : > "$calls"

@@ -57,7 +57,11 @@ class Client {
     this.client.on("serviceCallFailure", (failure) => this.answers.set(failure.callId, { failure: failure.message }));
     this.client.on("message", (message) => {
       const topic = this.#topics.get(message.subscriptionId);
-      this.values.set(topic, JSON.parse(decoder.decode(message.data)));
+      const isJson = this.channels.get(topic).encoding === "json";
+      // a message of the wire: little-endian XCDR1 (OMG DDSI-RTPS, 10.2.1.2)
+      const bytes = new Uint8Array(message.data.buffer, message.data.byteOffset, message.data.byteLength);
+      if (!isJson && (bytes[0] !== 0 || bytes[1] !== 1 || bytes.length < 8)) this.statuses.push(`no CDR on ${topic}`);
+      this.values.set(topic, isJson ? JSON.parse(decoder.decode(message.data)) : bytes);
       this.times.set(topic, message.timestamp);
       this.counts.set(topic, (this.counts.get(topic) ?? 0) + 1);
     });

@@ -5,7 +5,9 @@
 window_test.py SOURCES SLEWRING PACKAGES CASE
 PACKAGES: folder in which the packages of the client are installed.
 """
+import csv
 import fcntl
+import gzip
 import hashlib
 import http.client
 import json
@@ -40,15 +42,15 @@ def take_domain():
     sys.exit("FAILED: all test domains are in use")
 
 
-def install_packages():
+def install_packages(source=HERE, files=("package.json", "package-lock.json", "client.mjs", "page.mjs")):
     if shutil.which("node") is None or shutil.which("npm") is None:
         skip("node and npm are needed for a client of the Foxglove protocol")
-    with open(f"{HERE}/package-lock.json", "rb") as lock:
+    with open(f"{source}/package-lock.json", "rb") as lock:
         wanted = hashlib.sha256(lock.read()).hexdigest()
     os.makedirs(PACKAGES, exist_ok=True)
     stamp = f"{PACKAGES}/installed.sha256"
-    for name in ("package.json", "package-lock.json", "client.mjs"):
-        shutil.copy(f"{HERE}/{name}", PACKAGES)
+    for name in files:
+        shutil.copy(f"{source}/{name}", PACKAGES)
     if os.path.exists(stamp) and text_of(stamp) == wanted:
         return
     done = subprocess.run(["npm", "ci", "--no-audit", "--no-fund", "--ignore-scripts", "--fetch-retries=1"],
@@ -102,6 +104,56 @@ def run_client(*arguments):
     require(done.returncode == 0, f"the client ended with {done.returncode}:\n{done.stderr}")
 
 
+def run_page(case, address, *arguments):
+    chromium = shutil.which("chromium") or shutil.which("google-chrome")
+    if chromium is None:
+        skip("chromium is needed for the page of the window")
+    done = subprocess.run(["node", f"{PACKAGES}/page.mjs", case, address, SLEWRING, chromium, *arguments],
+                          capture_output=True, text=True, timeout=280)
+    print(done.stdout)
+    require(done.returncode == 0, f"the page: {done.stderr}")
+
+
+def need_page():
+    """The built page, which the window serves of its own accord."""
+    install_packages()
+    if not os.path.exists(f"{os.path.dirname(SLEWRING)}/../web/index.html"):
+        skip("the page is not built; build the target 'page', which needs node, npm and its registry")
+
+
+def page_live(folder, case="live"):
+    need_page()
+    domain = take_domain()
+    window = start_scene(folder, domain)
+    try:
+        run_page(case, window.address(), "--session", SESSION, "--domain", domain)
+    finally:
+        window.end()
+
+
+def page_inputs(folder):
+    page_live(folder, "inputs")
+
+
+def page_recording(folder):
+    need_page()
+    path = record(folder)
+    window = Program(folder, "window", "window", path, "--port", "0", "--json")
+    try:
+        run_page("recording", window.address(), path)
+    finally:
+        window.end()
+
+
+def types(folder):
+    """tsc over the sources of the page, with packages of their own."""
+    install_packages(f"{SOURCES}/web", ("package.json", "package-lock.json", "tsconfig.json"))
+    shutil.rmtree(f"{PACKAGES}/src", ignore_errors=True)
+    shutil.copytree(f"{SOURCES}/web/src", f"{PACKAGES}/src")
+    done = subprocess.run(["npm", "run", "check"], cwd=PACKAGES, capture_output=True, text=True)
+    require(done.returncode == 0, f"tsc:\n{done.stdout}{done.stderr}")
+
+
 def live(folder):
     install_packages()
     domain = take_domain()
@@ -115,11 +167,16 @@ def live(folder):
         window.process.kill()
 
 
-def recording(folder):
-    install_packages()
+def record(folder):
+    """Two seconds of the crane; the path of the run."""
     subprocess.run([SLEWRING, "run", f"{SOURCES}/scenes/truck_crane.yaml", "--in-process", "--pace", "free", "--duration",
                     "2 s", "--out", f"{folder}/runs", "--quiet"], check=True, capture_output=True, cwd=folder)
-    path = f"{folder}/runs/" + os.listdir(f"{folder}/runs")[0]
+    return f"{folder}/runs/" + os.listdir(f"{folder}/runs")[0]
+
+
+def recording(folder):
+    install_packages()
+    path = record(folder)
     window = Program(folder, "window", "window", path, "--port", "0", "--json")
     try:
         run_client("recording", f"ws://{window.address()}/", SLEWRING, path)
@@ -137,6 +194,14 @@ def request(address, target="/", method="GET", host=None, **headers):
     connection.endheaders()
     answer = connection.getresponse()
     return answer.status, answer.read().decode()
+
+
+def send(address, target, method="GET", body=None, **headers):
+    """Status, headers and body."""
+    connection = http.client.HTTPConnection(address, timeout=DEADLINE)
+    connection.request(method, target, body, {name.replace("_", "-"): value for name, value in headers.items()})
+    answer = connection.getresponse()
+    return answer.status, answer.headers, answer.read()
 
 
 UPGRADE = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec_WebSocket_Version": "13",
@@ -167,6 +232,135 @@ def open_websocket(address, target="/"):
         head += connection.recv(1)
     require(head.startswith(b"HTTP/1.1 101"), head.decode())
     return connection
+
+
+class Client:
+    """A client of the protocol, as far as services need one."""
+
+    def __init__(self, address):
+        self.connection = open_websocket(address)
+        self.services = {}
+        wait_for("the services of the window", self.has_services)
+
+    def has_services(self):
+        opcode, data = self.receive()
+        if opcode == 1 and (message := json.loads(data))["op"] == "advertiseServices":
+            self.services = {one["name"]: one["id"] for one in message["services"]}
+        return bool(self.services)
+
+    def take(self, size):
+        data = b""
+        while len(data) < size:
+            part = self.connection.recv(size - len(data))
+            require(part, "the window has closed the connection")
+            data += part
+        return data
+
+    def receive(self):
+        """Opcode and data of the next frame (RFC 6455, 5.2); the server does not fragment."""
+        first, size = self.take(2)
+        if size == 126:
+            size = int.from_bytes(self.take(2), "big")
+        elif size == 127:
+            size = int.from_bytes(self.take(8), "big")
+        return first & 15, self.take(size)
+
+    def call(self, name, request):
+        payload = (b"\2" + self.services[name].to_bytes(4, "little") + (7).to_bytes(4, "little") +
+                   (4).to_bytes(4, "little") + b"json" + json.dumps(request).encode())
+        head = b"\x82" + (bytes([128 | len(payload)]) if len(payload) < 126
+                          else b"\xfe" + len(payload).to_bytes(2, "big"))
+        self.connection.sendall(head + b"\0\0\0\0" + payload)
+        while True:
+            opcode, data = self.receive()
+            if opcode == 2 and data[0] == 3:
+                return json.loads(data[13 + int.from_bytes(data[9:13], "little"):])
+            if opcode == 1 and (message := json.loads(data))["op"] == "serviceCallFailure":
+                sys.exit(f"FAILED: {name}: {message['message']}")
+
+
+def values_of(recording, start, out):
+    """Rows of the recording's values from a time on, by the names in its header; without the nodes' own, of
+    which a clock measures some."""
+    subprocess.run([SLEWRING, "export", recording, "--csv", "-o", out, "--from", start], check=True, capture_output=True)
+    with open(out, newline="") as lines:
+        header, *rows = csv.reader(lines)
+    measured = re.compile(r"(io|mechanics|hydraulics)\.|.*\.(age|loop_delay|loop_time_ms)\b")
+    kept = [i for i, name in enumerate(header) if not measured.match(name)]
+    return [[row[i] for i in kept] for row in (header, *rows)]
+
+
+def take_over(folder):
+    """A session from the middle of a recording has the recorded values to the last bit: numbers are printed so that
+    they read back as the same."""
+    domain = take_domain()
+    subprocess.run([SLEWRING, "run", f"{SOURCES}/scenes/truck_crane.yaml", "--in-process", "--pace", "free", "--duration",
+                    "1.8 s", "--step", "4 ms", "--set", "recording.every=1", "--out", f"{folder}/first", "--quiet"],
+                   check=True, capture_output=True, cwd=folder)
+    first = f"{folder}/first/" + os.listdir(f"{folder}/first")[0]
+    window = Program(folder, "window", "window", first, "--port", "0", "--json", "--session", "taken", "--domain", domain)
+    try:
+        client = Client(window.address())
+        answer = client.call("take_over", {"time": 1.2, "input": "script", "duration": 1.8})
+        require(answer["accepted"] and answer["session"] == "taken", f"{answer}")
+        page = re.match("http://([^/]*)/", answer["page"])[1]
+        wait_for("the window of the session", lambda: request(page, "/session.json")[0] == 200)
+        again = client.call("take_over", {"time": 1.2})
+        wait_for("the end of the session", lambda: re.search("taken: .*/session.mcap", text_of(window.out)))
+        require(not again["accepted"] and "nothing was started" in again["reason"], f"{again}")
+        window.end()
+        second = f"{folder}/runs/" + os.listdir(f"{folder}/runs")[0]
+        recorded, taken = (values_of(one, "1.204 s", f"{folder}/{name}.csv") for one, name in ((first, "a"), (second, "b")))
+        require(len(recorded) > 140 and len(recorded[0]) > 50, f"too few values: {recorded[:2]}")
+        stroke = recorded[0].index("Cyl_Lift.stroke [m]")
+        require(recorded[1][stroke] != recorded[-1][stroke], "the script does not move the crane: nothing is compared")
+        for of_first, of_second in zip(recorded, taken, strict=True):
+            differing = [name for name, a, b in zip(recorded[0], of_first, of_second) if a != b]
+            require(not differing, f"at {of_first[0]} s the session has other values of {differing}")
+    finally:
+        window.process.kill()
+
+
+def files(folder):
+    """Meshes, packed files and the workspace by HTTP."""
+    os.environ["XDG_STATE_HOME"] = f"{folder}/state"
+    subprocess.run([SLEWRING, "run", f"{SOURCES}/scenes/truck_crane.yaml", "--in-process", "--pace", "free", "--duration",
+                    "0.1 s", "--out", f"{folder}/runs", "--quiet"], check=True, capture_output=True, cwd=folder)
+    os.makedirs(f"{folder}/web")
+    for name, content in (("index.html", b"plain" * 50), ("index.html.gz", gzip.compress(b"plain" * 50))):
+        with open(f"{folder}/web/{name}", "wb") as file:
+            file.write(content)
+    window = Program(folder, "window", "window", f"{folder}/runs/" + os.listdir(f"{folder}/runs")[0], "--port", "0",
+                     "--json", "--web", f"{folder}/web")
+    try:
+        address = window.address()
+        graphics = json.loads(send(address, "/session.json")[2])["graphics"]
+        require({one["body"] for one in graphics} >= {"Ground", "Truck_Pillar", "Truck_JibBoom", "Bag"}, f"{graphics}")
+        total = 0
+        for one in graphics:
+            status, headers, data = send(address, one["path"])
+            require(status == 200 and headers["Content-Type"] == "model/gltf-binary" and data[:4] == b"glTF" and
+                    int.from_bytes(data[8:12], "little") == len(data), f"{one}: {status}, {headers}")
+            total += len(data)
+        print(f"{len(graphics)} meshes, {total} bytes")
+        status, headers, data = send(address, "/", Accept_Encoding="gzip")
+        require(headers["Content-Encoding"] == "gzip" and gzip.decompress(data) == b"plain" * 50, f"{headers}")
+        require(send(address, "/", If_None_Match=headers["ETag"], Accept_Encoding="gzip")[0] == 304, "not revalidated")
+        status, headers, data = send(address, "/", "HEAD")
+        require(headers["Content-Length"] == "250" and data == b"", f"HEAD: {headers}, {data}")
+        require(send(address, "/workspace.json")[0] == 404, "a workspace that no page saved")
+        require(send(address, "/workspace.json", "PUT", "{}")[0] == 400, "a workspace without a version was saved")
+        status, headers, data = send(address, "/workspace.json", "PUT", '{"version": 1}')
+        require(status == 201, f"{status}: {data}")
+        tag = headers["ETag"]
+        require(send(address, "/workspace.json", "PUT", '{"version": 2}', If_Match=tag)[0] == 204, "not replaced")
+        require(send(address, "/workspace.json", "PUT", '{"version": 3}', If_Match=tag)[0] == 412, "a state was lost")
+        require(send(address, "/workspace.json")[2] == b'{"version": 2}', "another workspace")
+        require(os.listdir(f"{folder}/state/slewring/workspaces/").count("truck_crane.json") == 1, "no file")
+        require(send(address, "/workspace.json", "PUT", "x" * (2 << 20))[0] == 413, "a giant workspace was read")
+        require(send(address, "/session.json", body="x")[0] == 413, "a body was taken")
+    finally:
+        window.end()
 
 
 def door(folder):
@@ -230,6 +424,9 @@ def door(folder):
 
 
 CASES = {"AForeignClientWatchesAndChangesALiveSession": live, "ARecordingIsSoughtByAForeignClient": recording,
-         "TheDoorRefusesHostileRequests": door}
+         "TheDoorRefusesHostileRequests": door, "MeshesFilesAndTheWorkspaceComeByHttp": files,
+         "ASessionTakesOverFromARecordingWithTheSameBits": take_over,
+         "ThePageShowsChangesAndDrivesASession": page_live, "ThePageFollowsTheSliderOfARecording": page_recording,
+         "ThePageOperatesAndPlots": page_inputs, "TheTypesOfThePageHold": types}
 with tempfile.TemporaryDirectory(prefix="slewring_window_") as scratch:
     CASES[CASE](scratch)

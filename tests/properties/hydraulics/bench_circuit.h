@@ -9,6 +9,12 @@
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/four_way_valve.h"
+#include "hydraulics/components/hose_burst_valve.h"
+#include "hydraulics/components/hydraulic_motor.h"
+#include "hydraulics/components/pump.h"
+#include "hydraulics/components/single_acting_cylinder.h"
+#include "hydraulics/components/sources.h"
+#include "hydraulics/components/spool_valve.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
@@ -28,7 +34,7 @@ inline void add_check_valves(HydraulicsDef& circuit) {
   lock.common.nominal_flow = 5e-4;
 }
 
-// Counterbalance valves with the spring's chamber at port 1 and vented.
+// Counterbalance valves with the spring's chamber at port 1 and vented, and a hose-burst valve.
 inline void add_counterbalance_valves(HydraulicsDef& circuit) {
   CounterbalanceValveDef& valve = add<CounterbalanceValveDef>(circuit, "Counterbalance");
   valve.port_1 = "Vol_A", valve.port_2 = "Vol_C", valve.port_3 = "Vol_B";
@@ -36,6 +42,9 @@ inline void add_counterbalance_valves(HydraulicsDef& circuit) {
   CounterbalanceValveDef& vented = add<CounterbalanceValveDef>(circuit, "Counterbalance_Vented");
   vented.port_1 = "Vol_B", vented.port_2 = "Vol_D", vented.port_3 = "Vol_A", vented.port_4 = "Vol_T";
   vented.setting_pressure = 250 * kBar, vented.nominal_flow = 5e-4, vented.check.nominal_flow = 5e-4;
+  HoseBurstValveDef& fuse = add<HoseBurstValveDef>(circuit, "Fuse");
+  fuse.port_1 = "Vol_B", fuse.port_2 = "Vol_C", fuse.nominal_flow = 1e-3, fuse.closing_flow = 8e-4;
+  fuse.leak_flow = kLeak;
 }
 
 // A bladder with polytropic gas, a piston with friction and heat exchange.
@@ -46,6 +55,46 @@ inline void add_accumulators(HydraulicsDef& circuit) {
   AccumulatorDef& piston = add<AccumulatorDef>(circuit, "Piston");
   piston.port_1 = "Vol_C", piston.gas_volume = 4e-3, piston.precharge_pressure = 60 * kBar;
   piston.nominal_flow = 1e-3, piston.friction_pressure = 1 * kBar, piston.thermal_time_constant = 20;
+}
+
+// A closed-centre valve with four edges, one by a curve and one blocked; an open-centre one behind it in the bypass.
+inline void add_spool_valves(HydraulicsDef& circuit) {
+  SpoolValveDef& closed = add<SpoolValveDef>(circuit, "Closed_Centre");
+  closed.port_p = "Vol_P", closed.port_a = "Vol_C", closed.port_b = "Vol_D", closed.port_t = "Vol_T";
+  closed.maximum_control_signal = 1000, closed.leak_flow = kLeak;
+  closed.pa.curve = "Edge", closed.pa.area = 4e-6, closed.bt.area = 8e-6, closed.bt.overlap = 0.05;
+  closed.pb.area = 3e-6, closed.pb.overlap = 0.1;
+  SpoolValveDef& open = add<SpoolValveDef>(circuit, "Open_Centre");
+  open.port_p = "Vol_P", open.port_a = "Vol_A", open.port_b = "Vol_B", open.port_t = "Vol_T", open.port_d = "Vol_C";
+  open.pa.area = open.pb.area = 5e-6, open.pa.overlap = open.pb.overlap = 0.3;
+  open.at.area = open.bt.area = 6e-6, open.at.overlap = open.bt.overlap = -0.2;
+  open.bypass_area = 2e-5, open.bypass_closing = 0.2, open.bypass_closed = 0.6;
+  circuit.curves.push_back({.name = "Edge", .points = {{-1, 0}, {0.1, 0}, {0.4, 0.2}, {1, 1.5}}});
+}
+
+// A motor with a case drain, one without, and a single-acting cylinder.
+inline void add_actuators(HydraulicsDef& circuit) {
+  HydraulicMotorDef& motor = add<HydraulicMotorDef>(circuit, "Motor");
+  motor.force = "Ring", motor.port_a = "Vol_C", motor.port_b = "Vol_D", motor.port_c = "Vol_T";
+  motor.displacement = 10e-6, motor.gear_ratio = 50, motor.leak_flow = kLeak, motor.case_leak_flow = 2 * kLeak;
+  HydraulicMotorDef& fan = add<HydraulicMotorDef>(circuit, "Fan");
+  fan.force = "Fan_Axle", fan.port_a = "Vol_A", fan.port_b = "Vol_T", fan.displacement = 2e-6;
+  SingleActingCylinderDef& plunger = add<SingleActingCylinderDef>(circuit, "Plunger");
+  plunger.common.force = "Plunger_Force", plunger.common.port_a = "Vol_D", plunger.common.port_b = "Vol_T";
+  plunger.common.piston_diameter = 0.06, plunger.common.chamber_length = 0.6, plunger.common.leak_flow = kLeak;
+  plunger.common.minimum_stroke = 0.05, plunger.common.maximum_stroke = 0.5;
+}
+
+// A flow and a pressure source, a pump with both limits.
+inline void add_sources(HydraulicsDef& circuit) {
+  PumpDef& pump = add<PumpDef>(circuit, "Limited_Pump");
+  pump.port_a = "Vol_C", pump.port_b = "Vol_T", pump.speed = 157, pump.displacement = 8e-6, pump.leak_flow = kLeak;
+  pump.swash = 0.8, pump.maximum_pressure = 190 * kBar, pump.maximum_power = 10e3;
+  FlowSourceDef& flow = add<FlowSourceDef>(circuit, "Flow_Source");
+  flow.port_1 = "Vol_T", flow.port_2 = "Vol_P", flow.flow = 1e-4, flow.flow_per_signal = 1e-7;
+  PressureSourceDef& pressure = add<PressureSourceDef>(circuit, "Pressure_Source");
+  pressure.port_1 = "Vol_D", pressure.set_pressure = 50 * kBar, pressure.pressure_per_signal = 1e3;
+  pressure.nominal_flow = 1e-4;
 }
 
 inline HydraulicsDef bench_circuit() {
@@ -100,6 +149,9 @@ inline HydraulicsDef bench_circuit() {
   add_check_valves(circuit);
   add_counterbalance_valves(circuit);
   add_accumulators(circuit);
+  add_spool_valves(circuit);
+  add_actuators(circuit);
+  add_sources(circuit);
   return circuit;
 }
 

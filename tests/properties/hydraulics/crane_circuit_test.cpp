@@ -194,12 +194,15 @@ TEST(CraneCircuit, work_and_impulse_of_a_step_are_the_integrals_of_the_force) {
 }
 
 TEST(CraneCircuit, passive_parts_never_create_power) {
-  // flows of everything but the pump and the accumulators, which store energy, at random states: sum of p Q into the
-  // volumes, tank included, is not positive
+  // flows of everything but pumps, sources and the accumulators, which store energy, at random states: sum of p Q into
+  // the volumes, tank included, is not positive
+  const auto is_active = [](const auto& component) {
+    constexpr std::string_view kActive[] = {"ls_pump", "pump", "accumulator", "flow_source", "pressure_source"};
+    return std::find(std::begin(kActive), std::end(kActive), component->type_name()) != std::end(kActive);
+  };
   for (const auto make : {crane_circuit, bench_circuit}) {
     HydraulicsDef def = make();
-    std::erase_if(def.components,
-                  [](const auto& c) { return c->type_name() == "ls_pump" || c->type_name() == "accumulator"; });
+    std::erase_if(def.components, is_active);
     Circuit circuit(def);
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> unit(0, 1);

@@ -34,8 +34,9 @@ std::vector<double> random_state(const Circuit& circuit, std::mt19937_64& random
   }
   for (int j = 0; j < circuit.actuator_count(); ++j) {
     const LineForceParameters& line = circuit.actuators()[static_cast<std::size_t>(j)].line_force;
-    y[static_cast<std::size_t>(circuit.position(j))] =
-        line.minimum_stroke + (line.maximum_stroke - line.minimum_stroke) * unit(random);
+    // a motor has no ends
+    const double least = std::max(line.minimum_stroke, -100.0), most = std::min(line.maximum_stroke, 100.0);
+    y[static_cast<std::size_t>(circuit.position(j))] = least + (most - least) * unit(random);
     y[static_cast<std::size_t>(circuit.speed(j))] = 0.6 * (unit(random) - 0.5);
   }
   for (std::size_t k = static_cast<std::size_t>(circuit.first_component_state()); k < y.size(); ++k) {

@@ -105,6 +105,21 @@ TEST(LiftableLoad, APoseChangesItAndTheSceneStaysAsItWas) {
                Failure);
 }
 
+TEST(LiftableLoad, IsFoundForEachBodyOfThePayload) {
+  scene::Scene scene = load("truck_crane.yaml");
+  scene.mechanics.payload = "Bag";
+  scene.other_payloads = {"Truck_Hook"};
+  const std::vector<LiftableLoad> found = find_liftable_of_each(scene, {}, ListedSettings::left_out);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].payload, "Bag");
+  EXPECT_EQ(found[1].payload, "Truck_Hook");
+  EXPECT_EQ(scene.mechanics.payload, "Bag");
+  scene::Scene alone = load("truck_crane.yaml", {"mechanics.payload=Truck_Hook"});
+  const LiftableLoad hook = find_liftable(alone, {}, ListedSettings::left_out);
+  ASSERT_TRUE(hook.has_answer());
+  EXPECT_EQ(found[1].limit().load, hook.limit().load);
+}
+
 TEST(LiftableLoad, ASceneWithoutCylindersHasNone) {
   scene::Scene scene = load("four_bar.yaml");
   EXPECT_FALSE(find_liftable(scene, {}, ListedSettings::named).has_answer());

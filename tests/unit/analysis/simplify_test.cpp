@@ -115,6 +115,21 @@ TEST(Simplify, NothingIsTakenWhenNothingMayChange) {
   EXPECT_NE(report_text(result).find("nothing helps"), std::string::npos);
 }
 
+TEST(Simplify, JudgesByThePayloadOfTheSceneWithoutAnError) {
+  SimplifyOptions options = options_for("single_cylinder.yaml", {}, "0.2 s");
+  try {
+    static_cast<void>(simplify(options, kGoOn));
+    ADD_FAILURE() << "no payload, no error";
+  } catch (const Failure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("the scene names no payload"), std::string::npos) << failure.what();
+  }
+  options.scene.overrides = {"mechanics.payload=Load"};
+  const Simplification result = simplify(options, kGoOn);
+  const auto names_load = [](const auto& watched) { return watched.name.starts_with("Load.position"); };
+  EXPECT_FALSE(result.watched.empty());
+  EXPECT_TRUE(std::all_of(result.watched.begin(), result.watched.end(), names_load));
+}
+
 TEST(Simplify, RefusesWhatItCannotJudge) {
   const auto expect_refusal = [](const std::string& error, const std::string& part) {
     try {

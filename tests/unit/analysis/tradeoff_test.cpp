@@ -242,6 +242,22 @@ TEST_F(Overlay, OfASceneThatIncludesHoldsItsKeysToo) {
   EXPECT_EQ(scene::load_file(file).expanded_text, scene::load_file(path("long.yaml"), settings).expanded_text);
 }
 
+TEST_F(Overlay, SetsParametersAndElementsOfInstances) {
+  std::ofstream(path("rods.yaml"))
+      << "scene: rods\nparameters: {w: 4 m}\ngroups:\n  Swing:\n    bodies:\n"
+         "      Rod: {position: [${w / 2}, 0, 0], mass: 1 kg, inertia: [0, 1, 1]}\n    joints:\n"
+         "      Hinge: {type: revolute, point1: [${w / 2}, 0, 0], body2: Rod}\n"
+         "instances: {A: {group: Swing}}\n";
+  std::ofstream(path("more.yaml")) << "include: rods.yaml\nscene: more\nparameters: {w: \"${2 * 4 m}\"}\n";
+  for (const char* scene : {"rods", "more"}) {
+    const scene::Overrides settings = {"w=6 m", "A_Rod.mass=8 kg"};
+    const std::string from = path((std::string(scene) + ".yaml").c_str()), file = path("overlay.yaml");
+    write_overlay(from, settings, "why", file);
+    EXPECT_EQ(scene::load_file(file).expanded_text, scene::load_file(from, settings).expanded_text);
+    EXPECT_EQ(scene::load_file(file).mechanics.bodies.at(0).position[0], 3);
+  }
+}
+
 TEST_F(Overlay, NeverReplacesWhatIsNotItsOwn) {
   std::ofstream(path("mine.yaml")) << "bodies: {}\n";
   EXPECT_THROW(static_cast<void>(overlay_target(path("single_cylinder.yaml"), path("mine.yaml"), "tradeoff")), Failure);

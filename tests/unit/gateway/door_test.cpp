@@ -79,6 +79,21 @@ TEST(Door, LetsPlainPathsOfThePageIn) {
   EXPECT_EQ(judge({}, plain("/" + std::string(3000, 'a'))).status, 414u);
 }
 
+TEST(Door, KeepsMeshesAndTheWorkspaceApartFromThePagesFiles) {
+  EXPECT_EQ(judge({}, plain("/assets/Cab_View.glb")).service, Service::asset);
+  EXPECT_EQ(judge({}, plain("/assets/Cab_View.glb")).path, "Cab_View.glb");
+  EXPECT_EQ(judge({}, plain("/workspace.json")).service, Service::workspace);
+  Request request = plain("/workspace.json");
+  request.method = "PUT";
+  EXPECT_EQ(judge({}, request).service, Service::workspace);
+  EXPECT_EQ(judge({}, from_page(request, "http://evil.com")).status, 403u);
+  DoorDef door;
+  door.token = "0123456789abcdef";
+  EXPECT_EQ(judge(door, request).status, 401u);
+  EXPECT_EQ(judge(door, plain("/assets/Cab_View.glb")).status, 401u);
+  EXPECT_EQ(judge(door, plain("/assets/page.js")).status, 200u);
+}
+
 TEST(Door, RefusesMethodsThatWouldChangeSomething) {
   Request request = plain();
   for (const char* const method : {"POST", "PUT", "DELETE", "OPTIONS", "", "get"}) {

@@ -85,6 +85,23 @@ TEST_F(GatewayTest, AServiceIsAnsweredWhenTheSessionHasAnswered) {
   EXPECT_EQ(answer.at("step").integer(), 42);
 }
 
+TEST_F(GatewayTest, AClientThatFillsItsShareOfRequestsLeavesTheOthersTheirs) {
+  const ClientId greedy = connect(), other = connect();
+  take_all(greedy);
+  take_all(other);
+  const std::size_t before = requests.size();
+  for (int i = 0; i < 300; ++i) call(greedy, static_cast<std::uint32_t>(Call::pause), "");
+  EXPECT_EQ(requests.size() - before, Requests::kMostOfOwner);
+  const std::vector<std::string> answers = take_all(greedy).binaries;
+  ASSERT_EQ(answers.size(), 300 - Requests::kMostOfOwner);
+  EXPECT_NE(answers[0].find("of this client wait"), std::string::npos);
+  call(other, static_cast<std::uint32_t>(Call::resume), "");
+  reply(wire::ControlAction::resume, true, 0);
+  const Received received = take_all(other);
+  ASSERT_EQ(received.binaries.size(), 1u);
+  EXPECT_TRUE(Json::parse(std::string_view(received.binaries[0]).substr(17))->at("accepted").boolean());
+}
+
 TEST_F(GatewayTest, WrongCallsFailAndChangeNothing) {
   const ClientId client = connect();
   take_all(client);

@@ -10,7 +10,8 @@ TEST_F(GatewayTest, AClientReceivesServerInfoChannelsAndServices) {
   const Json& info = received.texts[0];
   EXPECT_EQ(info.at("op").text(), "serverInfo");
   EXPECT_EQ(info.at("capabilities").texts(),
-            (std::vector<std::string>{"time", "parameters", "parametersSubscribe", "clientPublish", "services"}));
+            (std::vector<std::string>{"time", "connectionGraph", "parameters", "parametersSubscribe", "clientPublish",
+                                      "services"}));
   for (const char* const topic :
        {"/Drum", "/Axle", "/Stick", "/slewring/transforms", "/slewring/scene", "/slewring/log", "/slewring/session"}) {
     EXPECT_GT(channel_of(received, topic), 0) << topic;
@@ -151,7 +152,7 @@ TEST_F(GatewayTest, WithoutRequestsItHasNoCapabilityThatChangesTheSession) {
   Gateway gateway_that_looks(looking, scene::load_file(SLEWRING_SOURCE_DIR "/scenes/forces/operated.yaml"));
   const ClientId client = *gateway_that_looks.connect();
   const Json info = *Json::parse(gateway_that_looks.next_frame(client)->head);
-  EXPECT_EQ(info.at("capabilities").texts(), std::vector<std::string>{"time"});
+  EXPECT_EQ(info.at("capabilities").texts(), (std::vector<std::string>{"time", "connectionGraph"}));
   while (gateway_that_looks.next_frame(client)) {
   }
   for (const char* const message :

@@ -25,6 +25,8 @@ TEST(ServerMessages, HaveThePublishedBytes) {
   EXPECT_EQ(time_bytes(258), bytes({2, 2, 1, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(service_response_bytes(7, 9, Json({{"a", 1}})),
             bytes({3, 7, 0, 0, 0, 9, 0, 0, 0, 4, 0, 0, 0}) + "json{\"a\":1}");
+  EXPECT_EQ(asset_head(7), bytes({4, 7, 0, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(asset_failure_bytes(7, "no"), bytes({4, 7, 0, 0, 0, 1, 2, 0, 0, 0, 'n', 'o'}));
   // foxglove-sdk, ws_protocol/server/playback_state.rs: status u8, time u64, speed f32, did_seek u8, id
   EXPECT_EQ(playback_state_bytes({PlaybackStatus::ended, 1, 1.0F, true, "ab"}),
             bytes({5, 3, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x80, 0x3f, 1, 2, 0, 0, 0, 'a', 'b'}));

@@ -198,7 +198,7 @@ TEST(HydraulicsValidation, curves_must_increase_and_friction_must_brake) {
   def = crane_circuit();
   def.curves[0].odd = false;
   EXPECT_EQ(what_at(findings(def).errors, "Cyl_Lift.friction_curve"),
-            "the curve 'Spline_CylinderFriction' would drive the piston");
+            "the curve 'Spline_CylinderFriction' would drive the actuator");
   def = crane_circuit();
   def.curves[0].points[0] = {0, 0.1};
   EXPECT_EQ(what_at(findings(def).errors, "Spline_CylinderFriction.points"),

@@ -26,10 +26,10 @@ std::string read_file(const std::string& path) {
 }
 
 // pieces that mean something to YAML, to units or to us
-constexpr const char* kPieces[] = {"[",    "]",    "{",   "}",    ":",      "\n",       "- ",   "\"",
-                                   "'",    "#",    "&a ", "*a",   "!!s ",   "|\n",      "? ",   "010",
-                                   "1e99", ".nan", "%",   "\t",   "---\n",  "~",        "<<: ", "0x",
-                                   " m ",  ",",    "deg", "type", "Ground", "\xC3\xA4", "\xFF", "-0"};
+constexpr const char* kPieces[] = {
+    "[",   "]",    "{",      "}",        ":",    "\n", "- ", "\"",    "'", "#",        "&a ", "*a",     "!!s ",
+    "|\n", "? ",   "010",    "1e99",     ".nan", "%",  "\t", "---\n", "~", "<<: ",     "0x",  " m ",    ",",
+    "deg", "type", "Ground", "\xC3\xA4", "\xFF", "-0", "${", "${L}",  "$", "use: Rod", "^9",  "Rod.tip"};
 
 std::string damaged(std::string text, std::mt19937& random) {
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
@@ -54,20 +54,45 @@ std::string damaged(std::string text, std::mt19937& random) {
   return text;
 }
 
+void expect_refused_or_read(const std::string& text) {
+  try {
+    const Scene scene = load_text(text, "damaged");
+    EXPECT_EQ(load_text(scene.expanded_text, "again").expanded_text, scene.expanded_text) << text;
+  } catch (const LoadError& error) {
+    EXPECT_FALSE(error.diagnostics().empty()) << text;
+  }
+}
+
 class DamagedScene : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(DamagedScene, IsRefusedOrReadAndNothingElse) {
   const std::string sound = read_file(SLEWRING_SOURCE_DIR "/scenes/" + GetParam() + ".yaml");
   std::mt19937 random(20171);
   for (int i = 0; i < kScenes; ++i) {
-    const std::string text = damaged(sound, random);
-    try {
-      const Scene scene = load_text(text, "damaged");
-      EXPECT_EQ(load_text(scene.expanded_text, "again").expanded_text, scene.expanded_text) << text;
-    } catch (const LoadError& error) {
-      EXPECT_FALSE(error.diagnostics().empty()) << text;
-    }
+    expect_refused_or_read(damaged(sound, random));
   }
+}
+
+TEST(DamagedLanguage, IsRefusedOrReadAndNothingElse) {
+  const std::string sound = R"(parameters: {L: 2.6 m, a: 30 deg, m: "${2 * 1 kg}", side: Left}
+templates: {Rod: {mass: "${m}", inertia: [0, 1, 1]}, Long: {use: Rod, center_of_mass: ["${L/2 * cos(a)}", 0, 0]}}
+groups:
+  Pair:
+    parameters: {z: , base: Ground}
+    bodies:
+      Rod: {use: Long, position: [0, 0, "${z}"], points: {tip: ["${L}", 0, 0]}}
+      Bob: {use: Rod, position: Rod.tip}
+    joints:
+      Hinge: {type: revolute, body1: "${base}", point1: [0, 0, "${z}"], body2: Rod}
+      Ball: {type: revolute, point1: Rod.tip, body2: Bob}
+    start: {Hinge: "${a}"}
+instances: {Left: {group: Pair, parameters: {z: 1 m}}, Right: {group: Pair, prefix: R_, parameters: {z: "${-L}"}}}
+payload: [Left_Bob, R_Bob]
+plots: {Height: {title: $${L}, variables: [Left_Bob.position.y]}}
+)";
+  ASSERT_NO_THROW((void)load_text(sound, "sound"));
+  std::mt19937 random(20172);
+  for (int i = 0; i < kScenes; ++i) expect_refused_or_read(damaged(sound, random));
 }
 
 TEST(DamagedDescription, IsRefusedOrReadAndNothingElse) {

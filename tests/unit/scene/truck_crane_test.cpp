@@ -141,6 +141,14 @@ TEST_F(TruckCrane, WarnsThatTheLawOfTheHosesHasNoEffect) {
   }
 }
 
+// the same text is the same scene, and gives the same bits
+TEST_F(TruckCrane, WrittenInTheSceneLanguageExpandsToTheSameText) {
+  const Scene written = load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane_short.yaml");
+  const auto sections = [](const std::string& text) { return text.substr(text.find("\nsession:")); };
+  EXPECT_EQ(sections(written.expanded_text), sections(scene_->expanded_text));
+  EXPECT_EQ(written.warnings.size(), scene_->warnings.size());
+}
+
 TEST_F(TruckCrane, RefusesABagThatItsDampersWouldThrow) {
   const ParameterDirectory directory(*scene_);
   const Status status = directory.check("Bag.mass", 1e-3).status;

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hydraulics/components/hydraulic_motor.h"
+
+#include <limits>
+
+#include "hydraulics/circuit_builder.h"
+#include "hydraulics/component.h"
+#include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/cylinder_fields.h"
+#include "hydraulics/components/cylinder_rules.h"
+
+namespace slew::hydraulics {
+namespace {
+
+// without tlm: the oil of one step is a large part of the motor's own, and the waves of so small a line exceed its
+// pressures
+constexpr std::string_view kMotorCouplings[] = {"session", "hold", "linear", "two"};
+
+constexpr ReadBy kReadByCase[] = {read_by_set<&HydraulicMotorDef::port_c>("port_c", "a port_c")};
+
+constexpr Field kHydraulicMotorFields[] = {
+    field<&HydraulicMotorDef::force>("force", {.presence = Presence::required,
+                                               .reference = "force",
+                                               .doc = "rotational force element that the motor drives"}),
+    field<&HydraulicMotorDef::port_a>(
+        "port_a",
+        {.presence = Presence::required, .reference = "volume", .doc = "volume whose pressure turns forwards"}),
+    field<&HydraulicMotorDef::port_b>(
+        "port_b", {.presence = Presence::required, .reference = "volume", .doc = "volume whose pressure turns back"}),
+    field<&HydraulicMotorDef::port_c>(
+        "port_c", {.reference = "volume", .doc = "volume of the case drain; absent: no leak to the case"}),
+    field<&HydraulicMotorDef::displacement>("displacement", {.dimension = Dimension::displacement_volume,
+                                                             .range = kPositive,
+                                                             .presence = Presence::required,
+                                                             .doc = "displacement"}),
+    field<&HydraulicMotorDef::gear_ratio>(
+        "gear_ratio", {.range = kPositive, .doc = "turns of the shaft per turn of the force element's angle"}),
+    field<&HydraulicMotorDef::mechanical_coefficient>(
+        "mechanical_coefficient",
+        {.range = kFractionAboveZero, .doc = "efficiency eta; 1 - eta of the pressures' torque is lost"}),
+    field<&HydraulicMotorDef::friction_curve>(
+        "friction_curve",
+        {.reference = "curve",
+         .doc = "factor of the loss 1 - eta over the shaft's speed [rad/s], from [0, 0] on; absent: 1"}),
+    field<&HydraulicMotorDef::torque_loss>(
+        "torque_loss",
+        {.dimension = Dimension::torque, .range = kNotNegative, .doc = "friction at equal pressures, at the shaft"}),
+    field<&HydraulicMotorDef::viscous_loss>("viscous_loss", {.dimension = Dimension::rotational_damping,
+                                                             .range = kNotNegative,
+                                                             .doc = "friction proportional to the shaft's speed"}),
+    field<&HydraulicMotorDef::leak_flow>("leak_flow", {.dimension = Dimension::volume_flow,
+                                                       .range = kNotNegative,
+                                                       .change = Change::live,
+                                                       .doc = "leak from port to port at leak_pressure"}),
+    field<&HydraulicMotorDef::case_leak_flow>("case_leak_flow",
+                                              {.dimension = Dimension::volume_flow,
+                                               .range = kNotNegative,
+                                               .change = Change::live,
+                                               .read_by = kReadByCase,
+                                               .doc = "leak from either port to the case at leak_pressure"}),
+    field<&HydraulicMotorDef::leak_pressure>(
+        "leak_pressure",
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of the leak flows"}),
+    field<&HydraulicMotorDef::dead_volume>(
+        "dead_volume", {.dimension = Dimension::volume, .range = kPositive, .doc = "oil in the motor on either side"}),
+    field<&HydraulicMotorDef::coupling>(
+        "coupling", {.change = Change::live,
+                     .choices = kMotorCouplings,
+                     .doc = "coupling level of this motor's port; session: the level of session.coupling"}),
+};
+
+// speed of the shaft from which on its friction is fully there: a gear of 100 turns the joint by 1e-4 rad/s then
+constexpr double kRestSpeed = 1e-2;  // rad/s
+// typical sizes for the error measure: at rtol 1e-4 an error of 1e-5 rad, some 100 Pa of a litre of oil
+constexpr double kAngleScale = 0.1;      // rad
+constexpr double kShaftSpeedScale = 10;  // rad/s
+
+class HydraulicMotor final : public HydraulicComponent {
+ public:
+  HydraulicMotor(const HydraulicMotorDef& def, CircuitBuilder& builder)
+      : HydraulicComponent(def),
+        def_(def),
+        a_(builder.volume(def.port_a)),
+        b_(builder.volume(def.port_b)),
+        case_(def.port_c.empty() ? -1 : builder.volume(def.port_c)),
+        actuator_(builder.add_actuator(def.name, def.actuator().value())),
+        x_(builder.position(actuator_)),
+        v_(builder.speed(actuator_)) {
+    // the shaft moves oil through either side, whose content stays
+    builder.add_content(
+        {.volume_index = a_, .volume = def.dead_volume, .position = x_, .swept_by_position = def.displacement});
+    builder.add_content(
+        {.volume_index = b_, .volume = def.dead_volume, .position = x_, .swept_by_position = -def.displacement});
+    apply_parameters();
+  }
+
+  void declare_dependencies(DependencyList& dependencies) const override {
+    dependencies.add_restriction(a_, b_);
+    dependencies.add(a_, v_), dependencies.add(b_, v_);
+    if (case_ < 0) return;
+    dependencies.add_restriction(a_, case_), dependencies.add_restriction(b_, case_);
+  }
+  void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
+    rates.move(a_, b_, def_.displacement * view[v_] + leak(view));
+    if (case_ < 0) return;
+    rates.move(a_, case_, case_leak(view, a_));
+    rates.move(b_, case_, case_leak(view, b_));
+  }
+  void add_jacobian(const CircuitView&, JacobianStamp& jacobian) const noexcept override {
+    jacobian.move(a_, b_, v_, def_.displacement);
+    jacobian.move(a_, b_, a_, G_);
+    jacobian.move(a_, b_, b_, -G_);
+    if (case_ < 0) return;
+    for (const StateIndex port : {a_, b_}) {
+      jacobian.move(port, case_, port, G_case_);
+      jacobian.move(port, case_, case_, -G_case_);
+    }
+  }
+  void list_variables(std::vector<ElementVariable>& variables) const override {
+    variables.push_back(variable("angle", Dimension::angle));
+    variables.push_back(variable("speed", Dimension::angular_velocity));
+    variables.push_back(variable("pressure_a", Dimension::pressure));
+    variables.push_back(variable("pressure_b", Dimension::pressure));
+    variables.push_back(variable("pressure_torque", Dimension::torque));
+    variables.push_back(variable("shaft_torque", Dimension::torque));
+    variables.push_back(variable("torque", Dimension::torque));
+    variables.push_back(variable("flow_a", Dimension::volume_flow));
+    variables.push_back(variable("flow_b", Dimension::volume_flow));
+    variables.push_back(variable("case_flow", Dimension::volume_flow));
+    variables.push_back(variable("power", Dimension::power));
+  }
+  double* read_variables(const CircuitView& view, double* values) const noexcept override {
+    const double v = view[v_], through = def_.displacement * v + leak(view), shaft_torque = view.line_force[actuator_];
+    const double drain_a = case_ < 0 ? 0 : case_leak(view, a_), drain_b = case_ < 0 ? 0 : case_leak(view, b_);
+    *values++ = view[x_];
+    *values++ = v;
+    *values++ = view[a_];
+    *values++ = view[b_];
+    *values++ = (view[a_] - view[b_]) * def_.displacement;
+    *values++ = shaft_torque;
+    *values++ = def_.gear_ratio * shaft_torque;
+    // into the motor
+    *values++ = through + drain_a;
+    *values++ = -through + drain_b;
+    *values++ = drain_a + drain_b;
+    *values++ = shaft_torque * v;
+    return values;
+  }
+  [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void apply_parameters() noexcept override {
+    G_ = def_.leak_flow / def_.leak_pressure;
+    G_case_ = def_.case_leak_flow / def_.leak_pressure;
+  }
+
+ private:
+  [[nodiscard]] double leak(const CircuitView& view) const noexcept { return G_ * (view[a_] - view[b_]); }
+  [[nodiscard]] double case_leak(const CircuitView& view, StateIndex port) const noexcept {
+    return G_case_ * (view[port] - view[case_]);
+  }
+
+  HydraulicMotorDef def_;
+  StateIndex a_, b_, case_;  // case: -1 without a drain
+  int actuator_;
+  StateIndex x_, v_;
+  double G_ = 0, G_case_ = 0;  // m3/s/Pa
+};
+
+void validate_motor(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
+  const HydraulicMotorDef& def = static_cast<const HydraulicMotorDef&>(component);
+  check_distinct(def.name + ".port_b", def.port_a, def.port_b, errors);
+  check_friction_curve(circuit, def.name, def.friction_curve, errors);
+}
+
+}  // namespace
+
+std::optional<ActuatorDef> HydraulicMotorDef::actuator() const {
+  constexpr double kNoStop = std::numeric_limits<double>::infinity();
+  return ActuatorDef{.force = force,
+                     .port_a = port_a,
+                     .port_b = port_b,
+                     .area_a = displacement,
+                     .area_b = displacement,
+                     .motion = Motion::rotary,
+                     .coordinate = {.ratio = gear_ratio, .unit = PortUnit::radian},
+                     .line_force = {.friction_curve = friction_curve,
+                                    .cylinder_coefficient = mechanical_coefficient,
+                                    .seal_friction = torque_loss,
+                                    .viscous_friction = viscous_loss,
+                                    .minimum_stroke = -kNoStop,
+                                    .maximum_stroke = kNoStop,
+                                    .seal_speed = kRestSpeed,
+                                    .friction_without_curve = FrictionWithoutCurve::constant},
+                     .coupling = coupling,
+                     .start = StartRule::mean_pressure,
+                     .position_scale = kAngleScale,
+                     .speed_scale = kShaftSpeedScale};
+}
+
+ComponentType hydraulic_motor_type() {
+  return {.name = "hydraulic_motor",
+          .fields = kHydraulicMotorFields,
+          .doc = "motor of fixed displacement that turns a joint through a gear",
+          .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<HydraulicMotorDef>(); },
+          .validate = validate_motor,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return std::make_unique<HydraulicMotor>(static_cast<const HydraulicMotorDef&>(def), builder);
+          }};
+}
+
+}  // namespace slew::hydraulics

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hydraulics/components/pump.h"
+
+#include <cmath>
+#include <limits>
+
+#include "hydraulics/circuit_builder.h"
+#include "hydraulics/component.h"
+#include "hydraulics/components/check_poppet.h"
+#include "hydraulics/pump_lines.h"
+#include "hydraulics/smooth.h"
+
+namespace slew::hydraulics {
+namespace {
+
+constexpr ReadBy kReadByCutOff[] = {read_by_set<&PumpDef::maximum_pressure>("maximum_pressure", "a maximum_pressure")};
+
+constexpr Field kPumpFields[] = {
+    field<&PumpDef::port_a>("port_a",
+                            {.presence = Presence::required, .reference = "volume", .doc = "volume at the outlet"}),
+    field<&PumpDef::port_b>(
+        "port_b", {.presence = Presence::required, .reference = "volume", .doc = "volume at the inlet: tank"}),
+    field<&PumpDef::speed>("speed", {.dimension = Dimension::angular_velocity,
+                                     .range = kNotNegative,
+                                     .presence = Presence::required,
+                                     .change = Change::live,
+                                     .doc = "speed of the drive"}),
+    field<&PumpDef::displacement>("displacement", {.dimension = Dimension::displacement_volume,
+                                                   .range = kPositive,
+                                                   .presence = Presence::required,
+                                                   .doc = "displacement at full swash"}),
+    field<&PumpDef::mechanical_coefficient>("mechanical_coefficient",
+                                            {.range = kFractionAboveZero, .doc = "hydro-mechanical efficiency"}),
+    field<&PumpDef::volumetric_coefficient>("volumetric_coefficient",
+                                            {.range = kFractionAboveZero, .doc = "volumetric efficiency"}),
+    field<&PumpDef::swash>(
+        "swash",
+        {.range = kFraction, .change = Change::live, .doc = "share of the displacement without a control signal"}),
+    field<&PumpDef::swash_per_signal>(
+        "swash_per_signal",
+        {.range = kFinite, .change = Change::live, .doc = "share of the displacement per unit of the control signal"}),
+    field<&PumpDef::time_constant>(
+        "time_constant", {.dimension = Dimension::time, .range = kPositive, .doc = "time constant of the swash"}),
+    field<&PumpDef::maximum_pressure>("maximum_pressure",
+                                      {.dimension = Dimension::pressure,
+                                       .range = kNotNegative,
+                                       .change = Change::live,
+                                       .doc = "pressure above tank at which the cut-off ends the flow; 0: none"}),
+    field<&PumpDef::controller_gain>("controller_gain", {.dimension = Dimension::pressure_gain,
+                                                         .range = kPositive,
+                                                         .read_by = kReadByCutOff,
+                                                         .doc = "swash per pressure below maximum_pressure"}),
+    field<&PumpDef::maximum_power>("maximum_power", {.dimension = Dimension::power,
+                                                     .range = kNotNegative,
+                                                     .change = Change::live,
+                                                     .doc = "limit of the drive's power; 0: none"}),
+    field<&PumpDef::leak_flow>("leak_flow", {.dimension = Dimension::volume_flow,
+                                             .range = kNotNegative,
+                                             .change = Change::live,
+                                             .doc = "leak from outlet to tank at leak_pressure"}),
+    field<&PumpDef::leak_pressure>(
+        "leak_pressure",
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of leak_flow"}),
+};
+
+constexpr double kSwashWidth = 0.01;  // share of the swash, smoothing of its limits
+
+class Pump final : public HydraulicComponent {
+ public:
+  Pump(const PumpDef& def, CircuitBuilder& builder)
+      : HydraulicComponent(def),
+        def_(def),
+        a_(builder.volume(def.port_a)),
+        b_(builder.volume(def.port_b)),
+        control_(builder.add_control(def.name, SignalMoves::a_state)),
+        alpha_(builder.add_state({.initial = def.swash, .scale = 1})) {
+    builder.mark_supply(a_);
+    apply_parameters();
+  }
+  // at the command's swash under the start pressures
+  void start(double* y) const noexcept override { y[alpha_] = limited(def_.swash, y[a_] - y[b_]).value; }
+  void declare_dependencies(DependencyList& dependencies) const override {
+    dependencies.add_restriction(a_, b_);
+    for (const StateIndex port : {a_, b_}) dependencies.add(port, alpha_), dependencies.add(alpha_, port);
+    dependencies.add(alpha_, alpha_);
+  }
+  void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
+    rates.set_rate(alpha_, rate_ * (limited(command(view), rise(view)).value - view[alpha_]));
+    rates.move(b_, a_, flow(view));
+  }
+  void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
+    const double d_rise = rate_ * limited(command(view), rise(view)).slope;
+    jacobian.add(alpha_, alpha_, -rate_);
+    jacobian.add(alpha_, a_, d_rise);
+    jacobian.add(alpha_, b_, -d_rise);
+    jacobian.move(b_, a_, alpha_, full_flow_);
+    jacobian.move(b_, a_, a_, -G_leak_);
+    jacobian.move(b_, a_, b_, G_leak_);
+  }
+  void list_variables(std::vector<ElementVariable>& variables) const override {
+    variables.push_back(variable("swash", Dimension::none));
+    variables.push_back(variable("flow", Dimension::volume_flow));
+    variables.push_back(variable("torque", Dimension::torque));
+    variables.push_back(variable("power", Dimension::power));
+  }
+  double* read_variables(const CircuitView& view, double* values) const noexcept override {
+    const double torque = def_.displacement * view[alpha_] * rise(view) / def_.mechanical_coefficient;
+    *values++ = view[alpha_];
+    *values++ = flow(view);
+    *values++ = torque;
+    *values++ = torque * def_.speed;
+    return values;
+  }
+  [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void apply_parameters() noexcept override {
+    full_flow_ = def_.displacement * def_.speed * def_.volumetric_coefficient;
+    G_leak_ = def_.leak_flow / def_.leak_pressure;
+    rate_ = 1 / def_.time_constant;
+    // at this rise the full swash takes the whole power
+    const double rate = def_.displacement * def_.speed;
+    full_power_rise_ = def_.maximum_power > 0 && rate > 0 ? def_.mechanical_coefficient * def_.maximum_power / rate : 0;
+  }
+
+ private:
+  [[nodiscard]] double rise(const CircuitView& view) const noexcept { return view[a_] - view[b_]; }
+  // (3)
+  [[nodiscard]] double command(const CircuitView& view) const noexcept {
+    return std::fmin(std::fmax(def_.swash + def_.swash_per_signal * view.control[control_], 0), 1);
+  }
+  // (2) at the command, with its slope over the pressure rise p
+  [[nodiscard]] ValueSlope limited(double command, double p) const noexcept {
+    ValueSlope alpha{command, 0};
+    if (def_.maximum_pressure > 0) {
+      const double gain = def_.controller_gain;
+      const ValueSlope u = unit_clip(gain * (def_.maximum_pressure - p), kSwashWidth);
+      const ValueSlope least = smooth_min(alpha.value, u.value, kSwashWidth);
+      alpha = {least.value, -(1 - least.slope) * u.slope * gain};
+    }
+    // below half of that rise the limit is far above the full swash
+    if (full_power_rise_ > 0 && p > 0.5 * full_power_rise_) {
+      const ValueSlope u{full_power_rise_ / p, -full_power_rise_ / (p * p)};
+      const ValueSlope least = smooth_min(alpha.value, u.value, kSwashWidth);
+      alpha = {least.value, least.slope * alpha.slope + (1 - least.slope) * u.slope};
+    }
+    return alpha;
+  }
+  // (1)
+  [[nodiscard]] double flow(const CircuitView& view) const noexcept {
+    return full_flow_ * view[alpha_] - G_leak_ * rise(view);
+  }
+
+  PumpDef def_;
+  StateIndex a_, b_;
+  int control_;
+  StateIndex alpha_;  // swash 0..1
+  double full_flow_ = 0, G_leak_ = 0, rate_ = 0, full_power_rise_ = 0;
+};
+
+void validate_plain_pump(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {
+  const PumpDef& def = static_cast<const PumpDef&>(component);
+  check_distinct(def.name + ".port_b", def.port_a, def.port_b, errors);
+}
+
+}  // namespace
+
+void PumpDef::add_lines(PumpLines& lines) const {
+  lines.pumps.push_back(
+      {.name = name,
+       .outlet = port_a,
+       .flow = speed * displacement * volumetric_coefficient,
+       .pressure = maximum_pressure > 0 ? maximum_pressure : std::numeric_limits<double>::infinity()});
+}
+
+ComponentType pump_type() {
+  return {.name = "pump",
+          .fields = kPumpFields,
+          .doc = "pump of fixed or variable displacement with limits of pressure and power",
+          .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<PumpDef>(); },
+          .validate = validate_plain_pump,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return std::make_unique<Pump>(static_cast<const PumpDef&>(def), builder);
+          },
+          .has_control_signal = true};
+}
+
+}  // namespace slew::hydraulics

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pump of fixed or variable displacement at a given speed, with limits of pressure and power.
+//
+//   Q = alpha D n eta_v - G_leak (p_a - p_b)       from port b into port a                                      (1)
+//   tau alpha' = min(alpha_c, alpha_p, alpha_P) - alpha                                                         (2)
+//   alpha_c = clip(swash + swash_per_signal signal, 0, 1)                 command                               (3)
+//   alpha_p = clip(controller_gain (maximum_pressure - (p_a - p_b)), 0, 1)          pressure cut-off            (4)
+//   alpha_P = eta_m maximum_power / (D n (p_a - p_b))                               power limit                 (5)
+//   T = alpha D (p_a - p_b) / eta_m,   P = T n                                      torque and power of the drive
+// D displacement, n speed, eta_v volumetric_coefficient, eta_m mechanical_coefficient. maximum_pressure and
+// maximum_power of 0 are no limits; a torque limit T is a power limit T n. Without limits and signal the pump is fixed.
+//
+// Source: Merritt 1967, section 4.2, for flow and torque; the limits are those of pump regulators in practice. Not
+// covered: dynamics of the drive, ripple, negative swash (closed circuits), losses that follow pressure or speed.
+#pragma once
+
+#include "hydraulics/component_def.h"
+
+namespace slew::hydraulics {
+
+struct PumpDef final : ComponentDef {
+  std::string port_a, port_b;         // volumes, outlet and tank
+  double speed = 0;                   // n [rad/s]
+  double displacement = 0;            // D [m3/rad], at full swash
+  double mechanical_coefficient = 1;  // eta_m
+  double volumetric_coefficient = 1;  // eta_v
+  double swash = 1;                   // share of the displacement
+  double swash_per_signal = 0;        // per unit of the control signal
+  double time_constant = 0.1;         // tau [s]
+  double maximum_pressure = 0;        // Pa above tank; 0: none
+  double controller_gain = 3.5e-7;    // 1/Pa, of the cut-off
+  double maximum_power = 0;           // W of the drive; 0: none
+  double leak_flow = 0;               // m3/s from outlet to tank ...
+  double leak_pressure = 100e5;       // Pa ... at this difference
+
+  [[nodiscard]] std::string_view type_name() const noexcept override { return "pump"; }
+  [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
+};
+
+[[nodiscard]] ComponentType pump_type();
+
+}  // namespace slew::hydraulics

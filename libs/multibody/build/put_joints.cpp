@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "multibody/build/put_joints.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "math/euler_angles.h"
+#include "multibody/build/assembly.h"
+#include "multibody/build/start_pose.h"
+#include "multibody/build/validate.h"
+#include "multibody/flexible/expand_nodes.h"
+#include "multibody/joints/joint_axes.h"
+#include "multibody/model/observe.h"
+#include "multibody/model/topology.h"
+
+namespace slew::multibody {
+namespace {
+
+using math::Mat3;
+using math::Vec3;
+
+// m, rad: poses read from a drawing; the largest assembly_tolerance that a scene may have
+constexpr double kRoughTolerance = 0.1;
+// steps of a loop: small against the distance between its two branches
+constexpr double kTurnOfStep = 0.05;   // rad
+constexpr double kSlideOfStep = 0.05;  // m
+constexpr int kMostStartSteps = 200;
+// change of a pose that is rounding [m, rad]
+constexpr double kSamePose = 1e-12;
+
+const JointDef& joint_named(const MechanicsDef& mechanics, const std::string& name) {
+  return *std::find_if(mechanics.joints.begin(), mechanics.joints.end(),
+                       [&](const JointDef& joint) { return joint.name == name; });
+}
+
+// Bodies, joints and gears alone; limits and speeds belong to the start that is looked for.
+MechanicsDef without_laws(const MechanicsDef& mechanics) {
+  MechanicsDef def;
+  def.gravity = mechanics.gravity;
+  def.assembly_tolerance = std::max(mechanics.assembly_tolerance, kRoughTolerance);
+  def.bodies = mechanics.bodies;
+  def.joints = mechanics.joints;
+  def.gears = mechanics.gears;
+  for (JointDef& joint : def.joints) {
+    joint.first = joint.second = {};
+    joint.initial_velocity = joint.initial_velocity_2 = kNotGiven;
+    joint.initial_translation = joint.initial_rotation = kNoneGiven;
+  }
+  return def;
+}
+
+// a prescribed motion that stays at a value
+MotionDef held_at(const MechanicsDef& mechanics, const StartCoordinate& coordinate, double value) {
+  const JointType type = joint_named(mechanics, coordinate.joint).type;
+  const bool turns = is_angle(type, coordinate.number);
+  MotionDef motion;
+  motion.name = "start." + coordinate.joint;
+  motion.kind = turns ? MotionKind::rotation : MotionKind::translation;
+  motion.shape = MotionShape::ramp;
+  motion.joint = coordinate.joint;
+  motion.axis = type == JointType::universal ? coordinate.number + 1 : 1;
+  motion.from = motion.to = value;
+  return motion;
+}
+
+Pose operator*(const Pose& a, const Pose& b) {
+  return {a.R * b.R, a.p + a.R * b.p};
+}
+
+Pose inverse(const Pose& pose) {
+  const Mat3 R = math::transpose(pose.R);
+  return {R, -(R * pose.p)};
+}
+
+class StartPlacement {
+ public:
+  StartPlacement(const MechanicsDef& mechanics, std::span<const StartCoordinate> coordinates, Problems& problems)
+      : def_(without_laws(mechanics)), coordinates_(coordinates), problems_(problems) {}
+
+  // Poses of the bodies in Ground by number; empty after a problem.
+  std::vector<Pose> place() {
+    const std::size_t known = problems_.size();
+    validate(def_, problems_);
+    if (problems_.size() > known) return {};
+    std::vector<Pose> poses = start_poses(def_, problems_);
+    tree_ = find_tree(def_, problems_);
+    std::vector<double> from, travel;
+    double steps = 1;
+    for (const StartCoordinate& coordinate : coordinates_) {
+      const bool turns = is_angle(joint_named(def_, coordinate.joint).type, coordinate.number);
+      from.push_back(coordinates_of(joint_named(def_, coordinate.joint), poses)[at(coordinate.number)]);
+      const double gap = coordinate.value - from.back();
+      travel.push_back(turns ? std::remainder(gap, 2 * std::numbers::pi) : gap);
+      steps = std::max(steps, std::ceil(std::fabs(travel.back()) / (turns ? kTurnOfStep : kSlideOfStep)));
+    }
+    const int count = has_loops() ? static_cast<int>(std::min<double>(steps, kMostStartSteps)) : 1;
+    for (int step = 1; step <= count && problems_.size() == known; ++step) {
+      std::vector<double> values;
+      for (std::size_t k = 0; k < from.size(); ++k) {
+        values.push_back(step == count ? from[k] + travel[k] : from[k] + travel[k] * step / count);
+      }
+      take(moved(poses, values));
+      def_.motions.clear();
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        def_.motions.push_back(held_at(def_, coordinates_[k], values[k]));
+      }
+      poses = assembled(step == count);
+    }
+    return problems_.size() > known ? std::vector<Pose>() : poses;
+  }
+
+ private:
+  static std::size_t at(int number) { return static_cast<std::size_t>(number); }
+
+  [[nodiscard]] std::array<double, 2> coordinates_of(const JointDef& joint, const std::vector<Pose>& poses) const {
+    const Pose &body1 = poses[at(number_of_(joint.body1))], &body2 = poses[at(number_of_(joint.body2))];
+    return start_coordinates(joint.type, joint_frames(joint, body1, body2));
+  }
+
+  // The tree with the named coordinates at these values and all others as they are.
+  [[nodiscard]] std::vector<Pose> moved(const std::vector<Pose>& poses, const std::vector<double>& values) const {
+    std::vector<Pose> result = poses;
+    for (const TreeEdge& edge : tree_) {
+      const Pose& parent = result[at(edge.parent)];
+      Pose& child = result[at(edge.child)];
+      child = parent * (inverse(poses[at(edge.parent)]) * poses[at(edge.child)]);
+      if (edge.joint == kNoJoint) continue;
+      const JointDef& joint = def_.joints[at(edge.joint)];
+      std::array<double, 2> q = coordinates_of(joint, poses);
+      bool is_named = false;
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        if (coordinates_[k].joint != joint.name) continue;
+        q[at(coordinates_[k].number)] = values[k];
+        is_named = true;
+      }
+      if (!is_named) continue;
+      const Pose frame1{math::rotation_xyz(joint.orientation1), Vec3(joint.point1)};
+      const Pose frame2{math::rotation_xyz(joint.orientation2), Vec3(joint.point2)};
+      const Pose between = frame_at(joint.type, Pose(), q);
+      child = edge.is_reversed ? parent * frame2 * inverse(between) * inverse(frame1)
+                               : parent * frame1 * between * inverse(frame2);
+    }
+    return result;
+  }
+
+  // makes these the poses of the definition
+  void take(const std::vector<Pose>& poses) {
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      BodyDef& body = def_.bodies[i - 1];
+      body.relative_to = kGroundName;
+      body.position = poses[i].p.array();
+      body.orientation = math::angles_zxz(poses[i].R);
+    }
+  }
+
+  [[nodiscard]] bool has_loops() const {
+    Problems none;
+    return !cut_joints(def_, find_tree(def_, none)).empty() || !def_.gears.empty();
+  }
+
+  // closes the loops from the present poses, and takes the result as present poses
+  std::vector<Pose> assembled(bool is_last) {
+    AssemblyReport report;
+    const Model model = build_model(def_, {}, report);
+    const State state = start_state(model);
+    Workspace ws(model);
+    observe(model, state, ws);
+    std::vector<Pose> poses(def_.bodies.size() + 1);
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      const BodyPose found = body_pose(model, ws, static_cast<int>(i));
+      const auto& [w, x, y, z] = found.orientation;
+      poses[i] = {math::rotation_of({w, x, y, z}), Vec3(found.position)};
+    }
+    take(poses);
+    // rows may be open before the last step, where the machine passes a dead centre
+    if (is_last) report_open(model, report);
+    return poses;
+  }
+
+  void report_open(const Model& model, const AssemblyReport& report) {
+    if (report.open.empty()) return;
+    const AssemblyReport::Row& worst = *std::max_element(
+        report.open.begin(), report.open.end(), [](const auto& a, const auto& b) { return a.violation < b.violation; });
+    const std::string name = worst.gear.empty() ? model.joints[static_cast<std::size_t>(worst.joint)].name : worst.gear;
+    problems_.push_back({"start",
+                         fmt::format("the mechanism cannot be closed with these coordinates: '{}' stays open by {:.3g}",
+                                     name, worst.violation),
+                         "coordinates that the loops allow, or fewer of them: the others follow", ""});
+  }
+
+  MechanicsDef def_;
+  BodyNumbers number_of_{def_};
+  std::vector<TreeEdge> tree_;
+  std::span<const StartCoordinate> coordinates_;
+  Problems& problems_;
+};
+
+bool is_same(const Pose& a, const Pose& b) {
+  return math::norm(a.p - b.p) <= kSamePose && math::rotation_angle(a.R * math::transpose(b.R)) <= kSamePose;
+}
+
+}  // namespace
+
+void put_joints(MechanicsDef& mechanics, std::span<const StartCoordinate> coordinates, Problems& problems) {
+  if (coordinates.empty()) return;
+  if (has_parts(mechanics)) {
+    problems.push_back({"start", "a scene with flexible or segmented bodies has no start by joint coordinates",
+                        "poses of the bodies", ""});
+    return;
+  }
+  const std::vector<Pose> poses = StartPlacement(mechanics, coordinates, problems).place();
+  if (poses.empty()) return;
+  const BodyNumbers number_of(mechanics);
+  for (std::size_t i = 0; i < mechanics.bodies.size(); ++i) {
+    BodyDef& body = mechanics.bodies[i];
+    const Pose& base = poses[static_cast<std::size_t>(number_of(body.relative_to))];
+    const Pose moved = inverse(base) * poses[i + 1];
+    const Pose stated{math::rotation_zxz(body.orientation), Vec3(body.position)};
+    if (is_same(moved, stated)) continue;
+    body.position = moved.p.array();
+    body.orientation = math::angles_zxz(moved.R);
+  }
+}
+
+}  // namespace slew::multibody

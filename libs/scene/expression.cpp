@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/expression.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/suggestion.h"
+#include "scene/number.h"
+#include "scene/quantity.h"
+
+namespace slew::scene {
+namespace {
+
+bool begins_word(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool is_digit_of(char c) {
+  return c >= '0' && c <= '9';
+}
+bool continues_word(char c) {
+  return begins_word(c) || is_digit_of(c);
+}
+bool begins_unit(char c) {
+  return begins_word(c) || c == '%' || static_cast<unsigned char>(c) >= 0x80;
+}
+
+// ---- reading
+
+class Evaluator {
+ public:
+  Evaluator(std::string_view text, ExpressionNames& names, UnitSystem& units)
+      : text_(text), names_(names), units_(units) {}
+
+  Quantity evaluate() {
+    skip_spaces();
+    if (at_ == text_.size()) refuse(at_, "the expression is empty", "a value such as ${L/2}");
+    const Quantity result = read_sum();
+    if (at_ < text_.size()) refuse_rest();
+    return result;
+  }
+
+ private:
+  [[nodiscard]] char next(std::size_t ahead = 0) const {
+    return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
+  }
+  void skip_spaces() {
+    while (next() == ' ' || next() == '\t' || next() == '\n') ++at_;
+  }
+  bool take(char c) {
+    if (next() != c) return false;
+    ++at_;
+    skip_spaces();
+    return true;
+  }
+  [[noreturn]] void refuse_rest() const {
+    if (next() == ')') refuse(at_, "this bracket was not opened", "an operator, or the end");
+    if (next() == ',') refuse(at_, "a comma outside of a function's arguments", "a decimal point, or an operator");
+    if (begins_word(next()) || is_digit_of(next()) || next() == '(') {
+      refuse(at_, "an operator is missing here", "+ - * / or ^");
+    }
+    refuse(at_, fmt::format("'{}' cannot stand here", next()), "+ - * / ^ or the end");
+  }
+
+  struct Level {
+    explicit Level(Evaluator& evaluator) : depth(evaluator.depth_) {
+      if (++depth > kMaxExpressionDepth) {
+        refuse(evaluator.at_, "the expression is nested too deeply",
+               fmt::format("at most {} levels", kMaxExpressionDepth));
+      }
+    }
+    ~Level() { --depth; }
+    Level(const Level&) = delete;
+    Level& operator=(const Level&) = delete;
+    int& depth;
+  };
+
+  Quantity read_sum() {
+    Quantity left = read_product();
+    while (next() == '+' || next() == '-') {
+      const std::size_t at = at_;
+      const char sign = next();
+      take(sign);
+      left = sum_of(at, sign, left, read_product());
+    }
+    return left;
+  }
+
+  Quantity read_product() {
+    Quantity left = read_sign();
+    while (next() == '*' || next() == '/') {
+      const std::size_t at = at_;
+      const int sign = next() == '*' ? 1 : -1;
+      take(next());
+      if (next() == '*') refuse(at, "'**' is no operator", "^ for a power");
+      left = product_of(at, left, read_sign(), sign);
+    }
+    return left;
+  }
+
+  Quantity read_sign() {
+    if (next() != '-' && next() != '+') return read_power();
+    const Level level(*this);
+    const bool is_minus = next() == '-';
+    take(next());
+    Quantity value = read_sign();
+    if (is_minus) value.value = -value.value;
+    return value;
+  }
+
+  Quantity read_power() {
+    const Quantity base = read_atom();
+    const std::size_t at = at_;
+    if (!take('^')) return base;
+    const Level level(*this);
+    return power_of(at, base, read_sign());
+  }
+
+  Quantity read_atom() {
+    if (is_digit_of(next()) || (next() == '.' && is_digit_of(next(1)))) return read_number();
+    if (begins_word(next())) return read_name();
+    const std::size_t opened = at_;
+    if (!take('(')) {
+      if (at_ == text_.size()) refuse(at_, "the expression ends here", "a value");
+      refuse(at_, fmt::format("'{}' is no value", next()), "a number, a name or '('");
+    }
+    const Level level(*this);
+    const Quantity inner = read_sum();
+    if (!take(')')) refuse_unclosed(opened);
+    return inner;
+  }
+
+  [[noreturn]] void refuse_unclosed(std::size_t opened) const {
+    if (at_ < text_.size() && next() != ',') refuse_rest();
+    refuse(opened, "this bracket is not closed", "')'");
+  }
+
+  // digits [. digits] [e [sign] digits] [unit]
+  Quantity read_number() {
+    const std::size_t begin = at_;
+    const auto digits = [&] {
+      while (is_digit_of(next())) ++at_;
+    };
+    digits();
+    if (next() == '.') ++at_, digits();
+    if (next() == 'e' || next() == 'E') {
+      const std::size_t sign = next(1) == '-' || next(1) == '+' ? 1 : 0;
+      if (is_digit_of(next(1 + sign))) at_ += 1 + sign, digits();
+    }
+    const std::size_t end = at_;
+    skip_spaces();
+    const bool has_unit_here = begins_unit(next()) || (next() == '1' && next(1) == '/' && begins_unit(next(2)));
+    if (has_unit_here) read_unit();
+    const NamedQuantity found = quantity_of(text_.substr(begin, (has_unit_here ? at_ : end) - begin), units_);
+    if (!found.quantity) throw ExpressionFault{{begin, *found.problem}};
+    skip_spaces();
+    return *found.quantity;
+  }
+
+  // moves behind the unit
+  void read_unit() {
+    if (next() == '1') at_ += 2;
+    read_unit_word();
+    while (true) {
+      std::size_t gap = 0;
+      while (next(gap) == ' ') ++gap;
+      const bool is_joined = gap == 0 && (next() == '/' || next() == '.') && begins_unit(next(1));
+      if (!is_joined && (gap == 0 || !begins_unit(next(gap)))) break;
+      const std::size_t place = at_ + (is_joined ? 1 : gap);
+      std::size_t end = place;
+      while (end < text_.size() && continues_word(text_[end])) ++end;
+      const std::string_view word = text_.substr(place, end - place);
+      if (names_.has(word)) {
+        refuse(at_, fmt::format("'{}' is a parameter and would be read as a unit here", word),
+               is_joined ? "spaces around '/'" : "an operator before it");
+      }
+      at_ = place;
+      read_unit_word();
+    }
+    if (next() == '^') refuse(at_, "'^' behind a unit", "a power as in 'm2', or brackets around the quantity");
+  }
+  void read_unit_word() {
+    while (begins_unit(next())) ++at_;
+    while (is_digit_of(next())) ++at_;
+  }
+
+  Quantity read_name() {
+    const std::size_t begin = at_;
+    while (continues_word(next())) ++at_;
+    const std::string_view name = text_.substr(begin, at_ - begin);
+    skip_spaces();
+    const ExpressionFunction* function = find_function(name);
+    if (next() == '(') {
+      if (function == nullptr) refuse_function(begin, name);
+      return call(*function, begin);
+    }
+    if (function != nullptr) refuse(begin, fmt::format("'{}' is a function", name), fmt::format("{}(...)", name));
+    if (name == "pi") return {std::numbers::pi, {}, true};
+    NamedQuantity found = names_.value(name);
+    if (found.problem) throw ExpressionFault{{begin, std::move(*found.problem)}};
+    if (!found.quantity) {
+      refuse(begin, fmt::format("there is no parameter '{}'", name), "", names_.closest_of(name));
+    }
+    return *found.quantity;
+  }
+
+  [[noreturn]] static void refuse_function(std::size_t at, std::string_view name) {
+    std::vector<std::string_view> known;
+    for (const ExpressionFunction& function : expression_functions()) known.push_back(function.name);
+    refuse(at, fmt::format("there is no function '{}'", name),
+           "sin, cos, tan, asin, acos, atan, atan2, sqrt, abs, min or max", closest(name, known));
+  }
+
+  Quantity call(const ExpressionFunction& function, std::size_t at) {
+    const Level level(*this);
+    const std::size_t opened = at_;
+    take('(');
+    FunctionCall call{function.name, at, {}, {}};
+    while (next() != ')') {
+      call.places.push_back(at_);
+      call.arguments.push_back(read_sum());
+      if (!take(',')) break;
+    }
+    if (!take(')')) refuse_unclosed(opened);
+    return apply(function, call);
+  }
+
+  std::string_view text_;
+  ExpressionNames& names_;
+  UnitSystem& units_;
+  std::size_t at_ = 0;
+  int depth_ = 0;
+};
+
+}  // namespace
+
+ExpressionResult evaluate(std::string_view text, ExpressionNames& names, UnitSystem& units) {
+  if (text.size() > kMaxExpressionBytes) {
+    return {std::nullopt,
+            {0,
+             {fmt::format("the expression has {} characters", text.size()),
+              fmt::format("at most {}; parameters hold its parts", kMaxExpressionBytes), ""}}};
+  }
+  try {
+    return {Evaluator(text, names, units).evaluate(), {}};
+  } catch (ExpressionFault& fault) {
+    return {std::nullopt, std::move(fault.problem)};
+  }
+}
+
+NamedQuantity quantity_of(std::string_view text, UnitSystem& units) {
+  const NumberText number = split_number(text);
+  if (!number.is_number) return {std::nullopt, number.problem};
+  if (number.rest.empty()) return {Quantity{static_cast<double>(number.value), {}, true}, std::nullopt};
+  const Unit* unit = units.find(number.rest);
+  if (unit == nullptr) {
+    return {std::nullopt,
+            ValueProblem{fmt::format("unknown unit '{}'", number.rest), "a unit such as m, deg or bar", ""}};
+  }
+  if (unit->has_other_base) {
+    return {std::nullopt,
+            ValueProblem{fmt::format("'{}' is no mechanical quantity", text), "units of kg, m, s, K, rad", ""}};
+  }
+  const auto value = static_cast<double>(number.value * unit->scale + unit->offset);
+  if (!std::isfinite(value)) {
+    return {std::nullopt,
+            ValueProblem{fmt::format("'{}' is beyond what a number can hold", text), "a finite number", ""}};
+  }
+  return {Quantity{value, unit->exponent, false}, std::nullopt};
+}
+
+std::string text_of(const Quantity& quantity) {
+  const std::string unit = si_unit_of(quantity.exponent);
+  return unit.empty() ? fmt::format("{}", quantity.value) : fmt::format("{} {}", quantity.value, unit);
+}
+
+bool is_reserved_in_expressions(std::string_view name) {
+  return name == "pi" || find_function(name) != nullptr;
+}
+
+}  // namespace slew::scene

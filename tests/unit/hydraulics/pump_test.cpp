@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pump's limits at numbers worked out by hand. D n = 1e-5 x 150 = 1.5e-3 m3/s.
+#include "hydraulics/components/pump.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "hydraulics/circuit_integrator.h"
+#include "tests/properties/hydraulics/crane_circuit.h"
+
+namespace slew::hydraulics::test {
+namespace pump_test {
+
+class Rig {
+ public:
+  explicit Rig(double pressure_bar) {
+    add_tank(def_, "Line", pressure_bar * kBar), add_tank(def_, "Tank", 1 * kBar);
+    PumpDef& pump = add<PumpDef>(def_, "Pump");
+    pump.port_a = "Line", pump.port_b = "Tank", pump.speed = 150, pump.displacement = 1e-5;
+    pump.mechanical_coefficient = 0.9, pump.volumetric_coefficient = 0.95, pump.time_constant = 0.05;
+  }
+  PumpDef& pump() { return dynamic_cast<PumpDef&>(*def_.components.front()); }
+  // after `seconds` under a signal
+  void run(double signal, double seconds) {
+    if (!integrator_) {
+      circuit_ = std::make_unique<Circuit>(def_);
+      integrator_ = std::make_unique<CircuitIntegrator>(*circuit_, def_);
+      integrator_->start({}, {}, {});
+    }
+    circuit_->set_control(0, signal);
+    for (int k = 0; k < std::lround(seconds / 1e-3); ++k) integrator_->step(1e-3, HeldSpeed(0));
+  }
+  double variable(const std::string& name) {
+    std::vector<double> values(circuit_->variables().size());
+    circuit_->read_variables(integrator_->state().data(), values);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (circuit_->variables()[i].name == "Pump." + name) return values[i];
+    }
+    ADD_FAILURE() << name;
+    return 0;
+  }
+
+ private:
+  HydraulicsDef def_;
+  std::unique_ptr<Circuit> circuit_;
+  std::unique_ptr<CircuitIntegrator> integrator_;
+};
+
+TEST(Pump, of_fixed_displacement_delivers_its_flow_less_the_leak) {
+  Rig rig(201);
+  rig.pump().leak_flow = 1e-5;
+  rig.run(0, 1);
+  EXPECT_NEAR(rig.variable("flow"), 1.5e-3 * 0.95 - 2e-5, 1e-9);
+  EXPECT_NEAR(rig.variable("torque"), 1e-5 * 200e5 / 0.9, 1e-6);
+  EXPECT_NEAR(rig.variable("power"), 150 * 1e-5 * 200e5 / 0.9, 1e-3);
+}
+
+TEST(Pump, follows_its_signal_with_a_lag) {
+  Rig rig(101);
+  rig.pump().swash = 0.2, rig.pump().swash_per_signal = 0.1;
+  rig.run(0, 0.5);
+  EXPECT_NEAR(rig.variable("swash"), 0.2, 1e-6);
+  rig.run(6, 0.05);
+  EXPECT_NEAR(rig.variable("swash"), 0.8 - 0.6 * std::exp(-1), 1e-4);
+  rig.run(20, 1);
+  EXPECT_NEAR(rig.variable("swash"), 1, 1e-4);
+}
+
+TEST(Pump, the_power_limit_is_a_hyperbola) {
+  for (const auto& [bar, swash] : {std::pair{50.0, 1.0}, {100.0, 0.9}, {150.0, 0.6}, {300.0, 0.3}}) {
+    Rig rig(bar + 1);
+    rig.pump().maximum_power = 15e3;  // 0.9 x 15 kW / 1.5e-3 m3/s = 90 bar at full swash
+    rig.run(0, 1);
+    EXPECT_NEAR(rig.variable("swash"), swash, 1e-4) << bar;
+    EXPECT_LE(rig.variable("power"), 15e3 * (1 + 1e-4)) << bar;
+  }
+}
+
+TEST(Pump, the_cut_off_ends_the_flow_at_its_pressure) {
+  for (const auto& [bar, swash] : {std::pair{150.0, 1.0}, {190.0, 0.5}, {195.0, 0.25}, {210.0, 0.0}}) {
+    Rig rig(bar + 1);
+    rig.pump().maximum_pressure = 200 * kBar, rig.pump().controller_gain = 0.05 / kBar;
+    rig.run(0, 1);
+    EXPECT_NEAR(rig.variable("swash"), swash, 1e-4) << bar;
+  }
+}
+
+// P eta_m eta_v / p = K sqrt(p) for the rise p
+TEST(Pump, at_its_power_limit_settles_where_the_orifice_takes_its_flow) {
+  HydraulicsDef def;
+  def.orifice_transition = 10;
+  add_volume(def, "Line").rigid_volume = 1e-3;
+  add_tank(def, "Tank", 1 * kBar);
+  PumpDef& pump = add<PumpDef>(def, "Pump");
+  pump.port_a = "Line", pump.port_b = "Tank", pump.speed = 150, pump.displacement = 1e-5, pump.maximum_power = 8e3;
+  pump.mechanical_coefficient = 0.9, pump.volumetric_coefficient = 0.95;
+  BleedDef& orifice = add<BleedDef>(def, "Orifice");
+  orifice.port_1 = "Line", orifice.port_2 = "Tank", orifice.nominal_flow = 5e-4;
+  orifice.nominal_pressure_drop = 100 * kBar;
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  integrator.start({}, {}, {});
+  for (int k = 0; k < 3000; ++k) integrator.step(1e-3, HeldSpeed(0));
+  const double K = 5e-4 / std::sqrt(100 * kBar), p = std::pow(8e3 * 0.9 * 0.95 / K, 2.0 / 3);
+  EXPECT_NEAR(integrator.state()[0] - 1 * kBar, p, 1e-4 * p);
+}
+
+}  // namespace pump_test
+}  // namespace slew::hydraulics::test

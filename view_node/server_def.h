@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Settings of the window's server.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "core/json.h"
+#include "gateway/door.h"
+
+namespace slew::view_node {
+
+struct ServerDef {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;  // 0: any free one
+  gateway::DoorDef door;
+  std::string web;                    // folder of the page; empty: the built-in one
+  std::filesystem::path workspace;    // file of the page's workspace; empty: none
+  bool is_looking_only = false;       // nothing is written
+  std::function<Json()> description;  // /session.json
+};
+
+}  // namespace slew::view_node

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// A live session that goes on from a place of a recording: `slewring replay REC --until T --then-live` computes the
+// recorded steps again up to there and runs on from the state, with the same bits as long as the inputs are the same. A
+// window of its own serves it. One at a time; it ends with the window of the recording.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/child_process.h"
+#include "gateway/gateway.h"
+#include "view_node/window_options.h"
+
+namespace slew::view_node {
+
+class TakenSession final : public gateway::Continuation {
+ public:
+  // options: of the window of the recording. name: of the recorded session.
+  TakenSession(WindowOptions options, const std::string& name);
+  // Ends the session in order, which takes some seconds at most.
+  ~TakenSession() override;
+
+  void start(const gateway::ContinuationRequest& request, Done done) override;
+  // Answers when the window of the session has its address, or when one of the two has ended before. Result: lines for
+  // the user.
+  [[nodiscard]] std::vector<std::string> poll();
+
+ private:
+  void end(const std::string& problem);
+
+  WindowOptions options_;
+  std::string name_;  // of the live session
+  Done done_;         // empty: answered
+  std::unique_ptr<ChildProcess> session_, window_;
+  std::string output_;  // of both, since the start
+};
+
+}  // namespace slew::view_node
