@@ -15,6 +15,7 @@
 #include "multibody/model/model.h"
 #include "multibody/model/parameters.h"
 #include "scene/field_reader.h"
+#include "scene/ports.h"
 #include "scene/sections.h"
 
 namespace slew::scene {
@@ -85,16 +86,6 @@ std::string obstacle(const Scene& scene, const ElementRef& element, const Field&
   return "the scene gives the joint neither friction nor limits, so none is computed" + restart(field.key);
 }
 
-// Reason why the session cannot use this value of a coupling level; empty: it can, or the parameter is no level.
-std::string_view obstacle_of_level(const SessionDef& session, const ParameterInfo& parameter, double value) {
-  if (parameter.path == "session.coupling") {
-    return obstacle_of(session, static_cast<coupling::Level>(static_cast<int>(value)));
-  }
-  const auto level = static_cast<coupling::PortLevel>(static_cast<int>(value));
-  if (!parameter.path.ends_with(".coupling") || level == coupling::PortLevel::session) return "";
-  return obstacle_of(session, coupling::level_of(level));
-}
-
 Assignment refused(std::string text) {
   Assignment assignment;
   assignment.status = Status::error(ExitCode::bad_input, std::move(text));
@@ -133,7 +124,8 @@ double mechanics_substep(const SessionDef& session, const multibody::MechanicsDe
   return session.step / std::max(1.0, std::ceil(session.step / mechanics.max_substep * (1 - kRounding)));
 }
 
-ParameterDirectory::ParameterDirectory(const Scene& scene) : session_(scene.session), parameters_(parameters(scene)) {
+ParameterDirectory::ParameterDirectory(const Scene& scene)
+    : session_(scene.session), ports_(scene.ports), parameters_(parameters(scene)) {
   // without the tables of files no mechanism can be built
   const bool is_whole = std::all_of(scene.table_files.begin(), scene.table_files.end(),
                                     [](const TableFile& table) { return !table.found.empty(); });
@@ -157,6 +149,25 @@ ParameterDirectory::ParameterDirectory(const Scene& scene) : session_(scene.sess
 const ParameterInfo* ParameterDirectory::find(std::string_view path) const {
   const auto found = index_.find(path);
   return found == index_.end() ? nullptr : &parameters_[found->second];
+}
+
+// Reason why the session, or a port that follows it or may do so later, cannot use this value of a coupling level;
+// empty: it can, or the parameter is no level.
+std::string ParameterDirectory::obstacle_of_level(const ParameterInfo& parameter, double value) const {
+  if (!parameter.path.ends_with(".coupling")) return {};
+  const bool is_of_session = parameter.path == "session.coupling";
+  const auto number = static_cast<int>(value);
+  const auto own = static_cast<coupling::PortLevel>(number);
+  const bool follows = !is_of_session && own == coupling::PortLevel::session;
+  const coupling::Level level = is_of_session ? static_cast<coupling::Level>(number)
+                                : follows     ? session_.coupling
+                                              : coupling::level_of(own);
+  for (const PortDef& port : ports_) {
+    const std::string_view why = obstacle_of(port, level);
+    if (!why.empty() && (is_of_session || parameter.path == port.name + ".coupling"))
+      return fmt::format("{}: {}", port.name, why);
+  }
+  return follows ? std::string() : std::string(obstacle_of(session_, level));
 }
 
 // Only for changes that make the mechanism faster than in the scene; costs some hundred evaluations of it.
@@ -242,7 +253,7 @@ Assignment ParameterDirectory::check(std::string_view path, double value, std::o
     return refused(
         fmt::format("{}: {} is none of its choices; expected {}", name, value, choice_list(parameter->choices)));
   }
-  if (const std::string_view level = obstacle_of_level(session_, *parameter, value); !level.empty()) {
+  if (const std::string level = obstacle_of_level(*parameter, value); !level.empty()) {
     return refused(fmt::format("{}: {}", name, level));
   }
   if (parameter->is_choice() && over && over->ns > 0) {

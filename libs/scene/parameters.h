@@ -73,10 +73,12 @@ class ParameterDirectory {
   [[nodiscard]] Assignment parse_choice(const ParameterInfo& parameter, std::string_view name,
                                         std::optional<SimDuration> over) const;
 
+  [[nodiscard]] std::string obstacle_of_level(const ParameterInfo& parameter, double value) const;
   [[nodiscard]] std::string obstacle_of_machine(const ParameterInfo& parameter, double value) const;
   [[nodiscard]] std::string obstacle_of_speed(const ParameterInfo& parameter, double value) const;
 
   SessionDef session_;
+  std::vector<PortDef> ports_;
   std::shared_ptr<const multibody::MechanicsDef> mechanics_;        // null: no bodies, or no integration in sub-steps
   std::shared_ptr<const multibody::MechanicsDef> whole_mechanics_;  // null: the machine cannot be checked
   std::vector<ParameterInfo> parameters_;

@@ -103,6 +103,11 @@ void check_turns(const Scene& scene, const multibody::Model& model, Problems& pr
 
 }  // namespace
 
+std::string_view obstacle_of(const PortDef& port, coupling::Level level) noexcept {
+  if (port.unit != coupling::PortUnit::radian || level != coupling::Level::tlm) return "";
+  return "level tlm is not for motors: the oil of one step is a large part of the motor's own";
+}
+
 void make_ports(Scene& scene, Problems& problems) {
   for (const auto& component : scene.hydraulics.components) {
     const std::optional<hydraulics::ActuatorDef> actuator = component->actuator();
@@ -118,10 +123,10 @@ void make_ports(Scene& scene, Problems& problems) {
     if (!obstacle.empty()) problems.push_back({port.name + ".coupling", std::string(obstacle), "session", ""});
   }
   for (const PortDef& port : scene.ports) {
-    const bool is_tlm = port.level == coupling::PortLevel::session && scene.session.coupling == coupling::Level::tlm;
-    if (port.unit != coupling::PortUnit::radian || !is_tlm) continue;
-    problems.push_back({port.name + ".coupling",
-                        "level tlm is not for motors: the oil of one step is a large part of the motor's own",
+    if (port.level != coupling::PortLevel::session) continue;
+    const std::string_view obstacle = obstacle_of(port, scene.session.coupling);
+    if (obstacle.empty()) continue;
+    problems.push_back({port.name + ".coupling", std::string(obstacle),
                         "coupling: two for this port, or another session.coupling", ""});
   }
   if (scene.ports.size() > coupling::kMaxPorts) {

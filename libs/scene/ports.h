@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/problem.h"
@@ -14,6 +15,9 @@ namespace slew::scene {
 // Fills scene.ports in component order. Problems: the element's kind does not fit the actuator, the line force cannot
 // use the friction curve, too many ports. Pre-condition: all names are resolved.
 void make_ports(Scene& scene, Problems& problems);
+
+// Why this port cannot have the level; empty: it can. Text that is a constant.
+[[nodiscard]] std::string_view obstacle_of(const PortDef& port, coupling::Level level) noexcept;
 
 // Rows for build_model(): the ports' force elements in port order, then the joints with friction or limits.
 [[nodiscard]] std::vector<std::string> row_names(const Scene& scene);

@@ -78,8 +78,9 @@ bool is_built(Middleware middleware) {
 Status open_transport(const Network& network, const Endpoint& endpoint, std::unique_ptr<Transport>& transport) {
   if (network.middleware == Middleware::cyclone) return open_cyclone(network, endpoint, transport);
   OpenFastDds* open = nullptr;
-  if (Status status = load_fastdds(open); !status.is_ok()) return status;
-  return open(network, endpoint, transport);
+  Status status = load_fastdds(open);
+  if (status.is_ok()) open(network, endpoint, transport, status);
+  return status;
 }
 
 }  // namespace slew::transport

@@ -92,10 +92,10 @@ TEST(Architecture, IncludesFollowTheListedEdges) {
   }
 }
 
-// Folders of the sources that are no tests, benchmarks or examples: those of libs/, and those beside it.
+// Folders of the sources that are no tests, benchmarks, examples or pages: those of libs/, and those beside it.
 std::vector<fs::path> rooms() {
   std::vector<fs::path> found;
-  const std::set<std::string> others = {"tests", "benchmarks", "examples", "build", "libs"};
+  const std::set<std::string> others = {"tests", "benchmarks", "examples", "build", "libs", "web"};
   for (const fs::path& above : {fs::path(SLEWRING_SOURCE_DIR), fs::path(SLEWRING_SOURCE_DIR) / "libs"}) {
     for (const auto& entry : fs::directory_iterator(above)) {
       const std::string name = entry.path().filename();

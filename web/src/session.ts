@@ -47,7 +47,7 @@ export class Session {
   readonly parametersChanged = new Emitter<string[]>();
   readonly logged = new Emitter();
   readonly noticed = new Emitter<Status>(); // for the person at the page
-  readonly restarted = new Emitter(); // a reset or a loaded state: the time begins anew
+  readonly restarted = new Emitter(); // a reset or a loaded state: the time begins again
   readonly playbackChanged = new Emitter();
 
   info?: ServerInfo;

@@ -2,11 +2,14 @@
 // Hydraulic motor of fixed displacement that turns a joint through a gear, in both directions and as a pump too.
 //
 //   x = i phi,  v = i phi'                     shaft angle [rad] and speed; phi angle of the rotational force, i ratio
-//   (1) F = (p_A - p_B) D                          torque of the pressures at the shaft [Nm], p_A pushes +phi (2)
-//   F_line = F - F_mu,   torque on the joint  i F_line (3) F_mu = (|F| (1 - eta) f(|v|) + torque_loss min(|v|/v_rest,
-//   1)) sgn v + viscous_loss v Q_A = D v + G (p_A - p_B) + G_C (p_A - p_C)   out of volume A;  Q_B = -D v - G (p_A -
-//   p_B) + G_C (p_B - p_C)       (4) Q_C = G_C (p_A + p_B - 2 p_C)                 into the case drain;  G =
-//   leak_flow/leak_pressure, G_C likewise
+//   F = (p_A - p_B) D                          torque of the pressures at the shaft [Nm], p_A pushes +phi          (1)
+//   F_line = F - F_mu                          the joint gets the torque i F_line                              (2)
+//   F_mu = (|F| (1 - eta) f(|v|) + torque_loss min(|v|/v_rest, 1)) sgn v + viscous_loss v                      (3)
+//   Q_A = D v + G (p_A - p_B) + G_C (p_A - p_C)                  out of volume A                               (4)
+//   Q_B = -D v - G (p_A - p_B) + G_C (p_B - p_C)                 out of volume B
+//   Q_C = G_C (p_A + p_B - 2 p_C)                                into the case drain
+// G = leak_flow / leak_pressure, G_C = case_leak_flow / leak_pressure.
+//
 // D displacement [m3/rad], eta mechanical_coefficient, f friction_curve over the shaft's speed (without one f = 1 from
 // v_rest on). Efficiencies at the difference p and the speed v: mechanical 1 - F_mu/(D p) as a motor, volumetric
 // D v/(D v + G p + G_C p) with port B and case at the same pressure.

@@ -111,11 +111,10 @@ std::size_t FastTransport::matched_readers(wire::Topic topic) const {
 
 }  // namespace slew::transport
 
-extern "C" __attribute__((visibility("default"))) slew::Status slewring_open_fastdds(
+extern "C" __attribute__((visibility("default"))) void slewring_open_fastdds(
     const slew::transport::Network& network, const slew::transport::Endpoint& endpoint,
-    std::unique_ptr<slew::transport::Transport>& transport) {
+    std::unique_ptr<slew::transport::Transport>& transport, slew::Status& status) {
   auto opened = std::make_unique<slew::transport::FastTransport>(endpoint);
-  if (slew::Status status = opened->open(network); !status.is_ok()) return status;
-  transport = std::move(opened);
-  return slew::Status::ok();
+  status = opened->open(network);
+  if (status.is_ok()) transport = std::move(opened);
 }

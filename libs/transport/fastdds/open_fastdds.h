@@ -11,7 +11,8 @@ namespace slew::transport {
 inline constexpr const char* kFastDdsLibrary = "libslewring_fastdds.so";
 inline constexpr const char* kOpenFastDds = "slewring_open_fastdds";
 
-// See open_transport().
-using OpenFastDds = Status(const Network& network, const Endpoint& endpoint, std::unique_ptr<Transport>& transport);
+// See open_transport(), whose result is in `status`: a function with a name of C returns no class.
+using OpenFastDds = void(const Network& network, const Endpoint& endpoint, std::unique_ptr<Transport>& transport,
+                         Status& status);
 
 }  // namespace slew::transport

@@ -234,7 +234,7 @@ async function drivesByKeysAndGamepad(page) {
   console.log("keys and gamepad move the input");
 }
 
-// Another page is in front of it: a browser then calls its timers seldom or never.
+// Its script stands still, as that of a page of a machine that sleeps, and another page is open.
 async function isNeutralWhenSuspended(page, context) {
   await holdSlider(page, 0.8);
   await waitFor("the input", async () => (await raw(page, "Input_Lift")) > 0.5);
@@ -243,7 +243,8 @@ async function isNeutralWhenSuspended(page, context) {
   await other.waitForSelector(".input");
   await waitFor("the value in the other page", async () => (await raw(other, "Input_Lift")) > 0.5);
   const protocol = await context.newCDPSession(page);
-  await protocol.send("Page.setWebLifecycleState", { state: "frozen" });
+  await protocol.send("Debugger.enable");
+  await protocol.send("Debugger.pause");
   await waitFor("neutral", async () => (await raw(other, "Input_Lift")) === 0);
   const holder = await input(other, "Input_Lift").locator(".holder").textContent();
   require(/^held by window-/.test(holder), `the other page shows '${holder}'`);

@@ -323,7 +323,6 @@ def take_over(folder):
 
 def files(folder):
     """Meshes, packed files and the workspace by HTTP."""
-    os.environ["XDG_STATE_HOME"] = f"{folder}/state"
     subprocess.run([SLEWRING, "run", f"{SOURCES}/scenes/truck_crane.yaml", "--in-process", "--pace", "free", "--duration",
                     "0.1 s", "--out", f"{folder}/runs", "--quiet"], check=True, capture_output=True, cwd=folder)
     os.makedirs(f"{folder}/web")
@@ -429,4 +428,5 @@ CASES = {"AForeignClientWatchesAndChangesALiveSession": live, "ARecordingIsSough
          "ThePageShowsChangesAndDrivesASession": page_live, "ThePageFollowsTheSliderOfARecording": page_recording,
          "ThePageOperatesAndPlots": page_inputs, "TheTypesOfThePageHold": types}
 with tempfile.TemporaryDirectory(prefix="slewring_window_") as scratch:
+    os.environ["XDG_STATE_HOME"] = f"{scratch}/state"  # workspaces
     CASES[CASE](scratch)

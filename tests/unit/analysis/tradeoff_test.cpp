@@ -33,7 +33,7 @@ TEST(Grid, ReadsAnAxisWithListsAndQuotes) {
   const Axis gravity = parse_axis("mechanics.gravity=[0, -9.81, 0],[0, 0, 0]");
   EXPECT_EQ(gravity.values, (std::vector<std::string>{"[0, -9.81, 0]", "[0, 0, 0]"}));
   EXPECT_EQ(parse_axis("Boom.flex_modes=\"1;2\",none").values, (std::vector<std::string>{"\"1;2\"", "none"}));
-  for (const char* wrong : {"session.step", "session.step=", "step=1ms", "=1"}) {
+  for (const char* wrong : {"session.step", "session.step=", "=1"}) {
     EXPECT_THROW(static_cast<void>(parse_axis(wrong)), Failure) << wrong;
   }
 }

@@ -137,10 +137,13 @@ TEST(Oil, density_parabola_has_the_bulk_moduli_of_the_two_dof_crane) {
 
 TEST(DoubleRodCylinder, starts_around_the_mean_pressure_and_holds_its_load) {
   HydraulicsDef def = bench_circuit();
+  // the motor at one of its volumes would start that volume too
+  std::erase_if(def.components, [](const auto& component) { return component->name == "Fan"; });
   Circuit circuit(def);
   const double F = 2e4;
-  std::vector<double> y(static_cast<std::size_t>(circuit.state_count()));
-  circuit.start_in_equilibrium({&F, 1}, y);
+  std::vector<double> y(static_cast<std::size_t>(circuit.state_count())), forces(circuit.actuators().size());
+  forces[0] = F;
+  circuit.start_in_equilibrium(forces, y);
   const double area = 0.25 * std::numbers::pi * (0.1 * 0.1 - 0.05 * 0.05);
   const auto a = static_cast<std::size_t>(circuit.find_volume("Vol_A"));
   const auto b = static_cast<std::size_t>(circuit.find_volume("Vol_B"));

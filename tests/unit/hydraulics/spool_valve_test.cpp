@@ -23,6 +23,7 @@ struct Rig {
 
   Rig() {
     def.orifice_transition = 1;
+    def.pressure_floor = 1e-5;  // below that of the tank
     add_tank(def, "P", 104 * kBar), add_tank(def, "A", 100 * kBar), add_tank(def, "B", 64 * kBar);
     add_tank(def, "T", 1e-4), add_tank(def, "C", 16 * kBar), add_tank(def, "D", 7 * kBar);
     valve = &add<SpoolValveDef>(def, "Valve");

@@ -150,6 +150,21 @@ TEST(ParameterOfChoices, IsRefusedWhatItIsNot) {
   EXPECT_TRUE(directory.check("session.coupling", 1, SimDuration{}).status.is_ok());
 }
 
+TEST(ParameterOfChoices, OfLevelTlmNeverReachesAMotor) {
+  const std::string file = SLEWRING_SOURCE_DIR "/scenes/slewing_upper.yaml";
+  ParameterDirectory directory(load_file(file));
+  EXPECT_EQ(directory.parse_assignment("session.coupling=tlm").status.text,
+            "session.coupling: Motor_Slew: level tlm is not for motors: the oil of one step is a large part of the "
+            "motor's own");
+  EXPECT_TRUE(directory.parse_assignment("session.coupling=hold").status.is_ok());
+  EXPECT_TRUE(directory.parse_assignment("Motor_Slew.coupling=session").status.is_ok());
+  // the motor has a level of its own in a session of tlm, and cannot give it up
+  const std::vector<std::string> of_tlm = {"session.coupling=tlm", "Motor_Slew.coupling=two"};
+  ParameterDirectory waves(load_file(file, of_tlm));
+  EXPECT_FALSE(waves.parse_assignment("Motor_Slew.coupling=session").status.is_ok());
+  EXPECT_TRUE(waves.parse_assignment("Motor_Slew.coupling=hold").status.is_ok());
+}
+
 TEST_F(Parameters, OfACouplingThatIsNotThereIsRefused) {
   EXPECT_EQ(directory.check("session.coupling", 1).status.text,
             "session.coupling would change nothing: the scene has no cylinder that is coupled");

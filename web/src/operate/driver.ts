@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The values that this page sends to the inputs, and who holds them.
+// The values that this page sends to the inputs, and the holders of the inputs.
 //
 // Each source (pointer, keyboard, gamepad) has a wish for an input; the one farthest from neutral counts. An input is
 // leased when it first leaves neutral. While it is away from neutral, and for kTailMs after, its value is sent every
@@ -35,8 +35,9 @@ export class Driver {
     session.stateChanged.on(() => this.#takeHolders());
     session.restarted.on(() => this.#forgetLeases()); // a reset frees all inputs
     document.addEventListener("visibilitychange", () => (document.hidden ? this.#stop() : this.#start()));
-    for (const name of ["pagehide", "freeze"]) window.addEventListener(name, () => this.#stop());
-    for (const name of ["pageshow", "resume"]) window.addEventListener(name, () => this.#start());
+    // freeze and resume are events of the document that do not bubble
+    for (const name of ["pagehide", "freeze"]) window.addEventListener(name, () => this.#stop(), { capture: true });
+    for (const name of ["pageshow", "resume"]) window.addEventListener(name, () => this.#start(), { capture: true });
     this.#start();
   }
 

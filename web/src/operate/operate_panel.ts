@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inputs of the machine: who holds each, its value, and the controls of this page.
+// The inputs of the machine: the holder and the value of each, and the controls of this page.
 import type { Context } from "../context";
 import { atMostEvery, h, setText } from "../dom";
 import { panel, toolButton } from "../panels/panel";

@@ -23,6 +23,7 @@ export class Machine {
   #entities = new Map<string, THREE.Object3D>();
   #loader?: Promise<GLTFLoader>;
   #groundHeight?: number; // in World; undefined: the scene has no ground
+  #awaited = 0; // models that are not loaded yet
   isPosed = false;
 
   constructor(session: Session, changed: () => void, rebuilt: () => void) {
@@ -71,12 +72,23 @@ export class Machine {
     }
   }
 
-  // Sphere around everything but the ground, and the height of the ground: without one the lowest point, at most 0.
+  // Poses, shapes and models are there.
+  get isComplete(): boolean {
+    return this.isPosed && this.bodies.length > 0 && this.#awaited === 0;
+  }
+
+  // Sphere around everything but the ground and what is as wide, and the height of the ground: without one the lowest
+  // point, at most 0.
   extent(): { center: THREE.Vector3; radius: number; ground: number } {
     const box = new THREE.Box3();
     this.root.updateMatrixWorld(true);
     this.#replaceGround();
     for (const [id, entity] of this.#entities) if (id !== "Ground") box.expandByObject(entity);
+    for (const part of this.#groundParts()) {
+      const own = new THREE.Box3().setFromObject(part);
+      const size = own.getSize(new THREE.Vector3());
+      if (part.visible && Math.max(size.x, size.y) < kGroundWidth) box.union(own);
+    }
     if (box.isEmpty()) box.expandByPoint(new THREE.Vector3()).expandByScalar(1);
     const sphere = box.getBoundingSphere(new THREE.Sphere());
     const ground = this.#groundHeight ?? Math.min(0, box.min.z);
@@ -110,23 +122,36 @@ export class Machine {
       this.frame(entity.frame_id).add(object);
       this.#entities.set(entity.id, object);
       for (const model of entity.models ?? []) {
-        this.#load(model, session).then(
-          (mesh) => {
-            object.add(mesh);
+        this.#awaited += 1;
+        this.#load(model, session)
+          .then(
+            (mesh) => object.add(mesh),
+            (error) =>
+              session.noticed.emit({ level: 1, message: `the mesh ${model.url} is not shown: ${String(error)}` }),
+          )
+          .finally(() => {
+            this.#awaited -= 1;
             rebuilt();
-          },
-          (error) =>
-            session.noticed.emit({ level: 1, message: `the mesh ${model.url} is not shown: ${String(error)}` }),
-        );
+          });
       }
     }
+  }
+
+  // The Ground's primitives and models.
+  #groundParts(): THREE.Object3D[] {
+    const [primitives, ...models] = this.#entities.get("Ground")?.children ?? [];
+    return [...(primitives?.children ?? []), ...models];
   }
 
   // The page has a ground of its own: it takes the place and the height of the scene's.
   #replaceGround(): void {
     this.#groundHeight = undefined;
-    for (const part of this.#entities.get("Ground")?.children[0]?.children ?? []) {
-      const isBox = part instanceof THREE.Mesh && part.geometry.getAttribute("position").count <= kBoxCorners;
+    for (const part of this.#groundParts()) {
+      let corners = 0;
+      part.traverse((object) => {
+        if (object instanceof THREE.Mesh) corners += object.geometry.getAttribute("position").count;
+      });
+      const isBox = corners > 0 && corners <= kBoxCorners;
       const box = new THREE.Box3().setFromObject(part);
       const size = box.getSize(new THREE.Vector3());
       const width = Math.min(size.x, size.y);

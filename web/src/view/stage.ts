@@ -108,7 +108,7 @@ export class Stage {
     });
   }
 
-  // The view as it is now; drawn anew, since a browser may have discarded the last picture.
+  // The view as it is now; drawn again, since a browser may have discarded the last picture.
   async picture(): Promise<Blob | null> {
     this.#renderer.render(this.scene, this.camera);
     return new Promise((resolve) => this.canvas.toBlob(resolve, "image/png"));

@@ -115,9 +115,9 @@ export class ViewPanel {
     this.#stage.draw();
   }
 
-  // When shapes and poses are there: light and camera for the size of the machine.
+  // When shapes, models and poses are there: light and camera for the size of the machine.
   #frame(): void {
-    if (!this.#machine.isPosed || this.#machine.bodies.length === 0) return;
+    if (!this.#machine.isComplete) return;
     this.#isFramed = true;
     this.#empty.hidden = true;
     this.#setExtent();
