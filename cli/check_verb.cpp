@@ -2,6 +2,7 @@
 // `slewring check SCENE`: reads a scene as strictly as a run does, builds its models and finds its start state.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 
 #include "analysis/coupling_check.h"
@@ -17,6 +18,7 @@
 #include "scene/name_pattern.h"
 #include "scene/scene_options.h"
 #include "session/direct_session.h"
+#include "session/recording_forecast.h"
 #include "session/unrecorded.h"
 
 namespace slew::cli {
@@ -84,8 +86,13 @@ ExitCode check(const CheckOptions& options) {
     std::vector<std::string> warnings = scene.warnings;
     for (std::string& warning : session::unrecorded_plots(scene)) warnings.push_back(std::move(warning));
     for (std::string& warning : analysis::coupling_warnings(scene, session)) warnings.push_back(std::move(warning));
+    const double bytes = session::recorded_bytes(scene, session::recorded_numbers(scene, session));
     if (options.is_json) {
-      fmt::print("{}\n", Json({{"ok", true}, {"scene", scene.name}, {"warnings", warnings}}).dump(2));
+      fmt::print("{}\n", Json({{"ok", true},
+                               {"scene", scene.name},
+                               {"warnings", warnings},
+                               {"recorded_bytes_per_hour", std::round(3600 * bytes)}})
+                             .dump(2));
       return ExitCode::ok;
     }
     for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
@@ -94,6 +101,7 @@ ExitCode check(const CheckOptions& options) {
                counted(scene.hydraulics.volumes.size(), "volume", "volumes"),
                counted(scene.hydraulics.components.size(), "component", "components"),
                counted(scene.inputs.size(), "input", "inputs"));
+    fmt::print("{}\n", session::forecast_text(scene, bytes));
     return ExitCode::ok;
   } catch (const scene::LoadError& error) {
     if (!options.is_json) throw;

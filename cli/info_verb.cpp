@@ -2,6 +2,8 @@
 // `slewring info REC`: what a recording holds.
 #include <fmt/format.h>
 
+#include <cstdlib>
+
 #include "cli/flag_report.h"
 #include "cli/terminal.h"
 #include "cli/verbs.h"
@@ -11,6 +13,7 @@
 #include "core/report_table.h"
 #include "node/identity.h"
 #include "recording/recovery.h"
+#include "recording/rewriting.h"
 #include "session/recorded.h"
 #include "session/recorded_events.h"
 
@@ -55,6 +58,14 @@ std::string end_of(const recording::Reader& reader) {
     return fmt::format("recovered from {} ({} bytes){}; lost {}", entry("from"), entry("from_bytes"),
                        entry("was_cut") == "yes" ? ", whose end was missing" : "",
                        entry("lost").empty() ? "nothing in front of it" : entry("lost"));
+  }
+  if (const recording::TextMap* part = reader.find_metadata(recording::kSliceName)) {
+    const auto time = [part](const char* key) {
+      const auto found = part->find(key);
+      return found == part->end() ? 0 : std::strtod(found->second.c_str(), nullptr) * 1e-9;
+    };
+    return fmt::format("a slice of {} from {:.6g} s to {:.6g} s", part->count("of") == 0 ? "?" : part->at("of"),
+                       time("from_ns"), time("to_ns"));
   }
   const recording::TextMap* summary = reader.find_metadata(recording::kSummaryName);
   if (summary == nullptr || summary->count("end") == 0 || summary->at("exit_code") == "0") return "closed in order";
@@ -114,8 +125,10 @@ struct StepCounts {
   node::FlagCounter flags;
 };
 
+// The flags are in the samples: where these were left out, the recorder's counts are all that is known.
 StepCounts step_counts(const recording::Reader& reader, bool is_verifying) {
-  if (!is_verifying) {
+  const bool has_samples = reader.identity().steps == recording::RecordedSteps::all;
+  if (!is_verifying || !has_samples) {
     if (auto closing = session::closing_counts(reader)) return {closing->ticks, std::move(closing->flags)};
   }
   return {session::tick_span(reader), recorded_flags(reader)};
@@ -137,6 +150,7 @@ Json to_json(const recording::Reader& reader, const StepCounts& counts, double s
           {"step_ns", identity.communication_step.ns},
           {"duration", simulated},
           {"complete", reader.has_all_messages()},
+          {"left_out", session::left_out_text(reader)},
           {"damage", reader.damage_text()},
           {"end", end_of(reader)},
           {"ticks_behind_end", counts.ticks.behind_end},
@@ -161,6 +175,9 @@ void print(const recording::Reader& reader, const StepCounts& counts, double sim
                                   counted(static_cast<std::uint64_t>(span.steps), "step", "steps"),
                                   duration_text(span.wall_time))});
   rows.add({"end", end_of(reader)});
+  if (std::string left_out = session::left_out_text(reader); !left_out.empty()) {
+    rows.add({"steps", std::move(left_out)});
+  }
   if (span.behind_end > 0) rows.add({"end", session::behind_end_text(span)});
   for (const auto& [topic, count] : counts_of(reader)) {
     rows.add(

@@ -14,6 +14,7 @@
 #include "core/failure.h"
 #include "core/printable.h"
 #include "core/text_output.h"
+#include "plotting/decimation.h"
 #include "plotting/html_plot.h"
 #include "plotting/svg_plot.h"
 #include "session/recorded.h"
@@ -97,10 +98,42 @@ void require_values(std::span<const plotting::Plot> plots) {
                 "the recording has no value of these variables in this time; nothing was written; choose other times");
 }
 
+// A picture must be readable, a page must open.
+constexpr std::size_t kMostCurvesOfPicture = 120;
+constexpr std::size_t kMostValuesOfPage = 2'000'000;
+constexpr std::size_t kLeastValuesOfCurve = 1000;
+
+std::size_t curves_of(std::span<const plotting::Plot> plots) {
+  std::size_t count = 0;
+  for (const plotting::Plot& plot : plots) count += plot.series.size();
+  return count;
+}
+
+void check_curves(std::span<const plotting::Plot> plots) {
+  const std::size_t count = curves_of(plots);
+  if (count <= kMostCurvesOfPicture) return;
+  throw Failure(ExitCode::bad_input,
+                fmt::format("{} curves are more than the {} that a picture may have; nothing was written; name fewer "
+                            "variables, or write a page: -o plot.html",
+                            count, kMostCurvesOfPicture));
+}
+
+// Long curves of a page keep the least and the largest value of each of their parts.
+void thin_out(std::vector<plotting::Plot>& plots, plotting::PlotOptions& look) {
+  const std::size_t most =
+      std::max(kLeastValuesOfCurve, kMostValuesOfPage / std::max<std::size_t>(1, curves_of(plots)));
+  std::size_t bin = 1;
+  for (plotting::Plot& plot : plots) bin = std::max(bin, plotting::thin_out(plot.series, most));
+  if (bin == 1) return;
+  look.subtitle += fmt::format("{}long curves: the least and the largest of every {} values; --from and --to show more",
+                               look.subtitle.empty() ? "" : "; ", bin);
+}
+
 // The format follows the file's name: a page for .html, a picture otherwise.
-ExitCode draw(std::span<const plotting::Plot> plots, const plotting::PlotOptions& look, const std::string& output) {
+ExitCode draw(std::vector<plotting::Plot> plots, plotting::PlotOptions look, const std::string& output) {
   const std::string path = output.empty() ? "plot.svg" : output;
   const bool is_page = std::filesystem::path(path).extension() == ".html";
+  is_page ? thin_out(plots, look) : check_curves(plots);
   write_text(path, is_page ? plotting::plot_html(plots, look) : plotting::plot_svg(plots, look));
   if (path != "-") fmt::print("{}\n", path);
   return ExitCode::ok;
@@ -118,9 +151,9 @@ ExitCode plot_beside(const PlotOptions& options) {
   for (const std::string& label : labels_of(readers)) {
     if (options.title.empty()) look.title += (look.title.empty() ? "" : ", ") + label;
   }
-  const plotting::Plot plot{.title = "", .series = read_beside(readers, options)};
-  if (options.is_part()) require_values({&plot, 1});
-  return draw({&plot, 1}, look, options.output);
+  std::vector<plotting::Plot> plots{{.title = "", .series = read_beside(readers, options)}};
+  if (options.is_part()) require_values(plots);
+  return draw(std::move(plots), look, options.output);
 }
 
 ExitCode plot(const PlotOptions& options) {
@@ -133,8 +166,9 @@ ExitCode plot(const PlotOptions& options) {
         .title = "",
         .series = session::read_series(*reader, options.variables, session::Units::display, options.range())};
     plotting::part_at_gaps(plot.series);
-    if (options.is_part()) require_values({&plot, 1});
-    return draw({&plot, 1}, look, options.output);
+    std::vector<plotting::Plot> plots{std::move(plot)};
+    if (options.is_part()) require_values(plots);
+    return draw(std::move(plots), look, options.output);
   }
   const scene::Scene scene = scene::load_text(session::recorded_scene_text(*reader), reader->identity().scene);
   if (scene.plots.empty()) {
@@ -152,7 +186,7 @@ ExitCode plot(const PlotOptions& options) {
     require_values(read.plots);
   }
   // the picture beside the recording is that of the whole
-  if (options.is_part() || !options.output.empty()) return draw(read.plots, look, options.output);
+  if (options.is_part() || !options.output.empty()) return draw(std::move(read.plots), look, options.output);
   fmt::print("{}\n", analysis::write_plots(read.plots, *reader));
   return ExitCode::ok;
 }

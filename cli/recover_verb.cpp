@@ -55,6 +55,7 @@ Json to_json(const recording::Recovery& recovery, const std::filesystem::path& t
 }
 
 std::string steps_text(const session::RecordedExtent& extent) {
+  if (extent.last_step < 0 && !extent.first_step) return "none: the recording has no tick";
   const StepIndex first = extent.first_step.value_or(0);
   const std::string of_epoch = extent.epoch > 0 ? fmt::format(" of epoch {}", extent.epoch) : "";
   if (extent.complete_to < first) {
@@ -77,7 +78,7 @@ void print(const recording::Recovery& recovery, const std::filesystem::path& tar
     rows.add({"lost", fmt::format("{} in front of the last step",
                                   counted(extent.lost, "tick or sample", "ticks and samples"))});
   }
-  if (!extent.first_step) {
+  if (!extent.first_step && extent.last_step >= 0) {
     rows.add({"lost", "the number of its first step; missing steps are counted from step 0 on"});
   }
   if (recovery.was_cut) rows.add({"lost", "any data after the last step: the end is missing"});

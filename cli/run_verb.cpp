@@ -17,6 +17,7 @@
 #include "core/node_names.h"
 #include "core/printable.h"
 #include "observer/observer.h"
+#include "session/recording_forecast.h"
 #include "session/run.h"
 #include "session/unrecorded.h"
 
@@ -114,6 +115,18 @@ ExitCode run(session::RunOptions options, const options::Command& verb) {
   return run_session(std::move(options), session);
 }
 
+// A model that cannot be built is reported by the run.
+void print_forecast(const scene::Scene& scene) {
+  try {
+    const session::DirectSession session(scene);
+    fmt::print("{}\n", session::forecast_text(
+                           scene, session::recorded_bytes(scene, session::recorded_numbers(scene, session))));
+    std::fflush(stdout);
+  } catch (const Failure&) {
+    return;
+  }
+}
+
 // With --json standard output has a result in every case; the texts are on standard error too.
 ExitCode run_or_report(const session::RunOptions& options, const options::Command& verb) {
   try {
@@ -157,6 +170,7 @@ ExitCode run_session(session::RunOptions options, const io_node::SessionScene& s
                  "warning: the devices of the scene are not started: a run in one process has no place for a "
                  "controller; run it as processes\n");
   }
+  if (options.scene.is_recording && !options.is_json && !options.is_quiet) print_forecast(scene);
   options.kept = report_variables(scene);
   TerminalWatcher watcher(options, scene, window);
   const session::RunOutcome outcome = options.is_in_process ? session::run_in_process(options, session, watcher)

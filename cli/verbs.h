@@ -30,6 +30,8 @@ void add_plot(options::Command& program);
 void add_animate(options::Command& program);
 void add_export(options::Command& program);
 void add_recover(options::Command& program);
+void add_slice(options::Command& program);
+void add_merge(options::Command& program);
 void add_replay(options::Command& program);
 void add_compare(options::Command& program);
 void add_simplify(options::Command& program);

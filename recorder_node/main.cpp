@@ -19,6 +19,7 @@ std::optional<ExitCode> run(const node::NodeOptions& options, const std::string&
   config.runs_directory = runs;
   config.keep_free = static_cast<std::uint64_t>(keep_free_mb * 1e6);
   config.join = options.join();
+  config.part = recorder_node::part_of_scene;
   recorder_node::RecorderNode node(*transport, std::move(config));
   // the path is printed last, whatever the end was
   struct PrintPath {

@@ -151,8 +151,7 @@ void RecorderNode::discard(const Status& why) {
   if (writer_ == nullptr) return;
   count_all_losses();
   close({why.code, why.text});
-  const bool holds_step = counts_[static_cast<std::size_t>(Topic::tick)].recorded > 0;
-  if (holds_step) return;
+  if (has_step_) return;
   std::error_code ignored;
   std::filesystem::remove(path_, ignored);
   std::filesystem::remove(path_.parent_path(), ignored);
@@ -322,7 +321,10 @@ void RecorderNode::keep_for_next_epoch(const transport::Received& message) {
 }
 
 void RecorderNode::start_epoch(const wire::Header& init) {
-  if (writer_ != nullptr && stopped_.is_ok()) end_lost_steps();
+  if (writer_ != nullptr && stopped_.is_ok()) {
+    end_lost_steps();
+    for (const recording::StateHashes& hashes : selection_.take_rest()) write_hashes(hashes);
+  }
   count_losses(former_, false);
   former_ = std::exchange(streams_, {});
   begin_streams(init.step);

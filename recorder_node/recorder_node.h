@@ -28,6 +28,7 @@
 #include "node/node.h"
 #include "node/resend_clock.h"
 #include "node/tick_counter.h"
+#include "recorder_node/selection.h"
 #include "recorder_node/stream_gaps.h"
 #include "recording/writer.h"
 
@@ -35,6 +36,10 @@ namespace slew::recorder_node {
 
 inline constexpr std::uint64_t kKeepFreeBytes = 256'000'000;
 inline constexpr std::size_t kBacklogBytes = 64u << 20;
+// Columns of a few messages are not much smaller than the messages.
+inline constexpr SimDuration kColumnsFlushPeriod = milliseconds(2000);
+// Columns are a third as many bytes as messages: a higher level of zstd costs little.
+inline constexpr int kColumnsLevel = 3;
 
 // Limits of the recorder: a slow disk delays a thread, not the session.
 [[nodiscard]] inline recording::WriterLimits recorder_limits() {
@@ -49,6 +54,8 @@ struct RecorderConfig {
   std::uint64_t keep_free = kKeepFreeBytes;  // bytes on the recording's file system that are left free
   recording::WriterLimits limits = recorder_limits();
   recording::FileCalls* file_calls = &recording::system_file_calls();
+  // Finds what is recorded of a session, from its description; empty: all of it.
+  std::function<Status(const wire::SessionDescription&, RecordedPart&)> part;
 };
 
 // A stream of messages that a writer publishes every k-th step: blocks of variables of one place in its list, samples
@@ -153,6 +160,7 @@ class RecorderNode final : public node::Node {
   Status add_attachments(const wire::SessionDescription& session);
   void write(const transport::Received& message, std::uint32_t epoch, StepIndex step, std::uint32_t sequence);
   void count(const transport::Received& message);
+  void write_hashes(const recording::StateHashes& hashes);
   void start_epoch(const wire::Header& init);
   void begin_streams(StepIndex from);
   [[nodiscard]] StepStream make_stream(StepIndex begin) const;
@@ -206,11 +214,12 @@ class RecorderNode final : public node::Node {
   std::uint64_t variables_digest_ = 0;
   wire::Tick tick_;
   wire::NodeStatus status_;
-  wire::MechanismMessage mechanism_;
-  wire::ActuatorMessage actuators_;
-  wire::SensorMessage sensors_;
   bool has_warned_of_waiting_ = false;
+  Selection selection_;
+  bool has_step_ = false;  // a tick has come
   std::array<recording::ChannelId, wire::kTopics> channels_{};
+  recording::ChannelId hashes_channel_{};
+  recording::Bytes hashes_bytes_;
   std::array<TopicCounts, wire::kTopics> counts_{};
   EpochStreams streams_;
   // incomplete ones of the states with which an epoch begins or continues after a gap

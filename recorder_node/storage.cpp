@@ -8,6 +8,7 @@
 #include "core/state_hash.h"
 #include "recorder_node/recorder_node.h"
 #include "recording/run_directory.h"
+#include "transport/cdr/sample_state.h"
 #include "transport/idl_text.h"
 #include "transport/topics.h"
 
@@ -51,6 +52,10 @@ recording::ByteSpan bytes_of(const std::string& text) {
 }  // namespace
 
 Status RecorderNode::create(const wire::SessionDescription& session) {
+  RecordedPart part;
+  if (config_.part) {
+    if (const Status known = config_.part(session, part); !known.is_ok()) return known;
+  }
   std::filesystem::path directory;
   Status status =
       recording::create_run_directory(config_.runs_directory, session.scene_name, session.started_ns, directory);
@@ -71,7 +76,15 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
   identity.started_ns = session.started_ns;
   identity.more["pace"] = session.pace == Pace::free ? "free" : "real";
   identity.more["protocol"] = std::to_string(session.protocol);
-  status = recording::Writer::create(path, identity, config_.limits, writer_, *config_.file_calls);
+  selection_ = Selection(part);
+  identity.steps = selection_.part().steps;
+  recording::WriterLimits limits = config_.limits;
+  limits.coding = selection_.part().coding;
+  if (limits.coding == recording::ChunkCoding::columns) {
+    limits.flush_period = kColumnsFlushPeriod;
+    limits.compression_level = kColumnsLevel;
+  }
+  status = recording::Writer::create(path, identity, limits, writer_, *config_.file_calls);
   if (!status.is_ok()) {
     std::error_code ignored;
     std::filesystem::remove(path, ignored);
@@ -87,6 +100,10 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
                                         std::string(transport::idl_text()),
                                         {}};
     status = writer_->add_channel(channel, channels_[i]);
+  }
+  if (status.is_ok() && identity.steps == recording::RecordedSteps::ticks) {
+    status = writer_->add_channel(
+        {recording::kStateHashesTopic, recording::kStateHashesType, recording::kStateHashesIdl, {}}, hashes_channel_);
   }
   // if the front cannot be written, the session does not begin
   return status.is_ok() ? writer_->settle() : status;
@@ -109,11 +126,16 @@ void RecorderNode::write(const transport::Received& message, std::uint32_t epoch
     ++counts_[topic].lost;
     return;
   }
+  has_step_ = has_step_ || message.topic == Topic::tick;
+  const Selection::Stored stored = selection_.take(message);
+  if (stored.hashes) write_hashes(*stored.hashes);
+  if (stored.bytes.empty() || !stopped_.is_ok()) return count(message);
   if (is_left_out(message.topic, step, epoch)) {
     ++counts_[topic].lost;
     return;
   }
-  const Status status = writer_->write(channels_[topic], {epoch, step, sequence, message.source_ns}, message.bytes);
+  const Status status = writer_->write(
+      channels_[topic], {epoch, step, sequence, selection_.publish_time(message.source_ns)}, stored.bytes);
   if (status.is_ok()) {
     ++counts_[topic].recorded;
     count(message);
@@ -126,6 +148,14 @@ void RecorderNode::write(const transport::Received& message, std::uint32_t epoch
   }
 }
 
+// The digests of samples that are not stored. A failure is found by the next message that is.
+void RecorderNode::write_hashes(const recording::StateHashes& hashes) {
+  recording::encode_state_hashes(hashes, hashes_bytes_);
+  const recording::MessageStamp stamp{hashes.epoch, hashes.last_step, hashes.role, 0};
+  const Status status = writer_->write(hashes_channel_, stamp, hashes_bytes_);
+  if (!status.is_ok()) stop_recording(status);
+}
+
 void RecorderNode::count(const transport::Received& message) {
   switch (message.topic) {
     case Topic::tick:
@@ -136,14 +166,13 @@ void RecorderNode::count(const transport::Received& message) {
       if (transport::decode(message.bytes, status_)) ticks_->take_status(status_, message.source_ns);
       return;
     case Topic::mechanism:
-      if (transport::decode(message.bytes, mechanism_)) flags_.take(mechanism_.header, mechanism_.state);
-      return;
     case Topic::actuators:
-      if (transport::decode(message.bytes, actuators_)) flags_.take(actuators_.header, actuators_.state);
+    case Topic::sensors: {
+      wire::Header header;
+      wire::SampleState state;
+      if (transport::decode_sample_state(message.bytes, header, state)) flags_.take(header, state);
       return;
-    case Topic::sensors:
-      if (transport::decode(message.bytes, sensors_)) flags_.take(sensors_.header, sensors_.state);
-      return;
+    }
     case Topic::variables:
       variables_digest_ += digest_of(message.bytes);
       return;
@@ -259,6 +288,13 @@ void RecorderNode::close_file(SessionEnd session) {
   const node::DiskWait disk(health());
   end_gap();
   end_lost_steps();
+  if (stopped_.is_ok()) {
+    for (const recording::StateHashes& hashes : selection_.take_rest()) {
+      recording::encode_state_hashes(hashes, hashes_bytes_);
+      // the flush that follows returns the error
+      std::ignore = writer_->write(hashes_channel_, {hashes.epoch, hashes.last_step, hashes.role, 0}, hashes_bytes_);
+    }
+  }
   // an error of this flush is in the summary too
   const Status flushed = writer_->flush();
   if (stopped_.is_ok()) stopped_ = flushed;

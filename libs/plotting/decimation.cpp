@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace slew::plotting {
 namespace {
@@ -45,6 +46,59 @@ class Column {
 };
 
 }  // namespace
+
+namespace {
+
+// Two samples for those of [from, to), which has at least two.
+void add_bin(const Series& curve, std::size_t from, std::size_t to, Series& thinned) {
+  std::size_t least = to, largest = to;
+  bool has_gap = false;
+  for (std::size_t i = from; i < to; ++i) {
+    if (!is_shown(curve.values[i])) {
+      has_gap = true;
+      continue;
+    }
+    if (least == to || curve.values[i] < curve.values[least]) least = i;
+    if (largest == to || curve.values[i] > curve.values[largest]) largest = i;
+  }
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const bool has_value = least != to;
+  const std::size_t first = std::min(least, largest), second = std::max(least, largest);
+  thinned.time.push_back(curve.time[from]);
+  thinned.values.push_back(has_value ? curve.values[first] : none);
+  thinned.time.push_back(curve.time[from + (to - from) / 2]);
+  thinned.values.push_back(has_value && !has_gap ? curve.values[second] : none);
+}
+
+Series thinned_by(const Series& curve, std::size_t bin) {
+  Series thinned{curve.name, curve.unit, {}, {}, 0};
+  const std::size_t size = size_of(curve);
+  for (std::size_t from = 0; from < size;) {
+    std::size_t to = from + 1;
+    while (to < size && to - from < bin && curve.time[to] >= curve.time[to - 1]) ++to;
+    if (to - from == 1) {
+      thinned.time.push_back(curve.time[from]);
+      thinned.values.push_back(curve.values[from]);
+    } else {
+      add_bin(curve, from, to, thinned);
+    }
+    from = to;
+  }
+  return thinned;
+}
+
+}  // namespace
+
+std::size_t thin_out(std::span<Series> curves, std::size_t most_values) {
+  std::size_t longest = 0;
+  for (const Series& curve : curves) longest = std::max(longest, size_of(curve));
+  const std::size_t bins = std::max<std::size_t>(1, most_values / 2);
+  if (longest <= 2 * bins) return 1;
+  // one bin for all, so that common times stay common
+  const std::size_t bin = (longest + bins - 1) / bins;
+  for (Series& curve : curves) curve = thinned_by(curve, bin);
+  return bin;
+}
 
 std::vector<Polyline> decimate(const Series& series, double t_low, double t_high, std::size_t columns) {
   std::vector<Polyline> parts(1);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -22,5 +23,11 @@ using Polyline = std::vector<std::pair<double, double>>;  // time, value
 
 // Parts of the curve between t_low and t_high, each of at most 4 points per column.
 [[nodiscard]] std::vector<Polyline> decimate(const Series& series, double t_low, double t_high, std::size_t columns);
+
+// Replaces the samples of long curves by the least and the largest value of each of at most most_values / 2 bins of as
+// many samples, in their order, at the times of the bin's first and middle sample: curves with common times keep common
+// times. A bin with a gap, or across a step back in time, keeps the gap. Returns the samples of a bin of the longest
+// curve; 1: no curve has more than most_values samples, nothing was changed.
+[[nodiscard]] std::size_t thin_out(std::span<Series> curves, std::size_t most_values);
 
 }  // namespace slew::plotting

@@ -133,19 +133,28 @@ class Data {
     return times_.size() - 1;
   }
 
-  // one panel per unit, in the order in which the units first appear
+  // the same panels as in a picture
   std::string panels(const Plot& plot) {
-    std::vector<std::string> units, curves;
+    std::vector<std::string> units;  // in the order in which they first appear
     for (const Series& series : plot.series) {
-      const auto found = std::find(units.begin(), units.end(), series.unit);
-      const auto panel = static_cast<std::size_t>(found - units.begin());
-      if (found == units.end()) units.push_back(series.unit), curves.emplace_back();
-      curves[panel] += fmt::format("{}{{\"name\":{},\"t\":{},\"v\":{}}}", curves[panel].empty() ? "" : ",",
-                                   json_string(series.name), axis(series.time), numbers(series.values, 7));
+      if (std::find(units.begin(), units.end(), series.unit) == units.end()) units.push_back(series.unit);
     }
     std::string text;
-    for (std::size_t i = 0; i < units.size(); ++i) {
-      text += fmt::format("{}{{\"unit\":{},\"curves\":[{}]}}", i == 0 ? "" : ",", json_string(units[i]), curves[i]);
+    for (const std::string& unit : units) {
+      std::size_t count = 0;
+      std::string curves;
+      const auto end_panel = [&] {
+        text += fmt::format("{}{{\"unit\":{},\"curves\":[{}]}}", text.empty() ? "" : ",", json_string(unit), curves);
+        curves.clear();
+        count = 0;
+      };
+      for (const Series& series : plot.series) {
+        if (series.unit != unit) continue;
+        if (count == kMaxCurvesOfPanel) end_panel();
+        curves += fmt::format("{}{{\"name\":{},\"t\":{},\"v\":{}}}", count++ == 0 ? "" : ",", json_string(series.name),
+                              axis(series.time), numbers(series.values, 7));
+      }
+      end_panel();
     }
     return text;
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string_view>
 #include <vector>
@@ -98,14 +99,18 @@ class Picture {
     fmt::format_to(std::back_inserter(out_), format, std::forward<Values>(values)...);
   }
 
-  // one panel per unit of the plot
+  // panels of one unit of the plot
   void add_panels(const Plot& plot) {
     const auto first = static_cast<std::ptrdiff_t>(panels_.size());
     for (const Series& s : plot.series) {
-      const auto has_unit = [&s](const Panel& p) { return p.unit == s.unit; };
-      auto panel = std::find_if(panels_.begin() + first, panels_.end(), has_unit);
-      if (panel == panels_.end()) panel = panels_.insert(panels_.end(), Panel{.unit = s.unit});
-      panel->series.push_back(&s);
+      // the last panel of the unit, and behind it the next one
+      auto next = panels_.end();
+      while (next != panels_.begin() + first && std::prev(next)->unit != s.unit) --next;
+      const bool is_new = next == panels_.begin() + first;
+      if (is_new) next = panels_.end();
+      const bool has_room = !is_new && std::prev(next)->series.size() < kMaxCurvesOfPanel;
+      if (!has_room) next = std::next(panels_.insert(next, Panel{.unit = s.unit}));
+      std::prev(next)->series.push_back(&s);
     }
     if (!plot.series.empty()) panels_[static_cast<std::size_t>(first)].heading = plot.title;
   }

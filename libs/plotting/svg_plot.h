@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Curves over time as a picture: self-contained SVG, plots below each other, one time axis for all.
 //
-// A plot has a heading and one panel per unit, in the order in which its units first appear; plots share no panel, so
-// that each has its own range. Units are shown as they are given, scaling is the caller's. Each panel has its own
-// legend; curves beyond the eighth of a panel repeat the colours with a dashed line.
-// Not covered: second axes, logarithmic axes.
+// A plot has a heading and one panel per unit, in the order in which its units first appear, with at most
+// kMaxCurvesOfPanel curves; further ones of the unit are in further panels below. Plots share no panel, so that each
+// has its own range. Units are shown as they are given, scaling is the caller's. Each panel has its own legend; curves
+// beyond the eighth of a panel repeat the colours with a dashed line. Not covered: second axes, logarithmic axes.
 #pragma once
 
 #include <span>
@@ -21,6 +21,8 @@ struct PlotOptions {
   double width = 1000;        // px, of the whole picture, 300 or more
   double panel_height = 170;  // px, of each plot area, 60 or more
 };
+
+inline constexpr std::size_t kMaxCurvesOfPanel = 12;
 
 struct Plot {
   std::string title;  // above its first panel; may be empty

@@ -18,7 +18,8 @@ void ChunkBuilder::FreeContext::operator()(ZSTD_CCtx_s* context) const noexcept 
   ZSTD_freeCCtx(context);
 }
 
-ChunkBuilder::ChunkBuilder(std::size_t expected_bytes, int level) : context_(ZSTD_createCCtx()) {
+ChunkBuilder::ChunkBuilder(std::size_t expected_bytes, int level, ChunkCoding coding) : context_(ZSTD_createCCtx()) {
+  if (coding == ChunkCoding::columns) columns_.emplace(level);
   if (context_) {
     ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, level);
   }
@@ -37,35 +38,47 @@ void ChunkBuilder::add(const MessageRecord& message) {
   encode_message(records_, message);
 }
 
-Status ChunkBuilder::finish(Bytes& out, std::uint64_t file_size, ChunkIndexRecord& index) {
+// Appends the compressed records and returns the name of their compression. A chunk that has no columns is compressed
+// as it is.
+std::string_view ChunkBuilder::compress(Bytes& out, Status& status) {
+  if (columns_ && columns_->encode(records_, out)) return kColumns;
   const std::size_t begin = out.size();
-  encode(out, ChunkRecord{start_time_, end_time_, records_.size(), crc32_of(records_), kZstd, {}});
-
-  // compress in place behind the length of the records
-  const std::size_t records_at = out.size();
-  out.resize(records_at + ZSTD_compressBound(records_.size()));
-  const std::size_t size = context_ ? ZSTD_compress2(context_.get(), out.data() + records_at, out.size() - records_at,
+  out.resize(begin + ZSTD_compressBound(records_.size()));
+  const std::size_t size = context_ ? ZSTD_compress2(context_.get(), out.data() + begin, out.size() - begin,
                                                      records_.data(), records_.size())
                                     : static_cast<std::size_t>(-1);
   if (ZSTD_isError(size) != 0) {
-    out.resize(begin);
-    return Status::error(ExitCode::resources, fmt::format("cannot compress {} bytes of messages ({}); they were not "
-                                                          "written; end other programs to free memory",
-                                                          records_.size(), ZSTD_getErrorName(size)));
+    status = Status::error(ExitCode::resources, fmt::format("cannot compress {} bytes of messages ({}); they were not "
+                                                            "written; end other programs to free memory",
+                                                            records_.size(), ZSTD_getErrorName(size)));
+    return kZstd;
   }
-  out.resize(records_at + size);
-  put_at(out, records_at - sizeof(std::uint64_t), static_cast<std::uint64_t>(size));
-  end_record(out, begin);
+  out.resize(begin + size);
+  return kZstd;
+}
+
+Status ChunkBuilder::finish(Bytes& out, std::uint64_t file_size, ChunkIndexRecord& index) {
+  Status status;
+  compressed_.clear();
+  const std::string_view compression = compress(compressed_, status);
+  if (!status.is_ok()) return status;
+  const std::size_t begin = out.size();
+  encode(out, ChunkRecord{start_time_, end_time_, records_.size(), crc32_of(records_), compression, compressed_});
 
   index.start_time = start_time_;
   index.end_time = end_time_;
   index.offset = file_size + begin;
   index.length = out.size() - begin;
-  index.compression = kZstd;
-  index.compressed_size = size;
+  index.compression = compression;
+  index.compressed_size = compressed_.size();
   index.uncompressed_size = records_.size();
+  if (compression != kColumns) put_indexes(out, file_size, index);
+  start_empty();
+  return status;
+}
 
-  // message indexes, by ascending channel
+// message indexes, by ascending channel
+void ChunkBuilder::put_indexes(Bytes& out, std::uint64_t file_size, ChunkIndexRecord& index) {
   const std::size_t indexes_at = out.size();
   std::sort(channels_.begin(), channels_.end());
   for (const std::uint16_t channel : channels_) {
@@ -73,8 +86,6 @@ Status ChunkBuilder::finish(Bytes& out, std::uint64_t file_size, ChunkIndexRecor
     encode_message_index(out, channel, entries_[channel]);
   }
   index.message_index_length = out.size() - indexes_at;
-  start_empty();
-  return Status::ok();
 }
 
 void ChunkBuilder::start_empty() noexcept {

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gathers messages into one MCAP chunk: compressed by zstd, checksummed, followed by an index per channel.
+// Gathers messages into one MCAP chunk: compressed, checksummed, followed by an index per channel. A chunk in columns
+// has no such index: it would be larger than the chunk.
 //
 // Buffers keep their size from chunk to chunk: after the first full chunk nothing allocates.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "core/status.h"
+#include "recording/column_coding.h"
 #include "recording/records.h"
 
 struct ZSTD_CCtx_s;
@@ -17,11 +20,21 @@ namespace slew::recording {
 
 inline constexpr std::string_view kZstd = "zstd";
 
+[[nodiscard]] constexpr bool is_written_compression(std::string_view name) noexcept {
+  return name == kZstd || name == kColumns;
+}
+
+// How the messages of a chunk are compressed.
+enum class ChunkCoding : std::uint8_t {
+  zstd,    // as they are: every MCAP program reads them
+  columns  // column_coding.h: a third of that or less, for programs with a decoder
+};
+
 class ChunkBuilder {
  public:
   // expected_bytes: size at which the owner closes a chunk; the buffers are sized for it.
   // level: compression level of zstd, 1 (fast) to 19.
-  ChunkBuilder(std::size_t expected_bytes, int level);
+  ChunkBuilder(std::size_t expected_bytes, int level, ChunkCoding coding = ChunkCoding::zstd);
   ~ChunkBuilder();
 
   void add(const MessageRecord& message);
@@ -39,9 +52,13 @@ class ChunkBuilder {
   };
 
   void start_empty() noexcept;
+  [[nodiscard]] std::string_view compress(Bytes& out, Status& status);
+  void put_indexes(Bytes& out, std::uint64_t file_size, ChunkIndexRecord& index);
 
   std::unique_ptr<ZSTD_CCtx_s, FreeContext> context_;
+  std::optional<ColumnEncoder> columns_;  // none: coding zstd
   Bytes records_;
+  Bytes compressed_;
   std::vector<std::vector<MessageIndexEntry>> entries_;  // by channel
   std::vector<std::uint16_t> channels_;                  // channels with messages in this chunk
   std::uint64_t start_time_ = 0;

@@ -39,8 +39,10 @@ bool ChunkReader::unpack(const ChunkRecord& chunk, Bytes& records, std::string& 
       return false;
     }
     records.resize(size);
+  } else if (chunk.compression == kColumns) {
+    if (!columns_.decode(chunk.records, chunk.uncompressed_size, records, problem)) return false;
   } else {
-    problem = "the chunk has a compression that is not supported; expected zstd";
+    problem = "the chunk has a compression that is not supported; expected zstd or slewring-columns";
     return false;
   }
   if (records.size() != chunk.uncompressed_size) {

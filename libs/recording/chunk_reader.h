@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "recording/column_coding.h"
 #include "recording/records.h"
 
 struct ZSTD_DCtx_s;
@@ -31,6 +32,7 @@ class ChunkReader {
     void operator()(ZSTD_DCtx_s* context) const noexcept;
   };
   std::unique_ptr<ZSTD_DCtx_s, FreeContext> context_;
+  ColumnDecoder columns_;
 };
 
 // Goes through the uncompressed records of a chunk.

@@ -198,8 +198,22 @@ MessageCursor::MessageCursor(const Reader& reader, const MessageFilter& filter)
   }
 }
 
-bool MessageCursor::is_wanted(const ChunkIndexRecord& chunk) const {
+// Chunks in columns have no message index; their channels are the first bytes of their content.
+bool MessageCursor::has_wanted_column(const ChunkIndexRecord& chunk) {
+  constexpr std::size_t kHeadBytes = kRecordHeadBytes + 3 * sizeof(std::uint64_t) + sizeof(std::uint32_t) +
+                                     sizeof(std::uint32_t) + kColumns.size() + sizeof(std::uint64_t);
+  const std::uint64_t size = std::min<std::uint64_t>(chunk.length, kHeadBytes + kColumnsFrontBytes);
+  // whatever is wrong here is found and named when the chunk is read
+  if (size <= kHeadBytes || !reader_.file_.read(chunk.offset, size, record_).is_ok()) return true;
+  if (!channels_of_columns(ByteSpan(record_).subspan(kHeadBytes), chunk_channels_)) return true;
+  return std::any_of(chunk_channels_.begin(), chunk_channels_.end(), [this](std::uint16_t channel) {
+    return channel >= is_channel_wanted_.size() || is_channel_wanted_[channel];
+  });
+}
+
+bool MessageCursor::is_wanted(const ChunkIndexRecord& chunk) {
   if (chunk.end_time < from_ns_ || chunk.start_time > to_ns_) return false;
+  if (chunk.compression == kColumns) return has_wanted_column(chunk);
   if (chunk.message_index_offsets.empty()) return true;  // unknown
   return std::any_of(chunk.message_index_offsets.begin(), chunk.message_index_offsets.end(), [this](const auto& entry) {
     // an undeclared channel is not skipped here: reading the chunk names it

@@ -70,6 +70,8 @@ class Reader {
   [[nodiscard]] const std::vector<MetadataRecord>& metadata() const noexcept { return metadata_; }
   [[nodiscard]] const TextMap* find_metadata(std::string_view name) const noexcept;
 
+  // Chunks of the readable part, in the order of the file.
+  [[nodiscard]] const std::vector<ChunkIndexRecord>& chunks() const noexcept { return index_.chunks; }
   // Messages, chunks and times of the readable part.
   [[nodiscard]] const StatisticsRecord& statistics() const noexcept { return index_.statistics; }
 
@@ -118,7 +120,8 @@ class MessageCursor {
   [[nodiscard]] const Status& status() const noexcept { return status_; }
 
  private:
-  [[nodiscard]] bool is_wanted(const ChunkIndexRecord& chunk) const;
+  [[nodiscard]] bool is_wanted(const ChunkIndexRecord& chunk);
+  [[nodiscard]] bool has_wanted_column(const ChunkIndexRecord& chunk);
   [[nodiscard]] bool open_next_chunk();
   [[nodiscard]] bool damaged(std::uint64_t offset, const std::string& problem);
 
@@ -127,6 +130,7 @@ class MessageCursor {
   std::uint64_t to_ns_;
   std::vector<bool> is_channel_wanted_;  // by id
   ChunkReader chunk_reader_;
+  std::vector<std::uint16_t> chunk_channels_;  // of the chunk looked at
   Bytes record_;
   Bytes unpacked_;
   std::size_t next_chunk_ = 0;

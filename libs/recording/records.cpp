@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/records.h"
 
-#include <zlib.h>
+#include <libdeflate.h>
 
 #include <algorithm>
 #include <tuple>
@@ -156,14 +156,8 @@ void fields(A& a, typename A::template Of<FooterRecord>& r) {
 }  // namespace
 
 std::uint32_t crc32_of(ByteSpan bytes, std::uint32_t former) noexcept {
-  uLong crc = former;
-  // zlib takes 32-bit lengths
-  while (!bytes.empty()) {
-    const std::size_t size = std::min<std::size_t>(bytes.size(), std::size_t{1} << 30);
-    crc = crc32(crc, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(size));
-    bytes = bytes.subspan(size);
-  }
-  return static_cast<std::uint32_t>(crc);
+  // a null pointer would start a new checksum
+  return bytes.empty() ? former : libdeflate_crc32(former, bytes.data(), bytes.size());
 }
 
 bool is_length_borne_out(Opcode opcode, ByteSpan front, std::uint64_t length) noexcept {

@@ -141,7 +141,7 @@ class Copy {
     index.compression = chunk.compression;
     index.compressed_size = chunk.records.size();
     index.uncompressed_size = chunk.uncompressed_size;
-    add_message_indexes(index);
+    if (chunk.compression != kColumns) add_message_indexes(index);
     for (const auto& [id, count] : contents.message_counts) index_.statistics.channel_message_counts[id] += count;
     index_.chunks.push_back(std::move(index));
     return to_.append_marked(buffer_);

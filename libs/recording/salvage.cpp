@@ -186,7 +186,7 @@ class Salvager {
         return source.take<std::uint64_t>() == sizeof(std::uint32_t) && source.left() >= sizeof(std::uint32_t);
       case Opcode::chunk:
         std::ignore = source.take_bytes(4 * sizeof(std::uint64_t) + sizeof(std::uint32_t));
-        return source.take_string() == kZstd;
+        return is_written_compression(source.take_string());
       default:
         return false;
     }

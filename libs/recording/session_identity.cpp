@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 
 namespace slew::recording {
 namespace {
@@ -15,6 +17,9 @@ constexpr const char* kSessionIdKey = "session_id";
 constexpr const char* kBuildKey = "build";
 constexpr const char* kStepKey = "communication_step_ns";
 constexpr const char* kStartedKey = "started_ns";
+constexpr const char* kStepsKey = "steps";  // absent: all
+
+constexpr const char* kStepsNames[] = {"all", "ticks", "none"};
 
 bool parse(const TextMap& entries, const char* key, std::int64_t& value) {
   const auto found = entries.find(key);
@@ -28,13 +33,14 @@ bool parse(const TextMap& entries, const char* key, std::int64_t& value) {
 
 TextMap to_entries(const SessionIdentity& identity) {
   TextMap entries = identity.more;
-  entries[kVersionKey] = fmt::to_string(kFormatVersion);
+  entries[kVersionKey] = fmt::to_string(identity.format_version);
   entries[kSceneKey] = identity.scene;
   entries[kSessionNameKey] = identity.session_name;
   entries[kSessionIdKey] = identity.session_id;
   entries[kBuildKey] = identity.build;
   entries[kStepKey] = fmt::to_string(identity.communication_step.ns);
   entries[kStartedKey] = fmt::to_string(identity.started_ns);
+  if (identity.steps != RecordedSteps::all) entries[kStepsKey] = kStepsNames[static_cast<std::size_t>(identity.steps)];
   return entries;
 }
 
@@ -51,6 +57,7 @@ bool from_entries(const TextMap& entries, SessionIdentity& identity, std::string
         version, kFormatVersion);
     return false;
   }
+  identity.format_version = static_cast<int>(version);
   if (!parse(entries, kStepKey, identity.communication_step.ns) || identity.communication_step.ns < 1) {
     problem = "the recording names no communication step; nothing was read; look for an intact copy of the file";
     return false;
@@ -65,6 +72,10 @@ bool from_entries(const TextMap& entries, SessionIdentity& identity, std::string
   identity.session_name = move_out(kSessionNameKey);
   identity.session_id = move_out(kSessionIdKey);
   identity.build = move_out(kBuildKey);
+  const std::string steps = move_out(kStepsKey);
+  const auto* const named = std::find(std::begin(kStepsNames), std::end(kStepsNames), steps);
+  identity.steps =
+      named == std::end(kStepsNames) ? RecordedSteps::all : static_cast<RecordedSteps>(named - std::begin(kStepsNames));
   for (const char* key : {kVersionKey, kStepKey, kStartedKey}) identity.more.erase(key);
   return true;
 }

@@ -10,8 +10,11 @@
 
 namespace slew::recording {
 
-// Version of the layout described in docs/recording-format.md. A reader refuses a newer version and names it.
-inline constexpr int kFormatVersion = 1;
+// Newest version of the layout described in docs/recording-format.md. A reader refuses a newer version and names it. A
+// file names the oldest version that has all that is in it.
+inline constexpr int kFormatVersion = 2;
+inline constexpr int kFirstFormatVersion = 1;
+inline constexpr int kReducedFormatVersion = 2;  // chunks in columns, or steps left out
 
 inline constexpr const char* kProfile = "slewring";
 inline constexpr const char* kIdentityName = "slewring.recording";  // first Metadata record
@@ -22,6 +25,13 @@ inline constexpr const char* kFlagsKey = "counts.flags";
 inline constexpr const char* kVariablesKey = "digest.variables";
 inline constexpr const char* kGapName = "slewring.gap";  // Metadata record of messages that were left out
 
+// What a recording has of the steps of a session.
+enum class RecordedSteps : std::uint8_t {
+  all,    // ticks and samples
+  ticks,  // ticks and digests of the state hashes: the session can be computed again, and verified
+  none    // neither: variables and events alone
+};
+
 struct SessionIdentity {
   std::string scene;  // name of the scene
   std::string session_name;
@@ -29,7 +39,9 @@ struct SessionIdentity {
   std::string build;               // build of the recording program
   SimDuration communication_step;  // H, ns, at least 1
   std::int64_t started_ns = 0;     // wall clock since 1970
-  TextMap more;                    // further entries, with other keys
+  RecordedSteps steps = RecordedSteps::all;
+  int format_version = kFirstFormatVersion;
+  TextMap more;  // further entries, with other keys
 };
 
 // Conversion to and from the entries of the Metadata record. from_entries returns false and names the problem if the

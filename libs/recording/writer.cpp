@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "recording/reader.h"
+
 namespace slew::recording {
 namespace {
 
@@ -23,7 +25,7 @@ Writer::Writer(const SessionIdentity& identity, const WriterLimits& limits, File
       communication_step_(identity.communication_step),
       file_(calls, limits.backlog_bytes),
       window_(limits.window_steps, limits.window_bytes, limits.window_messages),
-      chunk_(limits.chunk_bytes, limits.compression_level) {}
+      chunk_(limits.chunk_bytes, limits.compression_level, limits.coding) {}
 
 Writer::~Writer() {
   if (file_.is_open()) std::ignore = close({});
@@ -50,7 +52,11 @@ Status Writer::write_front(const SessionIdentity& identity) {
   put_magic(buffer_);
   encode(buffer_, HeaderRecord{kProfile, fmt::format("slewring {}", identity.build)});
   const Status status = append_marked();
-  return status.is_ok() ? add_metadata(kIdentityName, to_entries(identity)) : status;
+  if (!status.is_ok()) return status;
+  SessionIdentity written = identity;
+  const bool is_reduced = limits_.coding == ChunkCoding::columns || identity.steps != RecordedSteps::all;
+  written.format_version = is_reduced ? kReducedFormatVersion : kFirstFormatVersion;
+  return add_metadata(kIdentityName, to_entries(written));
 }
 
 Status Writer::remember(Status status) {
@@ -186,13 +192,31 @@ std::uint64_t Writer::log_time_of(const MessageStamp& stamp) {
 
 Status Writer::emit(const MessageStamp& stamp, std::uint16_t channel, ByteSpan payload) {
   const std::uint64_t log_time = log_time_of(stamp);
-  if (log_time < last_log_time_) ++counts_.late_messages;
-  last_log_time_ = std::max(last_log_time_, log_time);
   const std::uint64_t publish_time =
       stamp.publish_time_ns > 0 ? static_cast<std::uint64_t>(stamp.publish_time_ns) : log_time;
-  chunk_.add({channel, stamp.sequence, log_time, publish_time, payload});
-  counts_.payload_bytes += payload.size();
-  ++pending_counts_[channel];
+  return put_message({channel, stamp.sequence, log_time, publish_time, payload});
+}
+
+Status Writer::append(ChannelId channel, const RecordedMessage& message) {
+  if (!failure_.is_ok()) {
+    ++counts_.lost_messages;
+    return failure_;
+  }
+  const std::uint16_t id = static_cast<std::uint16_t>(channel);
+  if (id >= index_.channels.size() || message.payload.size() > kMaxMessageBytes) {
+    return Status::error(ExitCode::failed, fmt::format("{}: a message of channel {} with {} bytes cannot be copied; "
+                                                       "please report it",
+                                                       path().string(), id, message.payload.size()));
+  }
+  return put_message({id, message.sequence, message.log_time_ns, message.publish_time_ns, message.payload});
+}
+
+Status Writer::put_message(const MessageRecord& message) {
+  if (message.log_time < last_log_time_) ++counts_.late_messages;
+  last_log_time_ = std::max(last_log_time_, message.log_time);
+  chunk_.add(message);
+  counts_.payload_bytes += message.payload.size();
+  ++pending_counts_[message.channel_id];
   return chunk_.uncompressed_size() >= limits_.chunk_bytes ? write_chunk() : Status::ok();
 }
 

@@ -35,6 +35,8 @@
 
 namespace slew::recording {
 
+struct RecordedMessage;
+
 enum class ChannelId : std::uint16_t {};
 
 inline constexpr std::size_t kMaxMessageBytes = 16u << 20;  // payload of one message
@@ -42,8 +44,9 @@ inline constexpr std::size_t kMaxAttachmentBytes = 1u << 30;
 inline constexpr std::size_t kMaxChannels = 65'535;
 
 struct WriterLimits {
-  std::size_t chunk_bytes = 1u << 20;            // uncompressed size at which a chunk is closed
-  int compression_level = 1;                     // zstd, 1 to 19
+  std::size_t chunk_bytes = 1u << 20;  // uncompressed size at which a chunk is closed
+  int compression_level = 1;           // zstd, 1 to 19
+  ChunkCoding coding = ChunkCoding::zstd;
   StepIndex window_steps = 256;                  // span of steps that is sorted, 1 or more
   std::size_t window_bytes = 8u << 20;           // its memory for payloads
   std::size_t window_messages = 32'768;          // capacity of the sort window in messages
@@ -91,6 +94,9 @@ class Writer {
   // out of range or a payload above kMaxMessageBytes.
   [[nodiscard]] Status write(ChannelId channel, const MessageStamp& stamp, ByteSpan payload);
 
+  // Writes a message of another recording with its times, behind all others: it is not sorted. Errors as in write().
+  [[nodiscard]] Status append(ChannelId channel, const RecordedMessage& message);
+
   // Writes messages that are old enough. Call it about ten times a second, also without new messages.
   [[nodiscard]] Status flush_if_due(std::int64_t monotonic_ns);
   // Writes all messages, also those that an earlier step might still precede; waits until they are in the file.
@@ -121,6 +127,7 @@ class Writer {
   [[nodiscard]] Status schema_of(const ChannelDef& channel, std::uint16_t& id);
   [[nodiscard]] Status emit_first();
   [[nodiscard]] Status emit(const MessageStamp& stamp, std::uint16_t channel, ByteSpan payload);
+  [[nodiscard]] Status put_message(const MessageRecord& message);
   [[nodiscard]] Status write_chunk();
   [[nodiscard]] Status write_end(const TextMap& summary);
   [[nodiscard]] Status remember(Status status);

@@ -39,6 +39,10 @@ constexpr Range kOverrunLagRange{.min = 0.001, .max = 60, .min_is_open = false, 
 constexpr Range kGraceRange{.min = 0, .max = 60, .min_is_open = false, .max_is_open = false};
 constexpr Range kEveryRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_open = false};
 
+constexpr Range kBitsRange{.min = 8, .max = kAllBits, .min_is_open = false, .max_is_open = false};
+
+constexpr std::string_view kStepsKept[] = {"all", "ticks", "none"};
+constexpr std::string_view kCodings[] = {"zstd", "columns"};
 constexpr std::string_view kPaces[] = {"real", "free"};
 constexpr std::string_view kModes[] = {"lockstep", "free_running"};
 constexpr std::string_view kLevels[] = {"hold", "linear", "two", "tlm"};
@@ -248,6 +252,19 @@ constexpr Field kRecordingFields[] = {
     field<&RecordingDef::every>("every", {.range = kEveryRange, .doc = "steps between two published values"}),
     field<&RecordingDef::variables>("variables",
                                     {.doc = "names of variables, or patterns with * and ?; default all of them"}),
+    field<&RecordingDef::steps>(
+        "steps", {.choices = kStepsKept,
+                  .doc = "messages of the steps that the recorder stores. all: ticks and samples; ticks: ticks and "
+                         "digests of the state hashes, from which replay computes the rest and verifies it; none: "
+                         "variables and events alone, without replay"}),
+    field<&RecordingDef::coding>(
+        "coding", {.choices = kCodings,
+                   .doc = "zstd: every MCAP program reads the recording; columns: a third of the size or less, for "
+                          "Slewring and programs with a decoder for it (recording-format.md)"}),
+    field<&RecordingDef::significant_bits>(
+        "significant_bits", {.range = kBitsRange,
+                             .doc = "bits of a recorded value of a variable, rounded; 53 are all, 24 those of a "
+                                    "single-precision number. Ticks, samples and hashes keep all"}),
 };
 
 constexpr Field kPlotFields[] = {

@@ -157,10 +157,21 @@ struct ScriptDef {
   [[nodiscard]] bool is_empty() const noexcept { return tracks.empty() && changes.empty() && !file; }
 };
 
-// Selection of the variables that nodes publish and the recorder stores.
+// What a recording has of the steps: ticks and samples, ticks and digests of the state hashes, or neither.
+enum class StepsKept : int { all, ticks, none };
+
+// Compression of a recording: messages as they are, or in columns (docs/recording-format.md).
+enum class RecordingCoding : int { zstd, columns };
+
+inline constexpr std::int64_t kAllBits = 53;  // of a double
+
+// Selection of the variables that nodes publish and of what the recorder stores.
 struct RecordingDef {
   std::int64_t every = 1;                   // steps between two values of a variable
   std::vector<std::string> variables{"*"};  // names, or patterns with * and ?
+  StepsKept steps = StepsKept::all;
+  RecordingCoding coding = RecordingCoding::zstd;
+  std::int64_t significant_bits = kAllBits;  // of a recorded value of a variable, the others are zero
 };
 
 // A panel of `slewring plot` and of the summary picture.

@@ -104,6 +104,12 @@ void add_scene_options(options::Command& app, SceneOptions& options) {
       .show_default()
       .group("Scene");
   app.flag("--record,!--no-record", options.is_recording, "write a recording (default)").group("Scene");
+  app.option("--record-steps", options.recorded_steps,
+             "all: ticks and samples; ticks: what replay needs; none: variables and events alone; without it the "
+             "scene's recording.steps")
+      .one_of({"all", "ticks", "none"})
+      .value_name("WHICH")
+      .group("Scene");
 }
 
 namespace {
@@ -113,6 +119,7 @@ scene::Overrides of_session(const SceneOptions& options) {
   if (!options.step.empty()) overrides.push_back("session.step=" + options.step);
   if (!options.duration.empty()) overrides.push_back("session.duration=" + options.duration);
   if (!options.pace.empty()) overrides.push_back("session.pace=" + options.pace);
+  if (!options.recorded_steps.empty()) overrides.push_back("recording.steps=" + options.recorded_steps);
   return overrides;
 }
 
@@ -192,6 +199,7 @@ std::vector<std::string> scene_arguments(const SceneOptions& options) {
   add("--duration", options.duration);
   add("--pace", options.pace);
   add("--input", options.input);
+  add("--record-steps", options.recorded_steps);
   if (!options.is_recording) arguments.emplace_back("--no-record");
   return arguments;
 }

@@ -21,6 +21,7 @@ struct SceneOptions {
   std::string pace;
   std::string input = "script";  // script, none, keyboard, or a .csv, .yaml or .lcm file
   bool is_recording = true;
+  std::string recorded_steps;  // all, ticks, none; empty: the scene's
 
   [[nodiscard]] bool has_script() const noexcept { return input != "none" && input != "keyboard"; }
 };
@@ -33,7 +34,8 @@ struct SceneOptions {
 options::Option add_scene_file(options::Command& app, const std::string& name, std::string& file,
                                const std::string& description = "scene file");
 
-// SCENE or --from FILE and --assets, --set, --step, --duration, --pace, --input, --record, --no-record.
+// SCENE or --from FILE and --assets, --set, --step, --duration, --pace, --input, --record, --no-record,
+// --record-steps.
 void add_scene_options(options::Command& app, SceneOptions& options);
 
 // The scene with every option applied: step, pace, duration and the input file become part of its text. Throws

@@ -80,6 +80,7 @@ class InProcessRun {
     config.join.session_timeout = node::kNoTimeout;
     config.runs_directory = options_.runs;
     config.keep_free = static_cast<std::uint64_t>(options_.keep_free_mb * 1e6);
+    config.part = recorder_node::part_of_scene;
     recorder_ = std::make_unique<recorder_node::RecorderNode>(endpoint(Role::recorder), std::move(config));
     nodes_.push_back(recorder_.get());
   }

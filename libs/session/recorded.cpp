@@ -299,6 +299,24 @@ TickSpan tick_span(const Reader& reader) {
   return counter.span();
 }
 
+std::string left_out_text(const Reader& reader) {
+  switch (reader.identity().steps) {
+    case recording::RecordedSteps::ticks:
+      return "no samples (recording.steps: ticks): replay computes them again, and compares digests of the state "
+             "hashes";
+    case recording::RecordedSteps::none:
+      return "no ticks and no samples (recording.steps: none): the session cannot be replayed";
+    default:
+      return "";
+  }
+}
+
+bool has_columns(const Reader& reader) {
+  const auto& chunks = reader.chunks();
+  return std::any_of(chunks.begin(), chunks.end(),
+                     [](const recording::ChunkIndexRecord& chunk) { return chunk.compression == recording::kColumns; });
+}
+
 std::string behind_end_text(const TickSpan& span) {
   if (span.behind_end == 0) return "";
   return fmt::format(

@@ -78,6 +78,10 @@ struct ClosingCounts {
   std::uint64_t variables = 0;  // digest of all blocks of variables
 };
 [[nodiscard]] std::optional<ClosingCounts> closing_counts(const recording::Reader& reader);
+// What the recorder left out of the steps by the scene's setting, and what follows; empty: nothing.
+[[nodiscard]] std::string left_out_text(const recording::Reader& reader);
+// Whether some of its chunks are in columns.
+[[nodiscard]] bool has_columns(const recording::Reader& reader);
 // Names ticks behind an END; empty: there are none.
 [[nodiscard]] std::string behind_end_text(const TickSpan& span);
 

@@ -128,8 +128,10 @@ std::optional<StepIndex> first_step(const Epoch& epoch, const Strides& strides) 
 RecordedExtent recorded_extent(const recording::Reader& reader) {
   const Strides strides = strides_of(reader);
   std::map<std::uint32_t, Epoch> epochs;
-  const auto filter = only({Topic::tick, Topic::mechanism, Topic::actuators, Topic::flexible, Topic::elastic,
-                            Topic::state, Topic::poses, Topic::sensors});
+  auto filter = only({Topic::tick, Topic::mechanism, Topic::actuators, Topic::flexible, Topic::elastic, Topic::state,
+                      Topic::poses, Topic::sensors});
+  // the few samples of such a recording are INIT, and events
+  if (reader.identity().steps != recording::RecordedSteps::all) filter = only({Topic::tick, Topic::state});
   wire::Header header;
   require(reader.for_each(filter, [&](const RecordedMessage& message) {
     if (transport::decode_header(message.payload, header)) take(message, strides, epochs[header.epoch], header);

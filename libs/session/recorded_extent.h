@@ -18,6 +18,7 @@ struct RecordedExtent {
   std::uint64_t lost = 0;               // ticks and samples in front of the newest of their kind, all epochs
 };
 
+// A recording without samples is counted by its ticks; one without ticks has no extent.
 // An epoch begins with the step of its states, else with that of INIT; without either, and without step 0, it is
 // counted from step 0 on. Throws Failure.
 [[nodiscard]] RecordedExtent recorded_extent(const recording::Reader& reader);

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <tuple>
 #include <vector>
 
 #include "core/arithmetic_self_test.h"
@@ -14,8 +15,10 @@
 #include "io_node/tick_follower.h"
 #include "node/driver.h"
 #include "node/identity.h"
+#include "recording/state_hashes.h"
 #include "scene/scene.h"
 #include "session/direct_session.h"
+#include "session/hash_blocks.h"
 #include "session/recorded.h"
 #include "transport/cdr/codec.h"
 
@@ -45,6 +48,12 @@ class Replay {
                     "used; it cannot be computed again; nothing was compared; record with session.mode: lockstep what "
                     "is to be verified");
     }
+    if (reader.identity().steps == recording::RecordedSteps::none) {
+      throw Failure(ExitCode::bad_input,
+                    "the recording has variables and events alone (recording.steps: none), and no ticks from which it "
+                    "could be computed again; nothing was compared; record with --record-steps ticks, or all, what is "
+                    "to be replayed");
+    }
     if (scene_.session.step_duration() != reader.identity().communication_step) {
       throw Failure(ExitCode::bad_input, "the recording's step is not its scene's; it cannot be replayed");
     }
@@ -64,6 +73,7 @@ class Replay {
     for (const Topic topic : {Topic::tick, Topic::mechanism, Topic::actuators, Topic::elastic, Topic::sensors}) {
       filter.topics.emplace_back(node::to_text(topic));
     }
+    filter.topics.emplace_back(recording::kStateHashesTopic);
     const Status status = reader_.for_each(filter, [this](const recording::RecordedMessage& message) {
       take(message);
       return has_stopped_ || (is_at_end() && is_all_compared()) || node::stop_requested.load() != 0 ? Visit::stop
@@ -87,6 +97,7 @@ class Replay {
 
   void take(const recording::RecordedMessage& message) {
     if (message.channel->topic == node::to_text(Topic::tick)) return take_tick(message.payload);
+    if (message.channel->topic == recording::kStateHashesTopic) return take_hashes(message.payload);
     if (message.channel->topic == node::to_text(Topic::mechanism)) {
       if (transport::decode(message.payload, mechanism_)) take_sample(mechanism_.header, mechanism_.state.state_hash);
     } else if (message.channel->topic == node::to_text(Topic::elastic)) {
@@ -209,6 +220,7 @@ class Replay {
     has_ended_ = false;
     waiting_ticks_.clear();
     waiting_samples_.clear();
+    std::ignore = blocks_.take_rest();
     begin_from(first_states());
     init_hash_ = session_.init_hash();
   }
@@ -265,9 +277,13 @@ class Replay {
       unreached_samples_.emplace(epoch_, at, role);
       waiting_samples_.erase(waiting_samples_.begin());
     }
+    for (const recording::StateHashes& block : blocks_.take_rest()) {
+      block.first_step < step ? leave_unreached(block) : blocks_.add(block);
+    }
     session_.reset();
     begin_from(&behind->second);
     if (!has_stopped_) compare_waiting();
+    if (!has_stopped_) compare_blocks();
     return true;
   }
 
@@ -280,6 +296,9 @@ class Replay {
     count_unrecorded(end);
     // samples whose ticks did not come
     for (const auto& [key, hash] : waiting_samples_) unreached_samples_.emplace(epoch_, key.first, key.second);
+    for (const recording::StateHashes& block : blocks_.take_rest()) {
+      if (block.last_step > next_) leave_unreached(block);
+    }
   }
 
   void pass_gap() {
@@ -366,6 +385,8 @@ class Replay {
     ++result_.steps;
     keep_hashes();
     compare_waiting();
+    // most steps complete no block
+    if (!blocks_.is_empty() && next_ % recording::kHashedSteps == 0) compare_blocks();
   }
 
   // Samples that stood in front of their tick in the file.
@@ -396,6 +417,8 @@ class Replay {
       return;
     }
     if (header.epoch != epoch_) return;
+    // the digests are compared, not the few samples that are there for their events
+    if (header.phase == Phase::running && reader_.identity().steps == recording::RecordedSteps::ticks) return;
     if (header.phase == Phase::init) {
       if (header.role == Role::mechanics && hash != init_hash_) differ(header.role, kJoinStep);
       return;
@@ -405,6 +428,59 @@ class Replay {
     if (header.step < begin_ + static_cast<StepIndex>(of_role.computed.size()))
       return compare(header.role, header.step, hash);
     waiting_samples_.emplace(std::pair(header.step, header.role), hash);
+  }
+
+  // ---- digests, of a recording without samples ------------------------------------------------------------------
+
+  void take_hashes(std::span<const std::byte> bytes) {
+    recording::StateHashes part;
+    if (!recording::decode_state_hashes(bytes, part) || part.role >= wire::kRoles) return;
+    if (part.epoch > epoch_ || (part.epoch == epoch_ && part.first_step < begin_)) return leave_unreached(part);
+    if (part.epoch != epoch_) return;
+    blocks_.add(part);
+    compare_blocks();
+  }
+
+  void leave_unreached(const recording::StateHashes& part) {
+    for (StepIndex step = part.first_step; step <= part.last_step; ++step) {
+      unreached_samples_.emplace(part.epoch, step, static_cast<Role>(part.role));
+    }
+  }
+
+  // Those whose steps have been computed.
+  void compare_blocks() {
+    const auto samples_in = [this](Role role, StepIndex first, StepIndex last) {
+      std::uint32_t count = 0;
+      for (StepIndex step = first; step <= last; ++step) count += session_.has_sample(role, step) ? 1u : 0u;
+      return count;
+    };
+    for (const recording::StateHashes& block : blocks_.take_whole(next_ + 1, samples_in)) {
+      if (!has_stopped_) compare(block);
+    }
+  }
+
+  void compare(const recording::StateHashes& recorded) {
+    const auto role = static_cast<Role>(recorded.role);
+    Hashes& of_role = hashes_[index(role)];
+    recording::StateHashes computed;
+    for (StepIndex step = recorded.first_step; step <= recorded.last_step; ++step) {
+      const auto at = static_cast<std::size_t>(step - begin_);
+      if (at >= of_role.computed.size() || of_role.is_compared[at]) continue;
+      of_role.is_compared[at] = true;
+      computed.add(step, of_role.computed[at]);
+    }
+    if (computed.count != recorded.count) {  // another part has some of these steps
+      result_.unrecorded += computed.count;
+      return;
+    }
+    result_.compared += computed.count;
+    if (computed.digest == recorded.digest) return;
+    ++result_.different;
+    const double H = scene_.session.step_duration().seconds();
+    note_difference(fmt::format("{} differs in the steps from {} to {} (t = {:.6g} s to {:.6g} s){}",
+                                node::to_text(role), recorded.first_step, recorded.last_step,
+                                static_cast<double>(recorded.first_step) * H,
+                                static_cast<double>(recorded.last_step) * H, epoch_text()));
   }
 
   void compare(Role role, StepIndex step, std::uint64_t recorded) {
@@ -419,11 +495,16 @@ class Replay {
 
   void differ(Role role, StepIndex step) {
     ++result_.different;
-    const std::string text = step < 0
-                                 ? fmt::format("{} differs at INIT", node::to_text(role))
-                                 : fmt::format("{} differs at step {} (t = {:.6g} s){}", node::to_text(role), step,
-                                               static_cast<double>(step) * scene_.session.step_duration().seconds(),
-                                               epoch_ > 0 ? fmt::format(" of epoch {}", epoch_) : "");
+    const std::string text =
+        step < 0 ? fmt::format("{} differs at INIT", node::to_text(role))
+                 : fmt::format("{} differs at step {} (t = {:.6g} s){}", node::to_text(role), step,
+                               static_cast<double>(step) * scene_.session.step_duration().seconds(), epoch_text());
+    note_difference(text);
+  }
+
+  [[nodiscard]] std::string epoch_text() const { return epoch_ > 0 ? fmt::format(" of epoch {}", epoch_) : ""; }
+
+  void note_difference(const std::string& text) {
     if (on_difference_ == OnDifference::stop) return stop(text);
     if (result_.problem.empty()) result_.problem = text;
   }
@@ -454,6 +535,7 @@ class Replay {
   std::array<Hashes, wire::kRoles> hashes_;  // by role
   std::map<StepIndex, wire::Tick> waiting_ticks_;
   std::map<std::pair<StepIndex, Role>, std::uint64_t> waiting_samples_;
+  HashBlocks blocks_;
   bool has_ended_ = false;                                                  // the epoch's END was taken
   StepIndex end_step_ = 0;                                                  // of that END
   std::set<std::pair<std::uint32_t, StepIndex>> unreached_ticks_;           // epoch and step

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "transport/cdr/codec_fields.h"
+#include "transport/cdr/sample_state.h"
 
 namespace slew::transport {
 namespace {
@@ -258,6 +259,14 @@ bool decode_header(Bytes bytes, wire::Header& header) {
   if (!is_little_endian_cdr(bytes)) return false;
   Decoder decoder(bytes.subspan(kEncapsulation));
   fields(decoder, header);
+  return decoder.is_good();
+}
+
+bool decode_sample_state(Bytes bytes, wire::Header& header, wire::SampleState& state) {
+  if (!is_little_endian_cdr(bytes)) return false;
+  Decoder decoder(bytes.subspan(kEncapsulation));
+  fields(decoder, header);
+  fields(decoder, state);
   return decoder.is_good();
 }
 

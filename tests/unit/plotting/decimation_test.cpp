@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -57,6 +58,41 @@ TEST(Decimation, LeavesOutWhatIsOutside) {
   EXPECT_TRUE(decimate({"s", "m", {0, 9}, {1, 2}}, 2, 4, 100).empty());
   EXPECT_TRUE(decimate({"s", "m", {}, {}}, 2, 4, 100).empty());
   EXPECT_TRUE(decimate({"s", "m", {3}, {kNan}}, 2, 4, 100).empty());
+}
+
+// ---- thinned curves -------------------------------------------------------------------------------------------
+
+TEST(Thinning, KeepsTheExtremesOfEveryBinInTheirOrderAndCommonTimes) {
+  std::vector<Series> curves = {sampled(100'000), sampled(100'000)};
+  curves[0].values[12'345] = 99;
+  curves[1].values[76'543] = -99;
+  EXPECT_EQ(thin_out(curves, 2'000), 100u);
+  for (const Series& curve : curves) {
+    EXPECT_LE(curve.time.size(), 2'000u);
+    EXPECT_EQ(curve.time.size(), curve.values.size());
+    EXPECT_TRUE(std::is_sorted(curve.time.begin(), curve.time.end()));
+  }
+  EXPECT_EQ(curves[0].time, curves[1].time);
+  EXPECT_EQ(*std::max_element(curves[0].values.begin(), curves[0].values.end()), 99);
+  EXPECT_EQ(*std::min_element(curves[1].values.begin(), curves[1].values.end()), -99);
+}
+
+TEST(Thinning, LeavesShortCurvesAsTheyAre) {
+  std::vector<Series> curves = {sampled(2'000)};
+  EXPECT_EQ(thin_out(curves, 2'000), 1u);
+  EXPECT_EQ(curves[0].values, sampled(2'000).values);
+}
+
+TEST(Thinning, KeepsGapsAndStepsBackInTime) {
+  std::vector<Series> curves = {sampled(1'000)};
+  curves[0].values[505] = kNan;
+  for (std::size_t i = 800; i < 1'000; ++i) curves[0].time[i] -= 0.7;
+  EXPECT_EQ(thin_out(curves, 100), 20u);
+  const Series& thinned = curves[0];
+  EXPECT_EQ(std::count_if(thinned.values.begin(), thinned.values.end(), [](double v) { return std::isnan(v); }), 1);
+  std::size_t steps_back = 0;
+  for (std::size_t i = 1; i < thinned.time.size(); ++i) steps_back += thinned.time[i] < thinned.time[i - 1] ? 1 : 0;
+  EXPECT_EQ(steps_back, 1u);
 }
 
 }  // namespace decimation_test

@@ -49,6 +49,20 @@ TEST(SvgPlot, HasOnePanelPerUnitAndOneTimeAxis) {
   EXPECT_EQ(count(svg, "nan"), 0u);
 }
 
+TEST(SvgPlot, ManyCurvesOfAUnitHavePanelsOfTwelve) {
+  std::vector<Series> series;
+  for (int i = 0; i < 26; ++i) {
+    series.push_back(line("force" + std::to_string(i), "kN"));
+    if (i < 3) series.push_back(line("pressure" + std::to_string(i), "bar"));
+  }
+  const std::string svg = plot_svg(series, {"", ""});
+  EXPECT_TRUE(is_well_formed(svg));
+  EXPECT_EQ(count(svg, "<clipPath"), 4u);
+  EXPECT_EQ(count(svg, "<title>"), 29u);
+  // the panels of a unit lie below each other
+  EXPECT_LT(svg.find("<title>force25<"), svg.find("<title>pressure0<"));
+}
+
 TEST(SvgPlot, PlotsShareNoPanelAndAUnitOfAPlotHasOne) {
   const std::vector<Plot> plots = {{"Height", {{"high", "m", {0, 1}, {100, 400}}}},
                                    {"Tip <y>", {{"low", "m", {0, 3}, {0.1, 0.3}}, line("b", "bar"), line("c", "m")}},

@@ -5,6 +5,7 @@
 
 #include "build_paths.h"
 #include "recording/recovery.h"
+#include "recording/state_hashes.h"
 #include "sample_session.h"
 
 namespace slew::recording {
@@ -71,6 +72,44 @@ TEST(GoldenRecording, OfVersion1IsReadToTheSameValuesWithoutItsEnd) {
   EXPECT_EQ(read_all(*open(scratch / "recovered.mcap")), read_all(*open(kGolden / "version_1.mcap")));
 }
 
+// Ticks and digests in columns.
+TEST(GoldenRecording, OfVersion2IsReadToTheSameValues) {
+  const std::unique_ptr<Reader> reader = open(kGolden / "version_2.mcap");
+  ASSERT_NE(reader, nullptr);
+  EXPECT_EQ(reader->verify().text, "");
+  EXPECT_TRUE(reader->has_all_messages());
+  EXPECT_EQ(reader->identity().format_version, 2);
+  EXPECT_EQ(reader->identity().steps, RecordedSteps::ticks);
+  EXPECT_EQ(reader->identity().more, (TextMap{{"pace", "free"}}));
+  ASSERT_EQ(reader->channels().size(), 2u);
+  EXPECT_EQ(reader->channels()[1].topic, "state_hashes");
+  EXPECT_EQ(reader->channels()[1].type_name, "slewring::StateHashes");
+  for (const ChunkIndexRecord& chunk : reader->chunks()) EXPECT_EQ(chunk.compression, "slewring-columns");
+  StepIndex step = 0;
+  std::vector<StateHashes> blocks;
+  EXPECT_EQ(reader
+                ->for_each({},
+                           [&](const RecordedMessage& message) {
+                             if (message.channel->topic == "state_hashes") {
+                               EXPECT_TRUE(decode_state_hashes(message.payload, blocks.emplace_back()));
+                               return Reader::Visit::go_on;
+                             }
+                             EXPECT_EQ(as_text(message.payload), fmt::format("tick {:3}", step));
+                             EXPECT_EQ(message.publish_time_ns, 1'700'000'000'000'000'000u + step * 1'000'003u);
+                             EXPECT_EQ(message.log_time_ns, static_cast<std::uint64_t>(step++) * 1'000'000u);
+                             return Reader::Visit::go_on;
+                           })
+                .text,
+            "");
+  EXPECT_EQ(step, 45);
+  ASSERT_EQ(blocks.size(), 3u);
+  StateHashes expected;
+  for (StepIndex k = 20; k < 40; ++k) expected.add(k, 1000u + static_cast<std::uint64_t>(k));
+  EXPECT_EQ(blocks[1].digest, expected.digest);
+  EXPECT_EQ(blocks[1].digest, 4940368301105932621u);
+  EXPECT_EQ(blocks[2].count, 5u);
+}
+
 // A file that a later program wrote: as version 1, with what that version might add.
 void write_newer(const std::filesystem::path& path, const std::string& version, bool is_whole) {
   Bytes bytes;
@@ -97,12 +136,12 @@ TEST(NewerRecording, IsRefusedInOneSentence) {
   const ScratchDirectory scratch;
   const std::filesystem::path path = scratch / "newer.mcap";
   for (const bool is_whole : {true, false}) {
-    write_newer(path, "2", is_whole);
+    write_newer(path, "3", is_whole);
     std::unique_ptr<Reader> reader;
     const Status status = Reader::open(path, reader);
     EXPECT_EQ(status.code, ExitCode::bad_input);
     EXPECT_EQ(status.text, path.string() +
-                               ": the recording has format version 2 and this program reads versions up to 1; nothing "
+                               ": the recording has format version 3 and this program reads versions up to 2; nothing "
                                "was read; use the slewring that wrote it, or a newer one");
     Recovery recovery;
     EXPECT_EQ(recover(path, scratch / "recovered.mcap", recovery).text, status.text);

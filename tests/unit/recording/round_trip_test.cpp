@@ -262,12 +262,12 @@ TEST(Recording, RefusesANewerFormatVersionByName) {
   const ScratchDirectory scratch;
   std::unique_ptr<Writer> writer;
   TextMap entries = to_entries(sample_identity());
-  entries["format_version"] = "2";
+  entries["format_version"] = "3";
   SessionIdentity identity;
   std::string problem;
   EXPECT_FALSE(from_entries(entries, identity, problem));
   EXPECT_EQ(problem,
-            "the recording has format version 2 and this program reads versions up to 1; nothing was read; use the "
+            "the recording has format version 3 and this program reads versions up to 2; nothing was read; use the "
             "slewring that wrote it, or a newer one");
 }
 
