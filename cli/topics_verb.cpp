@@ -29,8 +29,8 @@ struct TopicsOptions {
 
 struct Traffic {
   std::int64_t messages = 0;
-  double bytes = 0;           // sum
-  double delay_ns = 0;        // sum, from the write to the receipt by the clocks of both machines
+  double bytes = 0;     // sum
+  double delay_ns = 0;  // sum, from the write to the receipt by the clocks of both machines
   double longest_delay_ns = 0;
 };
 
@@ -66,7 +66,8 @@ std::string roles_text(std::uint32_t bits) {
 }
 
 // Nodes of the session, and other programs, which the table of roles knows.
-std::uint32_t roles_of(std::uint32_t required, wire::Topic topic, const transport::TopicSet transport::RoleTraits::* set) {
+std::uint32_t roles_of(std::uint32_t required, wire::Topic topic,
+                       const transport::TopicSet transport::RoleTraits::*set) {
   std::uint32_t bits = 0;
   for (const transport::RoleTraits& role : transport::roles()) {
     const std::uint32_t bit = 1u << static_cast<unsigned>(role.role);
@@ -123,8 +124,9 @@ ExitCode show(TopicsOptions options) {
     table.add(std::move(row));
   }
   if (options.is_json) {
-    fmt::print("{}\n", Json({{"session", options.session.session}, {"seconds", options.seconds}, {"topics", table.json()}})
-                           .dump(2));
+    fmt::print(
+        "{}\n",
+        Json({{"session", options.session.session}, {"seconds", options.seconds}, {"topics", table.json()}}).dump(2));
   } else {
     print_table(table);
   }

@@ -16,6 +16,7 @@
 #include "command.h"
 #include "sample_hashes.h"
 #include "tests/support/nightly.h"
+#include "transport/wire.h"
 
 namespace slew::testing {
 namespace distributed_test {
@@ -131,6 +132,22 @@ TEST_F(Distributed, VerbsLookAtAndChangeARunningSession) {
   ASSERT_EQ(sessions.size(), 1u);
   EXPECT_EQ(sessions.at(0).at("name"), "seen");
   EXPECT_EQ(sessions.at(0).at("nodes").size(), 4u);
+
+  const nlohmann::json topics = nlohmann::json::parse(slewring({"topics", "--time", "0.5", "--json"}).out).at("topics");
+  ASSERT_EQ(topics.size(), wire::kTopics);
+  for (const nlohmann::json& topic : topics) {
+    const auto name = topic.at("topic").get<std::string>();
+    if (name == "slewring/tick") {
+      EXPECT_GT(topic.at("rate"), 0);
+      EXPECT_EQ(topic.at("writers"), 1);
+      EXPECT_EQ(topic.at("written_by"), "io");
+      EXPECT_EQ(topic.at("read_by"), "mechanics, hydraulics, recorder");
+    } else if (name == "slewring/controller_input") {
+      EXPECT_EQ(topic.at("rate"), 0);
+      EXPECT_TRUE(topic.at("size").is_null());
+      EXPECT_EQ(topic.at("written_by"), "observer, controller");
+    }
+  }
 
   // without --session: the only one
   const CommandResult watched = slewring({"watch", "Cyl_*.force", "--count", "2", "--json"});
