@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Events and memory of sensors: limits, zones, hits, continuous search, saved state.
-#include <numbers>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "math/rotation.h"
 #include "sensor_bench.h"
@@ -224,11 +224,12 @@ TEST(ContinuousCollision, FindsABarThatTurnsPastAPost) {
 // from half a turn in an interval on, two poses do not show which way a body has turned, and how often
 TEST(ContinuousCollision, IsNotFineWhereABodyTurnsByHalfATurnInAnInterval) {
   for (const double rate : {310.0, 320.0, 628.0}) {
+    const bool is_fine = rate * 0.01 < std::numbers::pi;
     Sensors sensors(pair(box(2, 0.01, 0.01), box(0.001, 0.001, 1), continuous()));
     const auto turned = [&](double t) { return FrameMotion{.R_W = math::rotation_z(rate * t), .w_W = {0, 0, rate}}; };
     const FrameMotion post{.p_W = {0, 2, 0}};
     ASSERT_TRUE(sensors.observe(at(turned(0), post)));
-    EXPECT_EQ(sensors.observe(at(turned(0.01), post)), rate * 0.01 < std::numbers::pi) << rate;
+    EXPECT_EQ(sensors.observe(at(turned(0.01), post)), is_fine) << rate;
     EXPECT_EQ(sensors.failed(), 0U);
     EXPECT_EQ(value(sensors, "S.touching"), 0);
     // the sample itself counts all the same
