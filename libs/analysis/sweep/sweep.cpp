@@ -155,6 +155,14 @@ void write_result(const std::string& file, const Json& value) {
   }
 }
 
+std::string result_text(const scene::Scene& scene) {
+  std::string text = scene.expanded_text;
+  for (const scene::Asset& asset : scene.assets) {
+    for (const std::uint8_t byte : asset.sha256) text += fmt::format("{:02x}", byte);
+  }
+  return text;
+}
+
 std::string key_of(std::span<const std::string> texts) {
   StateHash hash;
   for (const std::string& text : texts) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/json.h"
+#include "scene/scene.h"
 
 namespace slew::analysis {
 
@@ -58,6 +59,9 @@ using SweepProgress = std::function<bool(const SweepState&)>;
 
 // Called by the process of a task. Throws Failure (storage).
 void write_result(const std::string& file, const Json& value);
+
+// Everything in a scene that a result depends on, for its key: its text, and the digests of its files.
+[[nodiscard]] std::string result_text(const scene::Scene& scene);
 
 // A key from all texts that a result depends on: 16 hexadecimal digits.
 [[nodiscard]] std::string key_of(std::span<const std::string> texts);
