@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "analysis/parameter_sweep/parameter_sweep.h"
+#include "analysis/sweep/batch.h"
 #include "cli/progress_line.h"
 #include "cli/terminal.h"
 #include "cli/verbs.h"
@@ -21,7 +22,7 @@ namespace {
 
 struct SweepOptions {
   analysis::ParameterSweepOptions settings;
-  std::string sample = "grid";
+  std::string sample = "grid", engine = "local";
   int samples = 0;
   bool is_json = false, is_quiet = false;
 };
@@ -48,6 +49,19 @@ void read_sampling(SweepOptions& options) {
   settings.samples = static_cast<std::size_t>(options.samples);
 }
 
+void read_engine(SweepOptions& options) {
+  analysis::SweepOptions& engine = options.settings.engine;
+  engine.engine = options.engine == "slurm" ? analysis::Engine::slurm
+                  : options.engine == "mpi" ? analysis::Engine::mpi
+                                            : analysis::Engine::local;
+  if (engine.engine == analysis::Engine::local && engine.workers > analysis::kMostWorkers) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("--workers {}: one machine runs at most {}; nothing was run; give fewer, or use --engine "
+                              "slurm or mpi",
+                              engine.workers, analysis::kMostWorkers));
+  }
+}
+
 void write_files(const analysis::ParameterSweep& sweep) {
   const std::filesystem::path folder = sweep.folder;
   write_text((folder / "rows.csv").string(), report_csv(sweep));
@@ -61,6 +75,7 @@ ExitCode run_sweep_verb(SweepOptions options) {
                   "--input keyboard: every row needs the same input; nothing was run; write it into a .csv file");
   }
   read_sampling(options);
+  read_engine(options);
   session::count_interrupts();
   analysis::ParameterSweep sweep;
   {
@@ -133,9 +148,15 @@ void add_sweep_running(options::Command& verb, SweepOptions& options) {
       .value_name("DIR")
       .required();
   verb.flag("--anew", engine.is_fresh, "discard the rows that the folder has");
-  verb.option("--workers", engine.workers, "processes at once")
-      .between(1, analysis::kMostWorkers)
+  verb.option("--workers", engine.workers, "processes at once; of slurm and mpi the tasks of the array or the ranks")
+      .between(1, analysis::kMostParts)
       .value_name("N")
+      .show_default();
+  verb.option("--engine", options.engine,
+              "local: processes of this machine; slurm: a job array (sbatch); mpi: ranks of mpirun. The folder must be "
+              "one that all machines see")
+      .one_of({"local", "slurm", "mpi"})
+      .value_name("ENGINE")
       .show_default();
   verb.flag("--json", options.is_json, "print the results as JSON and nothing else");
   verb.flag("--quiet", options.is_quiet, "no progress");
@@ -169,6 +190,18 @@ void add_sweep_row(options::Command& program) {
   verb.option("--set", options->settings, "value of the row").one_value_each();
   verb.option("--result", options->result, "file to write").required();
   verb.action([options] { return run_sweep_row(*options); });
+}
+
+// the process of one part of a batch; not a verb for users
+void add_sweep_part(options::Command& program) {
+  options::Command verb = program.command("sweep-part", "one part of a sweep on an engine");
+  verb.hide();
+  const auto batch = std::make_shared<std::string>();
+  verb.option("batch", *batch, "file of the batch").required();
+  verb.action([batch] {
+    analysis::run_batch_part(*batch);
+    return ExitCode::ok;
+  });
 }
 
 }  // namespace slew::cli

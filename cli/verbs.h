@@ -34,6 +34,7 @@ void add_compare(options::Command& program);
 void add_simplify(options::Command& program);
 void add_sweep(options::Command& program);
 void add_sweep_row(options::Command& program);
+void add_sweep_part(options::Command& program);
 void add_tradeoff(options::Command& program);
 void add_tradeoff_row(options::Command& program);
 void add_extremes(options::Command& program);

@@ -83,7 +83,7 @@ class ParameterSweeper {
         throw Failure(ExitCode::bad_input,
                       fmt::format("--vary {}: the scene refuses the value '{}': {}; nothing was run; change the range, "
                                   "or the scene's other values by --set",
-                                  text, value, error.first_reason()));
+                                  text, value, error.diagnostics().front().text()));
       }
     }
   }
@@ -130,7 +130,7 @@ class ParameterSweeper {
     } else {
       refuse_other_sweep(own);
     }
-    std::filesystem::create_directories(rows_folder(), error);
+    std::filesystem::create_directories(rows_folder(), error);  // write_text() reports its absence
     write_text(job_file(), to_json(options_.job).dump());
     write_text(manifest_file().string(), own.dump(2) + '\n');
   }

@@ -20,7 +20,7 @@ body{font-family:Inter,'Helvetica Neue',Arial,'DejaVu Sans',sans-serif;margin:1.
  background:var(--ground);font-size:14px}
 h1{font-size:20px;margin:0}p{color:var(--quiet);margin:.3em 0 1em}h2{font-size:15px;margin:1.4em 0 .3em}
 svg{width:100%;max-width:1100px;height:auto;display:block}svg text{fill:var(--text);font-size:12px}
-svg text.quiet{fill:var(--quiet)}svg line{stroke:var(--grid)}svg line.axis{stroke:var(--line)}
+svg text.quiet{fill:var(--quiet);paint-order:stroke;stroke:var(--ground);stroke-width:4px}svg line{stroke:var(--grid)}svg line.axis{stroke:var(--line)}
 .row{fill:none;stroke-width:1.2;opacity:.65}.row.off{opacity:var(--faint)}.row.hot{stroke-width:3;opacity:1}
 .dot.off{opacity:var(--faint)}.dot.hot{stroke:var(--text);stroke-width:2}
 .brush{fill:var(--text);fill-opacity:.12;stroke:var(--quiet)}.grab{fill:transparent;cursor:ns-resize}
@@ -44,7 +44,7 @@ for(const c of C){const all=R.map(c.of).filter(v=>v!=null);c.words=all.some(v=>t
  c.number=r=>{const v=c.of(r);return v==null?null:c.words?c.words.indexOf(v):v};
  const n=R.map(c.number).filter(v=>v!=null);c.low=n.reduce((a,b)=>Math.min(a,b),Infinity);c.high=n.reduce((a,b)=>Math.max(a,b),-Infinity);
  if(!n.length){c.low=0;c.high=1}if(c.low==c.high){const d=Math.abs(c.low)*.1||1;c.low-=d;c.high+=d}c.brush=null}
-const digits=x=>{const a=Math.abs(x);return a!=0&&(a>=1e5||a<1e-3)?x.toExponential(3):String(+x.toPrecision(5))};
+const digits=x=>{const a=Math.abs(x);return a!=0&&(a>=1e5||a<1e-3)?(+x.toPrecision(5)).toExponential():String(+x.toPrecision(5))};
 const show=(c,x)=>c.words?(c.words[Math.round(x)]??''):digits(x);
 const title=c=>c.name+(c.unit?' ['+c.unit+']':'');
 // five points of the map viridis, legible on light and dark ground without its ends
@@ -66,8 +66,9 @@ function parallel(){const W=1100,H=380,T=56,B=24,L=60,svg=$('parallel'),step=(W-
  for(const r of R){let d='',pen='M';C.forEach((c,k)=>{const f=part(c,r);if(f==null){pen='M';return}d+=pen+X(k).toFixed(1)+' '+Y(f).toFixed(1);pen='L'});
   const p=link(el('path',{class:'row',d,stroke:colour(r)}),r);p.append(el('title',{},words(r)));svg.append(p)}
  C.forEach((c,k)=>{svg.append(el('line',{class:'axis',x1:X(k),x2:X(k),y1:T,y2:H-B}));
-  const lines=[c.name,c.unit?'['+c.unit+']':''],at=k==0?'start':k==C.length-1?'end':'middle',x=k==0?X(k)-L+4:k==C.length-1?X(k)+L-4:X(k);
-  lines.forEach((t,j)=>{const e=el('text',{x,y:T-30+14*j+(k%2&&C.length>5?-12:0),'text-anchor':at},t);if(j)e.setAttribute('class','quiet');svg.append(e)});
+  const most=Math.floor((C.length>1?step:W)/6.5),name=c.name.length>most?c.name.slice(0,most-1)+'\u2026':c.name,
+   lines=[name,c.unit?'['+c.unit+']':''],at=k==0?'start':k==C.length-1?'end':'middle',x=k==0?X(k)-L+4:k==C.length-1?X(k)+L-4:X(k);
+  lines.forEach((t,j)=>{const e=el('text',{x,y:T-30+14*j,'text-anchor':at},t);e.append(el('title',{},title(c)));if(j)e.setAttribute('class','quiet');svg.append(e)});
   for(const v of ticks(c,5)){const y=Y((v-c.low)/(c.high-c.low));svg.append(el('line',{class:'axis',x1:X(k)-4,x2:X(k),y1:y,y2:y}),
    el('text',{class:'quiet',x:X(k)-7,y:y+4,'text-anchor':'end'},show(c,v)))}
   if(c.brush)svg.append(el('rect',{class:'brush',x:X(k)-7,width:14,y:Y((c.brush[1]-c.low)/(c.high-c.low)),height:Math.max(2,Y((c.brush[0]-c.low)/(c.high-c.low))-Y((c.brush[1]-c.low)/(c.high-c.low)))}));
@@ -76,7 +77,7 @@ function parallel(){const W=1100,H=380,T=56,B=24,L=60,svg=$('parallel'),step=(W-
    const move=e=>{const to=value(e);c.brush=[Math.min(from,to),Math.max(from,to)];draw()},
     up=()=>{removeEventListener('pointermove',move);if(!c.brush||c.brush[1]-c.brush[0]<.01*(c.high-c.low))c.brush=null;draw()};
    addEventListener('pointermove',move);addEventListener('pointerup',up,{once:true})};svg.append(g)})}
-function scatter(){const W=1100,H=430,L=86,Rm=24,T=16,B=52,svg=$('scatter'),cx=C[$('x').value],cy=C[$('y').value];svg.replaceChildren();
+function scatter(){const W=1100,H=430,L=100,Rm=24,T=16,B=52,svg=$('scatter'),cx=C[$('x').value],cy=C[$('y').value];svg.replaceChildren();
  const X=f=>L+(.03+.94*f)*(W-L-Rm),Y=f=>H-B-(.04+.92*f)*(H-T-B);
  for(const v of ticks(cx,8)){const x=X((v-cx.low)/(cx.high-cx.low));svg.append(el('line',{x1:x,x2:x,y1:T,y2:H-B}),el('text',{class:'quiet',x,y:H-B+18,'text-anchor':'middle'},show(cx,v)))}
  for(const v of ticks(cy,6)){const y=Y((v-cy.low)/(cy.high-cy.low));svg.append(el('line',{x1:L,x2:W-Rm,y1:y,y2:y}),el('text',{class:'quiet',x:L-8,y:y+4,'text-anchor':'end'},show(cy,v)))}

@@ -101,7 +101,7 @@ RowOutcome run_row(const SweepJob& job, const scene::Overrides& settings) {
     const scene::Scene scene = scene::load_scene(options);
     outcome = MeasuredScene(scene, job.measures).run();
   } catch (const scene::LoadError& error) {
-    outcome = {.code = ExitCode::bad_input, .message = error.first_reason()};
+    outcome = {.code = ExitCode::bad_input, .message = error.diagnostics().front().text()};
   } catch (const Failure& failure) {
     outcome = {.code = failure.code(), .message = failure.what()};
   }
