@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include "analysis/parameter_sweep/parameter_sweep.h"
 #include "analysis/sweep/batch.h"
@@ -98,8 +97,7 @@ ExitCode run_sweep_verb(SweepOptions options) {
 }
 
 ExitCode run_sweep_row(const SweepRowOptions& options) {
-  std::ifstream in(options.job, std::ios::binary);
-  const std::optional<Json> job = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
+  const std::optional<Json> job = analysis::read_result(options.job);
   if (!job) throw Failure(ExitCode::bad_input, options.job + " is no job of a sweep");
   analysis::write_result(options.result, to_json(analysis::run_row(analysis::sweep_job_from(*job), options.settings)));
   return ExitCode::ok;

@@ -32,6 +32,8 @@ void add_recover(options::Command& program);
 void add_replay(options::Command& program);
 void add_compare(options::Command& program);
 void add_simplify(options::Command& program);
+void add_fit(options::Command& program);
+void add_fit_row(options::Command& program);
 void add_sweep(options::Command& program);
 void add_sweep_row(options::Command& program);
 void add_sweep_part(options::Command& program);

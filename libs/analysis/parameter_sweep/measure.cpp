@@ -90,11 +90,16 @@ struct MeasureCall {
   std::vector<std::pair<std::string_view, std::size_t>> arguments;
 };
 
-[[noreturn]] void refuse_measure(const std::string& text, std::size_t at, const scene::ValueProblem& problem) {
-  std::string message = fmt::format("--measure '{}': column {}: {}", text, at + 1, problem.what);
+[[noreturn]] void refuse_at(const std::string& option, const std::string& text, std::size_t at,
+                            const scene::ValueProblem& problem) {
+  std::string message = fmt::format("{} '{}': column {}: {}", option, text, at + 1, problem.what);
   if (!problem.expected.empty()) message += "; expected " + problem.expected;
   if (!problem.suggestion.empty()) message += fmt::format("; did you mean '{}'?", problem.suggestion);
   throw Failure(ExitCode::bad_input, message + "; nothing was run");
+}
+
+[[noreturn]] void refuse_measure(const std::string& text, std::size_t at, const scene::ValueProblem& problem) {
+  refuse_at("--measure", text, at, problem);
 }
 
 // "name(a, b)" with its arguments at the outermost level.
@@ -157,6 +162,15 @@ double constant_of(const std::string& text, const MeasureCall& call, const scene
 }
 
 }  // namespace
+
+scene::CompiledExpression compile_of_run(const std::string& option, const std::string& text, const scene::Scene& scene,
+                                         std::span<const ElementVariable> variables) {
+  scene::UnitSystem units;
+  MeasureNames names(scene, variables, units);
+  scene::CompiledResult result = scene::compile(text, names, units);
+  if (!result.expression) refuse_at(option, text, result.fault.at, result.fault.problem);
+  return std::move(*result.expression);
+}
 
 Measure parse_measure(const std::string& text, const scene::Scene& scene, std::span<const ElementVariable> variables) {
   const MeasureCall call = read_call(text);

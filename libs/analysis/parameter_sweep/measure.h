@@ -36,6 +36,12 @@ struct Measure {
   std::string unit;     // SI, of the measure; empty: a number
 };
 
+// Compiles an expression of a run's variables. option: that of the command line which the text belongs to. Throws
+// Failure (bad_input) with the place in the text.
+[[nodiscard]] scene::CompiledExpression compile_of_run(const std::string& option, const std::string& text,
+                                                       const scene::Scene& scene,
+                                                       std::span<const ElementVariable> variables);
+
 // variables: those of the session, whose values the expression takes by their index. Throws Failure (bad_input) with
 // the place in the text: an unknown name, units that do not fit, a time outside of the run.
 [[nodiscard]] Measure parse_measure(const std::string& text, const scene::Scene& scene,

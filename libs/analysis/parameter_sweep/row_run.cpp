@@ -8,6 +8,7 @@
 
 #include "analysis/comparison/played_scene.h"
 #include "analysis/parameter_sweep/measure.h"
+#include "analysis/parameter_sweep/variable_values.h"
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 #include "core/state_hash.h"
@@ -16,15 +17,13 @@
 namespace slew::analysis {
 namespace {
 
-constexpr wire::Role kPhysicsOfRow[] = {wire::Role::mechanics, wire::Role::hydraulics};
-
 class MeasuredScene {
  public:
-  MeasuredScene(const scene::Scene& scene, const std::vector<std::string>& texts) : scene_(scene), played_(scene) {
+  MeasuredScene(const scene::Scene& scene, const std::vector<std::string>& texts)
+      : scene_(scene), played_(scene), values_(played_.session()) {
     const std::vector<ElementVariable> variables = played_.session().variables();
     for (const std::string& text : texts) measures_.push_back(parse_measure(text, scene, variables));
     for (const Measure& measure : measures_) runs_.emplace_back(measure);
-    values_.resize(variables.size());
   }
 
   RowOutcome run() {
@@ -55,36 +54,23 @@ class MeasuredScene {
  private:
   // True if the step failed.
   bool count_report(RowOutcome& outcome) const {
-    bool is_converged = true, has_failed = false;
-    for (const wire::Role role : kPhysicsOfRow) {
-      const StepReport& report = played_.session().report(role);
-      is_converged = is_converged && !report.has(StepFlag::not_converged);
-      has_failed = has_failed || report.has_failed();
-    }
-    if (!is_converged) ++outcome.not_converged;
-    if (!has_failed) return false;
+    if (!values_.has_converged()) ++outcome.not_converged;
+    if (!values_.has_failed()) return false;
     outcome.code = ExitCode::diverged;
     outcome.message = fmt::format("{} at {:.6g} s", played_.session().failure(), played_.time().seconds());
     return true;
   }
 
   void look() {
-    std::span<double> rest = values_;
-    for (const wire::Role role : kPhysicsOfRow) {
-      const coupling::Subsystem* subsystem = played_.session().subsystem(role);
-      if (subsystem == nullptr) continue;
-      const std::size_t count = subsystem->variables().size();
-      subsystem->read_variables(rest.first(count));
-      rest = rest.subspan(count);
-    }
-    for (MeasuredRun& run : runs_) run.add(played_.time().seconds(), values_);
+    const std::span<const double> values = values_.read();
+    for (MeasuredRun& run : runs_) run.add(played_.time().seconds(), values);
   }
 
   const scene::Scene& scene_;
   PlayedScene played_;
   std::vector<Measure> measures_;
   std::vector<MeasuredRun> runs_;
-  std::vector<double> values_;  // of all variables
+  VariableValues values_;
 };
 
 }  // namespace

@@ -24,6 +24,10 @@ bool are_equal(std::span<const double> samples) {
 
 }  // namespace
 
+double student_quantile(double degrees_of_freedom) {
+  return boost::math::quantile(boost::math::students_t(degrees_of_freedom), kQuantile);
+}
+
 SampleStatistics statistics_of(std::span<const double> samples) {
   if (samples.empty()) return {};
   SampleStatistics result{.count = samples.size(), .mean = mean_of(samples)};
@@ -32,8 +36,7 @@ SampleStatistics statistics_of(std::span<const double> samples) {
   for (const double x : samples) squares += (x - result.mean) * (x - result.mean);
   const auto n = static_cast<double>(samples.size());
   result.deviation = std::sqrt(squares / (n - 1));
-  const boost::math::students_t distribution(n - 1);
-  const double half = boost::math::quantile(distribution, kQuantile) * result.deviation / std::sqrt(n);
+  const double half = student_quantile(n - 1) * result.deviation / std::sqrt(n);
   result.interval = Interval{result.mean - half, result.mean + half};
   return result;
 }

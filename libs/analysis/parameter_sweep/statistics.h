@@ -21,6 +21,9 @@ struct Interval {
   double low = 0, high = 0;
 };
 
+// 0.975 quantile of Student's distribution.
+[[nodiscard]] double student_quantile(double degrees_of_freedom);
+
 struct SampleStatistics {
   std::size_t count = 0;
   double mean = 0;

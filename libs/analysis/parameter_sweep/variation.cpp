@@ -17,10 +17,10 @@
 namespace slew::analysis {
 namespace {
 
-[[noreturn]] void refuse_variation(const std::string& text, const std::string& why) {
-  throw Failure(ExitCode::bad_input, fmt::format("--vary {}: {}; nothing was run; write PATH=FROM..TO:COUNT, such as "
+[[noreturn]] void refuse_variation(const std::string& option, const std::string& why) {
+  throw Failure(ExitCode::bad_input, fmt::format("{}: {}; nothing was run; write PATH=FROM..TO:COUNT, such as "
                                                  "'Bag.mass=200kg..1500kg:50', or PATH=VALUE,VALUE,...",
-                                                 text, why));
+                                                 option, why));
 }
 
 // Uniform in [0, 1) and whole numbers from the generator's bits: the distributions of the standard library differ
@@ -43,7 +43,7 @@ std::vector<std::size_t> permutation(std::size_t count, Generator& generator) {
   return order;
 }
 
-void read_range(const std::string& text, const std::string& values, std::size_t dots, Sampling sampling,
+void read_range(const std::string& option, const std::string& values, std::size_t dots, Sampling sampling,
                 Variation& variation) {
   const std::size_t colon = values.rfind(':');
   const std::string_view all = values;
@@ -51,26 +51,26 @@ void read_range(const std::string& text, const std::string& values, std::size_t 
   const scene::NumberText to =
       scene::split_number(all.substr(dots + 2, colon == std::string::npos ? colon : colon - dots - 2));
   for (const scene::NumberText& end : {from, to}) {
-    if (!end.is_number) refuse_variation(text, end.problem.what);
+    if (!end.is_number) refuse_variation(option, end.problem.what);
   }
   if (!from.rest.empty() && from.rest != to.rest) {
-    refuse_variation(text, fmt::format("the ends are in '{}' and '{}', one unit is needed", from.rest, to.rest));
+    refuse_variation(option, fmt::format("the ends are in '{}' and '{}', one unit is needed", from.rest, to.rest));
   }
   variation.unit = to.rest;
   variation.range = {static_cast<double>(from.value), static_cast<double>(to.value), 0};
-  if (variation.range->from == variation.range->to) refuse_variation(text, "both ends are the same value");
+  if (variation.range->from == variation.range->to) refuse_variation(option, "both ends are the same value");
   if (colon == std::string::npos) {
-    if (sampling == Sampling::grid) refuse_variation(text, "a grid needs the number of values behind ':'");
+    if (sampling == Sampling::grid) refuse_variation(option, "a grid needs the number of values behind ':'");
     return;
   }
   if (sampling != Sampling::grid) {
-    refuse_variation(text, "a count belongs to --sample grid; --samples gives the rows of random and lhs");
+    refuse_variation(option, "a count belongs to --sample grid; --samples gives the rows of random and lhs");
   }
   int& count = variation.range->count;
   const char* end = values.data() + values.size();
   const auto [rest, error] = std::from_chars(values.data() + colon + 1, end, count);
   if (error != std::errc() || rest != end || count < 2 || count > static_cast<int>(kMostSweepRows)) {
-    refuse_variation(text, fmt::format("'{}' is no count of 2 to {}", values.substr(colon + 1), kMostSweepRows));
+    refuse_variation(option, fmt::format("'{}' is no count of 2 to {}", values.substr(colon + 1), kMostSweepRows));
   }
 }
 
@@ -133,19 +133,20 @@ std::vector<std::string> grid_values(const Variation& variation) {
   return values;
 }
 
-Variation parse_variation(const std::string& text, Sampling sampling) {
+Variation parse_variation(const std::string& text, Sampling sampling, const std::string& option) {
+  const std::string place = option + " " + text;
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) refuse_variation(text, "'=' is missing");
+  if (equals == std::string::npos || equals == 0) refuse_variation(place, "'=' is missing");
   const std::string values = text.substr(equals + 1);
   Variation variation{.path = text.substr(0, equals), .unit = ""};
   if (const std::size_t dots = values.find(".."); dots != std::string::npos) {
-    read_range(text, values, dots, sampling, variation);
+    read_range(place, values, dots, sampling, variation);
     return variation;
   }
   try {
     variation.list = parse_axis(text).values;
   } catch (const Failure&) {
-    refuse_variation(text, "there is no list of values");
+    refuse_variation(place, "there is no list of values");
   }
   read_numbers(variation);
   return variation;

@@ -45,8 +45,9 @@ struct Variation {
 // Values of the grid along this variation, as texts for --set.
 [[nodiscard]] std::vector<std::string> grid_values(const Variation& variation);
 
-// Throws Failure (bad_input).
-[[nodiscard]] Variation parse_variation(const std::string& text, Sampling sampling);
+// option: that of the command line which the text belongs to. Throws Failure (bad_input).
+[[nodiscard]] Variation parse_variation(const std::string& text, Sampling sampling,
+                                        const std::string& option = "--vary");
 
 // Rows in order; of a grid the last variation changes fastest. samples: rows of random and lhs. Throws Failure
 // (bad_input) for more than kMostSweepRows.
