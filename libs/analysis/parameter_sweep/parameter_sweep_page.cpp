@@ -66,7 +66,7 @@ function parallel(){const W=1100,H=380,T=56,B=24,L=60,svg=$('parallel'),step=(W-
  for(const r of R){let d='',pen='M';C.forEach((c,k)=>{const f=part(c,r);if(f==null){pen='M';return}d+=pen+X(k).toFixed(1)+' '+Y(f).toFixed(1);pen='L'});
   const p=link(el('path',{class:'row',d,stroke:colour(r)}),r);p.append(el('title',{},words(r)));svg.append(p)}
  C.forEach((c,k)=>{svg.append(el('line',{class:'axis',x1:X(k),x2:X(k),y1:T,y2:H-B}));
-  const most=Math.floor((C.length>1?step:W)/6.5),name=c.name.length>most?c.name.slice(0,most-1)+'\u2026':c.name,
+  const isEdge=k==0||k==C.length-1,most=Math.floor(((C.length>1?isEdge?step/2+L:step:W)-10)/6.5),name=c.name.length>most?c.name.slice(0,most-1)+'\u2026':c.name,
    lines=[name,c.unit?'['+c.unit+']':''],at=k==0?'start':k==C.length-1?'end':'middle',x=k==0?X(k)-L+4:k==C.length-1?X(k)+L-4:X(k);
   lines.forEach((t,j)=>{const e=el('text',{x,y:T-30+14*j,'text-anchor':at},t);e.append(el('title',{},title(c)));if(j)e.setAttribute('class','quiet');svg.append(e)});
   for(const v of ticks(c,5)){const y=Y((v-c.low)/(c.high-c.low));svg.append(el('line',{class:'axis',x1:X(k)-4,x2:X(k),y1:y,y2:y}),
