@@ -12,7 +12,7 @@ Json list(math::Vec3 v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
-Json to_json(const flex::RigidMass& mass) {
+Json mass_json(const flex::RigidMass& mass) {
   const math::Mat3 inertia = flex::central_inertia(mass);
   return {{"mass", mass.mass},
           {"centre", list(flex::centre_of(mass))},
@@ -20,7 +20,7 @@ Json to_json(const flex::RigidMass& mass) {
           {"products", Json::array({inertia(0, 1), inertia(0, 2), inertia(1, 2)})}};
 }
 
-Json to_json(const flex::Source& source) {
+Json source_json(const flex::Source& source) {
   return {{"model", source.model},
           {"made_of", source.made_of},
           {"attachment", source.attachment == flex::Attachment::clamped ? "clamped" : "free"},
@@ -34,7 +34,7 @@ Json to_json(const flex::Source& source) {
           {"stiffening", source.stiffening == flex::GeometricStiffening::straight_beam ? "straight_beam" : "none"}};
 }
 
-Json to_json(const flex::ModeFigures& mode, bool has_model) {
+Json mode_json(const flex::ModeFigures& mode, bool has_model) {
   Json out = {{"mode", mode.ordinal},     {"kept", mode.is_kept},
               {"full_hz", Json()},        {"reduced_hz", mode.reduced / (2 * M_PI)},
               {"relative_error", Json()}, {"effective_mass", mode.effective_mass}};
@@ -48,7 +48,7 @@ Json to_json(const flex::ModeFigures& mode, bool has_model) {
 
 Json to_json(const flex::ReductionReport& report) {
   Json modes = Json::array(), directions = Json::array();
-  for (const flex::ModeFigures& mode : report.modes) modes.push_back(to_json(mode, report.has_model));
+  for (const flex::ModeFigures& mode : report.modes) modes.push_back(mode_json(mode, report.has_model));
   for (const flex::ComplianceFigures& c : report.compliance) {
     directions.push_back({{"direction", std::string(1, c.direction)},
                           {report.has_model ? "full" : "all_modes", c.full},
@@ -57,18 +57,18 @@ Json to_json(const flex::ReductionReport& report) {
   }
   Json out = {
       {"has_model", report.has_model},
-      {"source", to_json(report.source)},
+      {"source", source_json(report.source)},
       {"freedoms", Json()},
       {"held_freedoms", Json()},
       {"full_mass", Json()},
-      {"reduced_mass", to_json(report.reduced_mass)},
+      {"reduced_mass", mass_json(report.reduced_mass)},
       {"modes", modes},
       {"kept_effective_mass", report.kept_effective_mass},
       {"compliance", {{"tip", report.tip}, {"reference_nodes", report.reference_nodes}, {"directions", directions}}}};
   if (!report.has_model) return out;
   out["freedoms"] = report.freedoms;
   out["held_freedoms"] = report.held_freedoms;
-  out["full_mass"] = to_json(report.full_mass);
+  out["full_mass"] = mass_json(report.full_mass);
   return out;
 }
 

@@ -259,7 +259,8 @@ std::optional<Node> read_with_includes(const std::string& path, Report& report, 
   return reader.read(path, file.filename().string());
 }
 
-bool expand(Node& root, const Overrides& overrides, Report& report, std::vector<std::string>* warnings) {
+bool expand(Node& root, const Overrides& overrides, Report& report, std::vector<std::string>* warnings,
+            std::vector<ParameterText>& values) {
   std::vector<Setting> settings;
   for (const std::string& text : overrides) {
     std::optional<Setting> setting = parse_setting(text, kSetting, report);
@@ -275,6 +276,7 @@ bool expand(Node& root, const Overrides& overrides, Report& report, std::vector<
   std::size_t problems = report.size();
   expand_instances(root, scope, context, warnings);
   bool is_sound = report.size() == problems;
+  values = scope.own_values();
   for (Setting& setting : settings) set_value(root, std::move(setting), scope, report);
   problems = report.size();
   place_named_points(root, report);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/suggestion.h"
+#include "scene/compiled_expression.h"
 #include "scene/number.h"
 #include "scene/quantity.h"
 
@@ -33,10 +34,13 @@ bool begins_unit(char c) {
 
 // ---- reading
 
+using Kind = ExpressionStep::Kind;
+
 class Evaluator {
  public:
-  Evaluator(std::string_view text, ExpressionNames& names, UnitSystem& units)
-      : text_(text), names_(names), units_(units) {}
+  // steps: receives what was evaluated, in postfix order.
+  Evaluator(std::string_view text, ExpressionNames& names, UnitSystem& units, std::vector<ExpressionStep>& steps)
+      : text_(text), names_(names), units_(units), steps_(steps) {}
 
   Quantity evaluate() {
     skip_spaces();
@@ -88,6 +92,7 @@ class Evaluator {
       const char sign = next();
       take(sign);
       left = sum_of(at, sign, left, read_product());
+      steps_.push_back({.kind = sign == '+' ? Kind::sum : Kind::difference});
     }
     return left;
   }
@@ -100,6 +105,7 @@ class Evaluator {
       take(next());
       if (next() == '*') refuse(at, "'**' is no operator", "^ for a power");
       left = product_of(at, left, read_sign(), sign);
+      steps_.push_back({.kind = sign > 0 ? Kind::product : Kind::quotient});
     }
     return left;
   }
@@ -110,7 +116,9 @@ class Evaluator {
     const bool is_minus = next() == '-';
     take(next());
     Quantity value = read_sign();
-    if (is_minus) value.value = -value.value;
+    if (!is_minus) return value;
+    value.value = -value.value;
+    steps_.push_back({.kind = Kind::negation});
     return value;
   }
 
@@ -119,7 +127,9 @@ class Evaluator {
     const std::size_t at = at_;
     if (!take('^')) return base;
     const Level level(*this);
-    return power_of(at, base, read_sign());
+    const Quantity power = power_of(at, base, read_sign());
+    steps_.push_back({.kind = Kind::power});
+    return power;
   }
 
   Quantity read_atom() {
@@ -160,7 +170,12 @@ class Evaluator {
     const NamedQuantity found = quantity_of(text_.substr(begin, (has_unit_here ? at_ : end) - begin), units_);
     if (!found.quantity) throw ExpressionFault{{begin, *found.problem}};
     skip_spaces();
-    return *found.quantity;
+    return constant(*found.quantity);
+  }
+
+  Quantity constant(const Quantity& quantity) {
+    steps_.push_back({.kind = Kind::number, .number = quantity.value});
+    return quantity;
   }
 
   // moves behind the unit
@@ -192,7 +207,7 @@ class Evaluator {
 
   Quantity read_name() {
     const std::size_t begin = at_;
-    while (continues_word(next())) ++at_;
+    while (continues_word(next()) || (names_.have_dots() && next() == '.' && begins_word(next(1)))) ++at_;
     const std::string_view name = text_.substr(begin, at_ - begin);
     skip_spaces();
     const ExpressionFunction* function = find_function(name);
@@ -201,12 +216,14 @@ class Evaluator {
       return call(*function, begin);
     }
     if (function != nullptr) refuse(begin, fmt::format("'{}' is a function", name), fmt::format("{}(...)", name));
-    if (name == "pi") return {std::numbers::pi, {}, true};
+    if (name == "pi") return constant({std::numbers::pi, {}, true});
     NamedQuantity found = names_.value(name);
     if (found.problem) throw ExpressionFault{{begin, std::move(*found.problem)}};
     if (!found.quantity) {
       refuse(begin, fmt::format("there is no parameter '{}'", name), "", names_.closest_of(name));
     }
+    if (!found.quantity->is_variable) return constant(*found.quantity);
+    steps_.push_back({.kind = Kind::variable, .index = found.variable});
     return *found.quantity;
   }
 
@@ -228,19 +245,21 @@ class Evaluator {
       if (!take(',')) break;
     }
     if (!take(')')) refuse_unclosed(opened);
-    return apply(function, call);
+    const Quantity result = apply(function, call);
+    steps_.push_back({.kind = Kind::function, .index = call.arguments.size(), .function = &function});
+    return result;
   }
 
   std::string_view text_;
   ExpressionNames& names_;
   UnitSystem& units_;
+  std::vector<ExpressionStep>& steps_;
   std::size_t at_ = 0;
   int depth_ = 0;
 };
 
-}  // namespace
-
-ExpressionResult evaluate(std::string_view text, ExpressionNames& names, UnitSystem& units) {
+ExpressionResult read(std::string_view text, ExpressionNames& names, UnitSystem& units,
+                      std::vector<ExpressionStep>& steps) {
   if (text.size() > kMaxExpressionBytes) {
     return {std::nullopt,
             {0,
@@ -248,10 +267,24 @@ ExpressionResult evaluate(std::string_view text, ExpressionNames& names, UnitSys
               fmt::format("at most {}; parameters hold its parts", kMaxExpressionBytes), ""}}};
   }
   try {
-    return {Evaluator(text, names, units).evaluate(), {}};
+    return {Evaluator(text, names, units, steps).evaluate(), {}};
   } catch (ExpressionFault& fault) {
     return {std::nullopt, std::move(fault.problem)};
   }
+}
+
+}  // namespace
+
+ExpressionResult evaluate(std::string_view text, ExpressionNames& names, UnitSystem& units) {
+  std::vector<ExpressionStep> steps;
+  return read(text, names, units, steps);
+}
+
+CompiledResult compile(std::string_view text, ExpressionNames& names, UnitSystem& units) {
+  std::vector<ExpressionStep> steps;
+  ExpressionResult result = read(text, names, units, steps);
+  if (!result.quantity) return {std::nullopt, std::move(result.fault)};
+  return {CompiledExpression(std::move(steps), result.quantity->exponent), {}};
 }
 
 NamedQuantity quantity_of(std::string_view text, UnitSystem& units) {

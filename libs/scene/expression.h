@@ -32,7 +32,8 @@ inline constexpr int kMaxExpressionDepth = 32;  // nested brackets, signs and po
 struct Quantity {
   double value = 0;  // SI
   Exponents exponent{};
-  bool is_bare = true;  // a number without unit, from such numbers alone
+  bool is_bare = true;       // a number without unit, from such numbers alone
+  bool is_variable = false;  // its value changes during a run, and is NaN here
 };
 
 struct ExpressionProblem {
@@ -44,6 +45,7 @@ struct ExpressionProblem {
 struct NamedQuantity {
   std::optional<Quantity> quantity;
   std::optional<ValueProblem> problem;
+  std::size_t variable = 0;  // index of a quantity that is a variable
 };
 
 class ExpressionNames {
@@ -52,6 +54,8 @@ class ExpressionNames {
   [[nodiscard]] virtual bool has(std::string_view name) const = 0;
   [[nodiscard]] virtual NamedQuantity value(std::string_view name) = 0;
   [[nodiscard]] virtual std::string closest_of(std::string_view name) const = 0;
+  // Names such as "Bag.position.x".
+  [[nodiscard]] virtual bool have_dots() const { return false; }
 };
 
 struct ExpressionResult {

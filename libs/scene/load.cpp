@@ -503,10 +503,13 @@ Scene read_tree(Node root, LoadContext load_context, const std::string& name, co
                 Report& report) {
   std::vector<std::string> warnings;
   // the text of a session or a recording is expanded already
-  if (!expand(root, overrides, report, load_context.has_folder ? &warnings : nullptr))
+  std::vector<ParameterText> parameter_texts;
+  if (!expand(root, overrides, report, load_context.has_folder ? &warnings : nullptr, parameter_texts)) {
     report.fail(kMaxReportedProblems);
+  }
   Scene scene = SceneReader(root, std::move(load_context), report).read(name);
   if (!report.is_clean()) report.fail(kMaxReportedProblems);
+  scene.parameter_texts = std::move(parameter_texts);
   scene.warnings.insert(scene.warnings.begin(), warnings.begin(), warnings.end());
   return scene;
 }

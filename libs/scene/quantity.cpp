@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace slew::scene {
@@ -30,7 +31,8 @@ Quantity number_like(double value, const Quantity& from) {
 }
 
 Quantity checked(std::size_t at, Quantity result) {
-  if (!std::isfinite(result.value)) refuse(at, "the result is not a finite number", "a finite number");
+  if (!result.is_variable && !std::isfinite(result.value))
+    refuse(at, "the result is not a finite number", "a finite number");
   for (const std::int8_t power : result.exponent) {
     if (std::abs(power) > kMostExponent) refuse(at, "the unit has too large a power");
   }
@@ -99,27 +101,39 @@ Quantity extreme(const FunctionCall& call, bool is_largest) {
   return result;
 }
 
+using Values = std::span<const double>;
+
 constexpr ExpressionFunction kFunctions[] = {
-    {"sin", 1, [](const FunctionCall& call) { return ratio_of(std::sin(angle_argument(call))); }},
-    {"cos", 1, [](const FunctionCall& call) { return ratio_of(std::cos(angle_argument(call))); }},
-    {"tan", 1, [](const FunctionCall& call) { return ratio_of(std::tan(angle_argument(call))); }},
-    {"asin", 1, [](const FunctionCall& call) { return angle_of(std::asin(sine_argument(call))); }},
-    {"acos", 1, [](const FunctionCall& call) { return angle_of(std::acos(sine_argument(call))); }},
-    {"atan", 1, [](const FunctionCall& call) { return angle_of(std::atan(number_argument(call))); }},
+    {"sin", 1, [](const FunctionCall& call) { return ratio_of(std::sin(angle_argument(call))); },
+     [](Values x) { return std::sin(x[0]); }},
+    {"cos", 1, [](const FunctionCall& call) { return ratio_of(std::cos(angle_argument(call))); },
+     [](Values x) { return std::cos(x[0]); }},
+    {"tan", 1, [](const FunctionCall& call) { return ratio_of(std::tan(angle_argument(call))); },
+     [](Values x) { return std::tan(x[0]); }},
+    {"asin", 1, [](const FunctionCall& call) { return angle_of(std::asin(sine_argument(call))); },
+     [](Values x) { return std::asin(x[0]); }},
+    {"acos", 1, [](const FunctionCall& call) { return angle_of(std::acos(sine_argument(call))); },
+     [](Values x) { return std::acos(x[0]); }},
+    {"atan", 1, [](const FunctionCall& call) { return angle_of(std::atan(number_argument(call))); },
+     [](Values x) { return std::atan(x[0]); }},
     {"atan2", 2,
      [](const FunctionCall& call) {
        require_same(call.places[1], "atan2", call.arguments[0], call.arguments[1]);
        return angle_of(std::atan2(call.arguments[0].value, call.arguments[1].value));
-     }},
-    {"sqrt", 1, square_root},
+     },
+     [](Values x) { return std::atan2(x[0], x[1]); }},
+    {"sqrt", 1, square_root, [](Values x) { return std::sqrt(x[0]); }},
     {"abs", 1,
      [](const FunctionCall& call) {
        Quantity x = call.arguments[0];
        x.value = std::abs(x.value);
        return x;
-     }},
-    {"min", 0, [](const FunctionCall& call) { return extreme(call, false); }},
-    {"max", 0, [](const FunctionCall& call) { return extreme(call, true); }},
+     },
+     [](Values x) { return std::abs(x[0]); }},
+    {"min", 0, [](const FunctionCall& call) { return extreme(call, false); },
+     [](Values x) { return *std::min_element(x.begin(), x.end()); }},
+    {"max", 0, [](const FunctionCall& call) { return extreme(call, true); },
+     [](Values x) { return *std::max_element(x.begin(), x.end()); }},
 };
 
 }  // namespace
@@ -130,12 +144,14 @@ void refuse(std::size_t at, std::string what, std::string expected, std::string 
 
 Quantity sum_of(std::size_t at, char sign, const Quantity& a, const Quantity& b) {
   require_same(at, std::string_view(&sign, 1), a, b);
-  return checked(at, {sign == '+' ? a.value + b.value : a.value - b.value, a.exponent, a.is_bare && b.is_bare});
+  return checked(at, {sign == '+' ? a.value + b.value : a.value - b.value, a.exponent, a.is_bare && b.is_bare,
+                      a.is_variable || b.is_variable});
 }
 
 Quantity product_of(std::size_t at, const Quantity& a, const Quantity& b, int sign) {
   if (sign < 0 && b.value == 0) refuse(at, "division by zero", "a divisor other than 0");
-  Quantity result{sign > 0 ? a.value * b.value : a.value / b.value, a.exponent, a.is_bare && b.is_bare};
+  Quantity result{sign > 0 ? a.value * b.value : a.value / b.value, a.exponent, a.is_bare && b.is_bare,
+                  a.is_variable || b.is_variable};
   for (std::size_t i = 0; i < result.exponent.size(); ++i) {
     result.exponent[i] = static_cast<std::int8_t>(result.exponent[i] + sign * b.exponent[i]);
   }
@@ -145,8 +161,14 @@ Quantity product_of(std::size_t at, const Quantity& a, const Quantity& b, int si
 Quantity power_of(std::size_t at, const Quantity& base, const Quantity& exponent) {
   if (has_unit(exponent)) refuse(at, "the exponent is " + name_of_value(exponent), "a number");
   if (base.value == 0 && exponent.value < 0) refuse(at, "division by zero: a negative power of 0", "another base");
-  Quantity result{std::pow(base.value, exponent.value), {}, base.is_bare && exponent.is_bare};
+  Quantity result{std::pow(base.value, exponent.value),
+                  {},
+                  base.is_bare && exponent.is_bare,
+                  base.is_variable || exponent.is_variable};
   if (has_unit(base)) {
+    if (exponent.is_variable) {
+      refuse(at, name_of_value(base) + " to a power that changes during the run", "a constant exponent");
+    }
     if (exponent.value != std::round(exponent.value) || std::abs(exponent.value) > kMostPower) {
       refuse(at, fmt::format("{} to the power {}", name_of_value(base), exponent.value),
              fmt::format("a whole exponent of at most {}, or sqrt()", kMostPower));
@@ -176,7 +198,12 @@ Quantity apply(const ExpressionFunction& function, const FunctionCall& call) {
     refuse(call.at, fmt::format("{}() has {} arguments", function.name, count),
            function.arguments == 0 ? "one or more" : std::to_string(function.arguments));
   }
-  return checked(call.at, function.apply(call));
+  Quantity result = function.apply(call);
+  if (std::any_of(call.arguments.begin(), call.arguments.end(), [](const Quantity& x) { return x.is_variable; })) {
+    result.is_variable = true;
+    result.value = std::numeric_limits<double>::quiet_NaN();
+  }
+  return checked(call.at, result);
 }
 
 }  // namespace slew::scene

@@ -34,6 +34,8 @@ struct ExpressionFunction {
   std::string_view name;
   std::size_t arguments;  // 0: one or more
   Quantity (*apply)(const FunctionCall& call);
+  // The same of values in SI; NaN where there is none.
+  double (*value)(std::span<const double> arguments);
 };
 
 [[nodiscard]] std::span<const ExpressionFunction> expression_functions() noexcept;

@@ -67,6 +67,12 @@ struct FlexibleBody {
   std::vector<double> stiffness, damping;            // by pair of modes
 };
 
+// A parameter of the scene language (`parameters:`) and its value, such as "L" and "2.6 m".
+struct ParameterText {
+  std::string name;
+  std::string value;
+};
+
 struct Scene {
   std::string name;
   std::string description;
@@ -85,9 +91,10 @@ struct Scene {
   std::vector<std::string> warnings;
   std::vector<FlexibleBody> flexible_bodies;  // with modes, in the bodies' order; none in a scene without files
   std::vector<Asset> assets;
-  std::vector<TableFile> table_files;       // tables that stay in their files; the read ones are among the assets
-  std::vector<std::string> other_payloads;  // bodies that the machine lifts beside mechanics.payload
-  std::vector<MeshInertia> mesh_inertias;   // results of the files read; none in a scene from its expanded text
+  std::vector<TableFile> table_files;          // tables that stay in their files; the read ones are among the assets
+  std::vector<std::string> other_payloads;     // bodies that the machine lifts beside mechanics.payload
+  std::vector<ParameterText> parameter_texts;  // of the scene's own file; none in a scene from its expanded text
+  std::vector<MeshInertia> mesh_inertias;      // results of the files read; none in a scene from its expanded text
 
   // The scene after includes and overrides as canonical YAML in SI: reading it gives the same Scene (assets by name).
   std::string expanded_text;

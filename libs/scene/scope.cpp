@@ -192,6 +192,14 @@ std::vector<std::string_view> Scope::own_names() const {
   return names;
 }
 
+std::vector<ParameterText> Scope::own_values() const {
+  std::vector<ParameterText> values;
+  for (const Parameter& parameter : parameters_) {
+    if (parameter.state == Parameter::State::done) values.push_back({parameter.name, parameter.value.text});
+  }
+  return values;
+}
+
 Scope::Found Scope::look_up(std::string_view name) {
   for (Scope* scope = this; scope != nullptr; scope = scope->around_) {
     const auto found = scope->numbers_.find(name);

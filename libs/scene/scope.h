@@ -15,6 +15,7 @@
 
 #include "scene/diagnostic.h"
 #include "scene/expression.h"
+#include "scene/scene.h"
 #include "scene/units.h"
 #include "scene/yaml_tree.h"
 
@@ -58,6 +59,8 @@ class Scope final : public ExpressionNames {
   };
   [[nodiscard]] std::vector<Unused> unused() const;
   [[nodiscard]] std::vector<std::string_view> own_names() const;
+  // Own parameters that have a value.
+  [[nodiscard]] std::vector<ParameterText> own_values() const;
 
   // ExpressionNames
   [[nodiscard]] bool has(std::string_view name) const override;

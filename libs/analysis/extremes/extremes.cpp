@@ -19,14 +19,6 @@ namespace {
 constexpr const char* kSuite[] = {"single_cylinder.yaml", "truck_crane.yaml", "truck_crane_flexible.yaml",
                                   "truck_crane_contact.yaml"};
 
-std::string scene_text(const scene::Scene& scene) {
-  std::string text = scene.expanded_text;
-  for (const scene::Asset& asset : scene.assets) {
-    for (const std::uint8_t byte : asset.sha256) text += fmt::format("{:02x}", byte);
-  }
-  return text;
-}
-
 class Examiner {
  public:
   explicit Examiner(const ExtremesOptions& options) : options_(options) {
@@ -61,7 +53,7 @@ class Examiner {
     scene_options.overrides = options_.overrides;
     scene_options.overrides.emplace_back("session.solution=split");
     const scene::Scene scene = scene::load_scene(scene_options);
-    const std::string text = scene_text(scene);
+    const std::string text = result_text(scene);
     for (const ExtremeCase& one : extreme_cases(scene)) {
       result_.rows.push_back(
           {.scene = scene.name,

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <optional>
 
+#include "analysis/sweep/batch.h"
 #include "core/child_process.h"
 #include "core/failure.h"
 #include "core/installation.h"
@@ -22,23 +22,18 @@ namespace {
 
 constexpr int kPollMs = 20;  // between two looks at the processes
 
-std::optional<Json> read_result(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::nullopt;
-  return Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error) return;
+  throw Failure(ExitCode::storage, fmt::format("cannot make the folder {} ({}); nothing was run; name another one",
+                                               folder, error.message()));
 }
 
 class Sweep {
  public:
   Sweep(std::span<const SweepTask> tasks, const SweepOptions& options, const SweepProgress& progress)
-      : tasks_(tasks), options_(options), progress_(progress), results_(tasks.size()) {
-    std::error_code error;
-    std::filesystem::create_directories(options.folder, error);
-    if (error) {
-      throw Failure(ExitCode::storage, fmt::format("cannot make the folder {} ({}); nothing was run; name another one",
-                                                   options.folder, error.message()));
-    }
-  }
+      : tasks_(tasks), options_(options), progress_(progress), results_(tasks.size()) {}
 
   std::vector<SweepResult> run() {
     for (std::size_t i = 0; i < tasks_.size(); ++i) take_kept(i);
@@ -136,7 +131,15 @@ class Sweep {
 
 std::vector<SweepResult> run_sweep(std::span<const SweepTask> tasks, const SweepOptions& options,
                                    const SweepProgress& progress) {
+  make_folder(options.folder);
+  if (options.engine != Engine::local) return run_batch(tasks, options, progress);
   return Sweep(tasks, options, progress).run();
+}
+
+std::optional<Json> read_result(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::nullopt;
+  return Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
 }
 
 std::string result_file(const std::string& folder, const std::string& key) {
@@ -153,6 +156,14 @@ void write_result(const std::string& file, const Json& value) {
   if (!out || error) {
     throw Failure(ExitCode::storage, "cannot write " + file + "; the result is lost; free some space and run it again");
   }
+}
+
+std::string result_text(const scene::Scene& scene) {
+  std::string text = scene.expanded_text;
+  for (const scene::Asset& asset : scene.assets) {
+    for (const std::uint8_t byte : asset.sha256) text += fmt::format("{:02x}", byte);
+  }
+  return text;
 }
 
 std::string key_of(std::span<const std::string> texts) {

@@ -10,11 +10,13 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/json.h"
+#include "scene/scene.h"
 
 namespace slew::analysis {
 
@@ -26,10 +28,15 @@ struct SweepTask {
 };
 
 constexpr int kMostWorkers = 64;
+constexpr int kMostParts = 1000;  // of a batch; Slurm's own limit of a job array is 1001
+
+// Where tasks run: processes of this machine, or a batch (batch.h).
+enum class Engine { local, slurm, mpi };
 
 struct SweepOptions {
-  std::string folder;     // made when it is missing
-  int workers = 2;        // processes at once
+  std::string folder;  // made when it is missing
+  int workers = 2;     // processes at once
+  Engine engine = Engine::local;
   bool is_fresh = false;  // ignores the results of earlier sweeps
   std::string program;    // empty: this one
 };
@@ -56,8 +63,14 @@ using SweepProgress = std::function<bool(const SweepState&)>;
 // File of a task's result.
 [[nodiscard]] std::string result_file(const std::string& folder, const std::string& key);
 
+// None: there is no such file, or it is no JSON.
+[[nodiscard]] std::optional<Json> read_result(const std::string& file);
+
 // Called by the process of a task. Throws Failure (storage).
 void write_result(const std::string& file, const Json& value);
+
+// Everything in a scene that a result depends on, for its key: its text, and the digests of its files.
+[[nodiscard]] std::string result_text(const scene::Scene& scene);
 
 // A key from all texts that a result depends on: 16 hexadecimal digits.
 [[nodiscard]] std::string key_of(std::span<const std::string> texts);

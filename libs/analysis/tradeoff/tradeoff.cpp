@@ -129,15 +129,6 @@ class Trader {
     return row_options;
   }
 
-  // text that a result depends on: the scene, its files, and the program
-  [[nodiscard]] static std::string text_of_scene(const scene::Scene& scene) {
-    std::string text = scene.expanded_text;
-    for (const scene::Asset& asset : scene.assets) {
-      for (const std::uint8_t byte : asset.sha256) text += fmt::format("{:02x}", byte);
-    }
-    return text;
-  }
-
   // Rows with the same scene are one; a value that is refused alone is not tried with others.
   void plan_rows() {
     const std::vector<Settings> grid =
@@ -153,7 +144,7 @@ class Trader {
       TradeoffRow row{.settings = settings, .result = {}};
       try {
         const scene::Scene scene = scene::load_scene(options_with(overrides_of(settings)));
-        planned = {scene.session.step, text_of_scene(scene), true};
+        planned = {scene.session.step, result_text(scene), true};
         if (!seen.insert(planned.text).second) continue;
       } catch (const scene::LoadError& error) {
         row.is_done = true;
@@ -250,7 +241,7 @@ class Trader {
       job.time_limit = kReferenceLimit;
       const scene::Scene scene = scene::load_scene(job.scene);
       tasks.push_back(
-          task_of(job, fmt::format("reference, step {} ms", H * 1e3), kReferenceWeight, text_of_scene(scene)));
+          task_of(job, fmt::format("reference, step {} ms", H * 1e3), kReferenceWeight, result_text(scene)));
       reference.samples = job.samples;
     }
     const std::vector<SweepResult> results = run_sweep(tasks, sweep_options(), part(from, to));
@@ -358,7 +349,7 @@ class Trader {
       job.repeats = 1;
       job.time_limit = kReferenceLimit;
       const scene::Scene scene = scene::load_scene(job.scene);
-      tasks.push_back(task_of(job, "error of the reference", kReferenceWeight, text_of_scene(scene)));
+      tasks.push_back(task_of(job, "error of the reference", kReferenceWeight, result_text(scene)));
     }
     const std::vector<SweepResult> results = run_sweep(tasks, sweep_options(), part(rows_from_, 1));
     for (std::size_t k = 0; k < row_of.size(); ++k) take(results[k], result_.rows[row_of[k]]);

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/parameter_sweep/row_run.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <span>
+
+#include "analysis/comparison/played_scene.h"
+#include "analysis/parameter_sweep/measure.h"
+#include "analysis/parameter_sweep/variable_values.h"
+#include "core/arithmetic_self_test.h"
+#include "core/failure.h"
+#include "core/state_hash.h"
+#include "node/identity.h"
+
+namespace slew::analysis {
+namespace {
+
+class MeasuredScene {
+ public:
+  MeasuredScene(const scene::Scene& scene, const std::vector<std::string>& texts)
+      : scene_(scene), played_(scene), values_(played_.session()) {
+    const std::vector<ElementVariable> variables = played_.session().variables();
+    for (const std::string& text : texts) measures_.push_back(parse_measure(text, scene, variables));
+    for (const Measure& measure : measures_) runs_.emplace_back(measure);
+  }
+
+  RowOutcome run() {
+    RowOutcome outcome;
+    const StepIndex steps = duration_of_seconds(scene_.session.duration).ns / scene_.session.step_duration().ns;
+    look();
+    while (outcome.steps < steps) {
+      played_.advance();
+      ++outcome.steps;
+      if (count_report(outcome)) return outcome;
+      look();
+    }
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      outcome.values.push_back(runs_[i].value());
+      if (outcome.values.back() || !outcome.message.empty()) continue;
+      outcome.code = ExitCode::failed;
+      outcome.message = fmt::format("{} has no finite value at {:.6g} s; its row has no result", measures_[i].text,
+                                    runs_[i].undefined_at().value_or(0));
+    }
+    const StateHashes hashes = played_.state_hashes();
+    StateHash both;
+    both.add(hashes.mechanics);
+    both.add(hashes.hydraulics);
+    outcome.state_hash = fmt::format("{:016x}", both.digest());
+    return outcome;
+  }
+
+ private:
+  // True if the step failed.
+  bool count_report(RowOutcome& outcome) const {
+    if (!values_.has_converged()) ++outcome.not_converged;
+    if (!values_.has_failed()) return false;
+    outcome.code = ExitCode::diverged;
+    outcome.message = fmt::format("{} at {:.6g} s", played_.session().failure(), played_.time().seconds());
+    return true;
+  }
+
+  void look() {
+    const std::span<const double> values = values_.read();
+    for (MeasuredRun& run : runs_) run.add(played_.time().seconds(), values);
+  }
+
+  const scene::Scene& scene_;
+  PlayedScene played_;
+  std::vector<Measure> measures_;
+  std::vector<MeasuredRun> runs_;
+  VariableValues values_;
+};
+
+}  // namespace
+
+Fingerprint own_fingerprint() {
+  return {node::build_id(), fmt::format("{:016x}", arithmetic_self_test())};
+}
+
+RowOutcome run_row(const SweepJob& job, const scene::Overrides& settings) {
+  RowOutcome outcome;
+  try {
+    scene::SceneOptions options = job.scene;
+    options.overrides.insert(options.overrides.end(), settings.begin(), settings.end());
+    const scene::Scene scene = scene::load_scene(options);
+    outcome = MeasuredScene(scene, job.measures).run();
+  } catch (const scene::LoadError& error) {
+    outcome = {.code = ExitCode::bad_input, .message = error.diagnostics().front().text()};
+  } catch (const Failure& failure) {
+    outcome = {.code = failure.code(), .message = failure.what()};
+  }
+  outcome.fingerprint = own_fingerprint();
+  return outcome;
+}
+
+Json to_json(const SweepJob& job) {
+  return {{"scene", job.scene.file},
+          {"overrides", job.scene.overrides},
+          {"duration", job.scene.duration},
+          {"input", job.scene.input},
+          {"measures", job.measures}};
+}
+
+SweepJob sweep_job_from(const Json& json) {
+  SweepJob job;
+  job.scene.file = json.at("scene").text();
+  job.scene.overrides = json.at("overrides").texts();
+  job.scene.duration = json.at("duration").text();
+  job.scene.input = json.at("input").text();
+  job.scene.is_recording = false;
+  job.measures = json.at("measures").texts();
+  return job;
+}
+
+Json to_json(const RowOutcome& outcome) {
+  Json values = Json::array();
+  for (const std::optional<double>& value : outcome.values) values.push_back(value ? Json(*value) : Json());
+  return {{"code", static_cast<int>(outcome.code)},
+          {"message", outcome.message},
+          {"values", values},
+          {"steps", outcome.steps},
+          {"not_converged", outcome.not_converged},
+          {"state_hash", outcome.state_hash},
+          {"build", outcome.fingerprint.build},
+          {"self_test", outcome.fingerprint.self_test}};
+}
+
+RowOutcome row_outcome_from(const Json& json) {
+  RowOutcome outcome;
+  outcome.code = static_cast<ExitCode>(json.at("code").integer());
+  outcome.message = json.at("message").text();
+  for (const Json& value : json.at("values").items()) {
+    outcome.values.push_back(value.is_number() ? std::optional(value.number()) : std::nullopt);
+  }
+  outcome.steps = json.at("steps").integer();
+  outcome.not_converged = json.at("not_converged").integer();
+  outcome.state_hash = json.at("state_hash").text();
+  outcome.fingerprint = {json.at("build").text(), json.at("self_test").text()};
+  return outcome;
+}
+
+}  // namespace slew::analysis
