@@ -7,6 +7,7 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/displacement_servo.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -39,8 +40,14 @@ constexpr Field kPumpFields[] = {
     field<&PumpDef::swash_per_signal>(
         "swash_per_signal",
         {.range = kFinite, .change = Change::live, .doc = "share of the displacement per unit of the control signal"}),
-    field<&PumpDef::time_constant>(
-        "time_constant", {.dimension = Dimension::time, .range = kPositive, .doc = "time constant of the swash"}),
+    field<&PumpDef::time_constant>("time_constant", {.dimension = Dimension::time,
+                                                     .range = kPositive,
+                                                     .change = Change::live,
+                                                     .doc = "time constant of the swash"}),
+    field<&PumpDef::swash_rate_limit>("swash_rate_limit", {.dimension = Dimension::frequency,
+                                                           .range = kNotNegative,
+                                                           .change = Change::live,
+                                                           .doc = "greatest rate of the swash; 0: none"}),
     field<&PumpDef::maximum_pressure>("maximum_pressure",
                                       {.dimension = Dimension::pressure,
                                        .range = kNotNegative,
@@ -85,12 +92,13 @@ class Pump final : public HydraulicComponent {
     dependencies.add(alpha_, alpha_);
   }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
-    rates.set_rate(alpha_, rate_ * (limited(command(view), rise(view)).value - view[alpha_]));
+    rates.set_rate(alpha_, swash_rate(view, limited(command(view), rise(view)).value).value);
     rates.move(b_, a_, flow(view));
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    const double d_rise = rate_ * limited(command(view), rise(view)).slope;
-    jacobian.add(alpha_, alpha_, -rate_);
+    const ValueSlope least = limited(command(view), rise(view));
+    const double rate = swash_rate(view, least.value).slope, d_rise = rate * least.slope;
+    jacobian.add(alpha_, alpha_, -rate);
     jacobian.add(alpha_, a_, d_rise);
     jacobian.add(alpha_, b_, -d_rise);
     jacobian.move(b_, a_, alpha_, full_flow_);
@@ -115,7 +123,6 @@ class Pump final : public HydraulicComponent {
   void apply_parameters() noexcept override {
     full_flow_ = def_.displacement * def_.speed * def_.volumetric_coefficient;
     G_leak_ = def_.leak_flow / def_.leak_pressure;
-    rate_ = 1 / def_.time_constant;
     // at this rise the full swash takes the whole power
     const double rate = def_.displacement * def_.speed;
     full_power_rise_ = def_.maximum_power > 0 && rate > 0 ? def_.mechanical_coefficient * def_.maximum_power / rate : 0;
@@ -144,6 +151,10 @@ class Pump final : public HydraulicComponent {
     }
     return alpha;
   }
+  // (2) towards the least command
+  [[nodiscard]] ValueSlope swash_rate(const CircuitView& view, double least) const noexcept {
+    return servo_rate(least - view[alpha_], def_.time_constant, def_.swash_rate_limit);
+  }
   // (1)
   [[nodiscard]] double flow(const CircuitView& view) const noexcept {
     return full_flow_ * view[alpha_] - G_leak_ * rise(view);
@@ -153,7 +164,7 @@ class Pump final : public HydraulicComponent {
   StateIndex a_, b_;
   int control_;
   StateIndex alpha_;  // swash 0..1
-  double full_flow_ = 0, G_leak_ = 0, rate_ = 0, full_power_rise_ = 0;
+  double full_flow_ = 0, G_leak_ = 0, full_power_rise_ = 0;
 };
 
 void validate_plain_pump(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {
