@@ -59,6 +59,11 @@ std::span<const ComponentType> component_types() {
   return types;
 }
 
+bool ComponentDef::takes_signal() const {
+  const ComponentType* type = find_component_type(type_name());
+  return type != nullptr && type->has_control_signal;
+}
+
 const ComponentType* find_component_type(std::string_view name) {
   for (const ComponentType& type : component_types()) {
     if (type.name == name) return &type;

@@ -72,13 +72,19 @@ inline void add_spool_valves(HydraulicsDef& circuit) {
   circuit.curves.push_back({.name = "Edge", .points = {{-1, 0}, {0.1, 0}, {0.4, 0.2}, {1, 1.5}}});
 }
 
-// A motor with a case drain, one without, and a single-acting cylinder.
+// A motor with a case drain, one without, two of variable displacement with brakes, and a single-acting cylinder.
 inline void add_actuators(HydraulicsDef& circuit) {
   HydraulicMotorDef& motor = add<HydraulicMotorDef>(circuit, "Motor");
   motor.force = "Ring", motor.port_a = "Vol_C", motor.port_b = "Vol_D", motor.port_c = "Vol_T";
   motor.displacement = 10e-6, motor.gear_ratio = 50, motor.leak_flow = kLeak, motor.case_leak_flow = 2 * kLeak;
   HydraulicMotorDef& fan = add<HydraulicMotorDef>(circuit, "Fan");
   fan.force = "Fan_Axle", fan.port_a = "Vol_A", fan.port_b = "Vol_T", fan.displacement = 2e-6;
+  for (const char* port_c : {"", "Vol_A"}) {
+    HydraulicMotorDef& winch = add<HydraulicMotorDef>(circuit, *port_c == 0 ? "Winch" : "Drained_Winch");
+    winch.force = winch.name + "_Axle", winch.port_a = "Vol_C", winch.port_b = "Vol_D", winch.port_c = port_c;
+    winch.displacement = 8e-6, winch.is_variable = true, winch.setting = 0.7, winch.setting_rate_limit = 2;
+    winch.brake_port = "Vol_B", winch.brake.torque = 300, winch.brake.release_pressure = 400 * kBar;
+  }
   SingleActingCylinderDef& plunger = add<SingleActingCylinderDef>(circuit, "Plunger");
   plunger.common.force = "Plunger_Force", plunger.common.port_a = "Vol_D", plunger.common.port_b = "Vol_T";
   plunger.common.piston_diameter = 0.06, plunger.common.chamber_length = 0.6, plunger.common.leak_flow = kLeak;
@@ -89,7 +95,7 @@ inline void add_actuators(HydraulicsDef& circuit) {
 inline void add_sources(HydraulicsDef& circuit) {
   PumpDef& pump = add<PumpDef>(circuit, "Limited_Pump");
   pump.port_a = "Vol_C", pump.port_b = "Vol_T", pump.speed = 157, pump.displacement = 8e-6, pump.leak_flow = kLeak;
-  pump.swash = 0.8, pump.maximum_pressure = 190 * kBar, pump.maximum_power = 10e3;
+  pump.swash = 0.8, pump.swash_rate_limit = 3, pump.maximum_pressure = 190 * kBar, pump.maximum_power = 10e3;
   FlowSourceDef& flow = add<FlowSourceDef>(circuit, "Flow_Source");
   flow.port_1 = "Vol_T", flow.port_2 = "Vol_P", flow.flow = 1e-4, flow.flow_per_signal = 1e-7;
   PressureSourceDef& pressure = add<PressureSourceDef>(circuit, "Pressure_Source");
