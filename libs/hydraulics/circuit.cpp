@@ -25,6 +25,7 @@ Circuit::Circuit(const HydraulicsDef& def)
       start_slew_(def.start_slew_pressure),
       start_pump_(def.start_pump_pressure) {
   CircuitBuilder builder(def);
+  for (const EngineShaft& shaft : builder.shafts()) state_owner_.insert(state_owner_.end(), 2, shaft.engine);
   for (const auto& component : def.components) {
     components_.push_back(find_component_type(component->type_name())->build(*component, builder));
     if (components_.back()->has_equations()) active_.push_back(components_.back().get());

@@ -82,6 +82,15 @@ struct ComponentState {
   double scale = 1;  // typical size, for the error measure
 };
 
+// The shaft of an engine: its states and what its pumps need of it.
+struct EngineShaft {
+  std::string engine;    // component
+  StateIndex speed = 0;  // in multiples of `reference`
+  StateIndex fuel = 0;
+  double reference = 1;  // rad/s
+  double inertia = 1;    // kg m2
+};
+
 class CircuitBuilder {
  public:
   // def: validated without errors.
@@ -90,6 +99,7 @@ class CircuitBuilder {
   [[nodiscard]] const HydraulicsDef& def() const noexcept { return def_; }
   [[nodiscard]] StateIndex volume(std::string_view name) const;
   [[nodiscard]] StateIndex add_state(const ComponentState& state);
+  [[nodiscard]] const EngineShaft& shaft(std::string_view engine) const;
   [[nodiscard]] int add_control(std::string_view component, SignalMoves moves);
   // Number of the component's own load-sensing pressure, and of another component's.
   [[nodiscard]] LsIndex ls_index(std::string_view component) const;
@@ -113,6 +123,8 @@ class CircuitBuilder {
   [[nodiscard]] const std::vector<Content>& contents() const noexcept { return contents_; }
   [[nodiscard]] const std::vector<Actuator>& actuators() const noexcept { return actuators_; }
   [[nodiscard]] const std::vector<ComponentState>& states() const noexcept { return states_; }
+  // In the order of their states, which come before those of all other components.
+  [[nodiscard]] const std::vector<EngineShaft>& shafts() const noexcept { return shafts_; }
   [[nodiscard]] const std::vector<std::string>& controls() const noexcept { return controls_; }
   // Controls whose signal acts on flows at once.
   [[nodiscard]] const std::vector<int>& flow_controls() const noexcept { return flow_controls_; }
@@ -126,6 +138,7 @@ class CircuitBuilder {
   std::vector<Content> contents_;
   std::vector<Actuator> actuators_;
   std::vector<ComponentState> states_;
+  std::vector<EngineShaft> shafts_;
   std::vector<std::string> controls_;
   std::vector<int> flow_controls_;
   std::vector<std::string> ls_names_;

@@ -9,6 +9,7 @@
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/double_rod_cylinder.h"
+#include "hydraulics/components/engine.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose.h"
 #include "hydraulics/components/hose_burst_valve.h"
@@ -50,6 +51,7 @@ std::span<const ComponentType> component_types() {
       compensated_orifice_type(),
       ls_pump_type(),
       pump_type(),
+      engine_type(),
       flow_source_type(),
       pressure_source_type(),
       bleed_type(),

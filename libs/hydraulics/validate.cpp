@@ -174,7 +174,8 @@ void check_volumes(const HydraulicsDef& def, Problems& errors) {
 std::vector<std::pair<std::string_view, std::string_view>> ls_references(ComponentDef& component) {
   std::vector<std::pair<std::string_view, std::string_view>> names;
   for (const Field& row : find_component_type(component.type_name())->fields) {
-    if (row.reference != "component") continue;
+    // a pump's engine is no source of a load-sensing pressure
+    if (row.reference != "component" || row.key == "engine") continue;
     const std::string& name = member<std::string>(row, component.address());
     if (!name.empty()) names.emplace_back(row.key, name);
   }

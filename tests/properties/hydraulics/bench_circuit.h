@@ -8,6 +8,7 @@
 #include "hydraulics/components/counterbalance_valve.h"
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_rod_cylinder.h"
+#include "hydraulics/components/engine.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
@@ -103,6 +104,20 @@ inline void add_sources(HydraulicsDef& circuit) {
   pressure.nominal_flow = 1e-4;
 }
 
+// An engine with a pump of either kind.
+inline void add_engine(HydraulicsDef& circuit) {
+  circuit.curves.push_back({.name = "Full_Load", .points = {{80, 200}, {150, 400}, {220, 300}}});
+  PumpDef& pump = add<PumpDef>(circuit, "Engine_Pump");
+  pump.port_a = "Vol_D", pump.port_b = "Vol_T", pump.displacement = 8e-6, pump.mechanical_coefficient = 0.9;
+  pump.drive = {"Engine", 1.5}, pump.maximum_power = 10e3, pump.leak_flow = kLeak;
+  EngineDef& engine = add<EngineDef>(circuit, "Engine");
+  engine.torque_curve = "Full_Load", engine.inertia = 1.2, engine.speed = 200, engine.stall_speed = 60;
+  engine.friction_torque = 20, engine.viscous_friction = 0.05;
+  LsPumpDef& ls_pump = add<LsPumpDef>(circuit, "Engine_Ls_Pump");
+  ls_pump.port_a = "Vol_C", ls_pump.port_b = "Vol_T", ls_pump.displacement = 5e-6, ls_pump.drive = {"Engine", 0.8};
+  ls_pump.standby_pressure = 150 * kBar, ls_pump.mechanical_coefficient = 0.9;
+}
+
 inline HydraulicsDef bench_circuit() {
   HydraulicsDef circuit;
   circuit.oil_density = 850;
@@ -158,6 +173,7 @@ inline HydraulicsDef bench_circuit() {
   add_spool_valves(circuit);
   add_actuators(circuit);
   add_sources(circuit);
+  add_engine(circuit);
   return circuit;
 }
 
