@@ -10,6 +10,7 @@
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/engine.h"
+#include "hydraulics/components/filter.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose.h"
 #include "hydraulics/components/hose_burst_valve.h"
@@ -57,6 +58,7 @@ std::span<const ComponentType> component_types() {
       bleed_type(),
       orifice_type(),
       laminar_restriction_type(),
+      filter_type(),
   };
   return types;
 }

@@ -9,6 +9,7 @@
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/engine.h"
+#include "hydraulics/components/filter.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
@@ -104,8 +105,8 @@ inline void add_sources(HydraulicsDef& circuit) {
   pressure.nominal_flow = 1e-4;
 }
 
-// An engine with a pump of either kind.
-inline void add_engine(HydraulicsDef& circuit) {
+// An engine with a pump of either kind, and filters with and without a bypass.
+inline void add_engine_and_filters(HydraulicsDef& circuit) {
   circuit.curves.push_back({.name = "Full_Load", .points = {{80, 200}, {150, 400}, {220, 300}}});
   PumpDef& pump = add<PumpDef>(circuit, "Engine_Pump");
   pump.port_a = "Vol_D", pump.port_b = "Vol_T", pump.displacement = 8e-6, pump.mechanical_coefficient = 0.9;
@@ -116,6 +117,11 @@ inline void add_engine(HydraulicsDef& circuit) {
   LsPumpDef& ls_pump = add<LsPumpDef>(circuit, "Engine_Ls_Pump");
   ls_pump.port_a = "Vol_C", ls_pump.port_b = "Vol_T", ls_pump.displacement = 5e-6, ls_pump.drive = {"Engine", 0.8};
   ls_pump.standby_pressure = 150 * kBar, ls_pump.mechanical_coefficient = 0.9;
+  FilterDef& filter = add<FilterDef>(circuit, "Filter");
+  filter.port_1 = "Vol_A", filter.port_2 = "Vol_C", filter.nominal_flow = 1e-4, filter.clogging = 0.5;
+  filter.nominal_pressure_drop = 5 * kBar, filter.bypass.nominal_flow = 5e-4;
+  FilterDef& plain = add<FilterDef>(circuit, "Plain_Filter");
+  plain.port_1 = "Vol_C", plain.port_2 = "Vol_T", plain.nominal_flow = 1e-5;
 }
 
 inline HydraulicsDef bench_circuit() {
@@ -173,7 +179,7 @@ inline HydraulicsDef bench_circuit() {
   add_spool_valves(circuit);
   add_actuators(circuit);
   add_sources(circuit);
-  add_engine(circuit);
+  add_engine_and_filters(circuit);
   return circuit;
 }
 
