@@ -18,7 +18,9 @@
 #include "hydraulics/components/l90ls_valve.h"
 #include "hydraulics/components/ls_pump.h"
 #include "hydraulics/components/ls_shuttle.h"
+#include "hydraulics/components/post_compensator.h"
 #include "hydraulics/components/pump.h"
+#include "hydraulics/components/reducing_valve.h"
 #include "hydraulics/components/relief_valve.h"
 #include "hydraulics/components/restrictions.h"
 #include "hydraulics/components/single_acting_cylinder.h"
@@ -42,6 +44,7 @@ std::span<const ComponentType> component_types() {
       ls_shuttle_type(),
       relief_valve_type(),
       direct_relief_valve_type(),
+      reducing_valve_type(),
       check_valve_type(),
       throttle_check_valve_type(),
       pilot_check_valve_type(),
@@ -50,6 +53,7 @@ std::span<const ComponentType> component_types() {
       hose_burst_valve_type(),
       accumulator_type(),
       compensated_orifice_type(),
+      post_compensator_type(),
       ls_pump_type(),
       pump_type(),
       engine_type(),

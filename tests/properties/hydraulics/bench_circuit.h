@@ -13,7 +13,9 @@
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
+#include "hydraulics/components/post_compensator.h"
 #include "hydraulics/components/pump.h"
+#include "hydraulics/components/reducing_valve.h"
 #include "hydraulics/components/single_acting_cylinder.h"
 #include "hydraulics/components/sources.h"
 #include "hydraulics/components/spool_valve.h"
@@ -124,6 +126,18 @@ inline void add_engine_and_filters(HydraulicsDef& circuit) {
   plain.port_1 = "Vol_C", plain.port_2 = "Vol_T", plain.nominal_flow = 1e-5;
 }
 
+// A section with flow sharing, a reducing valve with a signal.
+inline void add_flow_sharing(HydraulicsDef& circuit) {
+  PostCompensatorDef& compensator = add<PostCompensatorDef>(circuit, "Compensator");
+  compensator.port_1 = "Vol_C", compensator.port_2 = "Vol_B", compensator.port_t = "Vol_T";
+  compensator.shared_ls = "Shuttle_3", compensator.nominal_flow = 1e-3, compensator.regulation_pressure = 50 * kBar;
+  LsShuttleDef& shuttle = add<LsShuttleDef>(circuit, "Shuttle_3");
+  shuttle.port_1 = "Compensator", shuttle.port_2 = "Metering_B";
+  ReducingValveDef& reducing = add<ReducingValveDef>(circuit, "Reducing");
+  reducing.port_1 = "Vol_P", reducing.port_2 = "Vol_D", reducing.port_3 = "Vol_C", reducing.nominal_flow = 5e-4;
+  reducing.setting_pressure = 20 * kBar, reducing.pressure_per_signal = 5e3, reducing.regulation_pressure = 40 * kBar;
+}
+
 inline HydraulicsDef bench_circuit() {
   HydraulicsDef circuit;
   circuit.oil_density = 850;
@@ -180,6 +194,7 @@ inline HydraulicsDef bench_circuit() {
   add_actuators(circuit);
   add_sources(circuit);
   add_engine_and_filters(circuit);
+  add_flow_sharing(circuit);
   return circuit;
 }
 
