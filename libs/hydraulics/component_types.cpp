@@ -19,6 +19,7 @@
 #include "hydraulics/components/ls_pump.h"
 #include "hydraulics/components/ls_shuttle.h"
 #include "hydraulics/components/post_compensator.h"
+#include "hydraulics/components/priority_valve.h"
 #include "hydraulics/components/pump.h"
 #include "hydraulics/components/reducing_valve.h"
 #include "hydraulics/components/relief_valve.h"
@@ -54,6 +55,7 @@ std::span<const ComponentType> component_types() {
       accumulator_type(),
       compensated_orifice_type(),
       post_compensator_type(),
+      priority_valve_type(),
       ls_pump_type(),
       pump_type(),
       engine_type(),

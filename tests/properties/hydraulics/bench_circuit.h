@@ -14,6 +14,7 @@
 #include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
 #include "hydraulics/components/post_compensator.h"
+#include "hydraulics/components/priority_valve.h"
 #include "hydraulics/components/pump.h"
 #include "hydraulics/components/reducing_valve.h"
 #include "hydraulics/components/single_acting_cylinder.h"
@@ -126,13 +127,19 @@ inline void add_engine_and_filters(HydraulicsDef& circuit) {
   plain.port_1 = "Vol_C", plain.port_2 = "Vol_T", plain.nominal_flow = 1e-5;
 }
 
-// A section with flow sharing, a reducing valve with a signal.
+// A section with flow sharing, priority valves with and without load sensing, a reducing valve with a signal.
 inline void add_flow_sharing(HydraulicsDef& circuit) {
   PostCompensatorDef& compensator = add<PostCompensatorDef>(circuit, "Compensator");
   compensator.port_1 = "Vol_C", compensator.port_2 = "Vol_B", compensator.port_t = "Vol_T";
   compensator.shared_ls = "Shuttle_3", compensator.nominal_flow = 1e-3, compensator.regulation_pressure = 50 * kBar;
   LsShuttleDef& shuttle = add<LsShuttleDef>(circuit, "Shuttle_3");
   shuttle.port_1 = "Compensator", shuttle.port_2 = "Metering_B";
+  PriorityValveDef& priority = add<PriorityValveDef>(circuit, "Priority");
+  priority.port_1 = "Vol_P", priority.port_2 = "Vol_A", priority.port_3 = "Vol_C", priority.port_t = "Vol_T";
+  priority.ls_port = "Metering_A", priority.nominal_flow = 5e-4, priority.regulation_pressure = 20 * kBar;
+  PriorityValveDef& fixed = add<PriorityValveDef>(circuit, "Fixed_Priority");
+  fixed.port_1 = "Vol_D", fixed.port_2 = "Vol_B", fixed.port_3 = "Vol_T", fixed.port_t = "Vol_T";
+  fixed.nominal_flow = 5e-4, fixed.spring_pressure = 50 * kBar, fixed.regulation_pressure = 60 * kBar;
   ReducingValveDef& reducing = add<ReducingValveDef>(circuit, "Reducing");
   reducing.port_1 = "Vol_P", reducing.port_2 = "Vol_D", reducing.port_3 = "Vol_C", reducing.nominal_flow = 5e-4;
   reducing.setting_pressure = 20 * kBar, reducing.pressure_per_signal = 5e3, reducing.regulation_pressure = 40 * kBar;
