@@ -12,7 +12,7 @@
 // Below stall_speed there is no combustion: an engine that is lugged down to it stops and does not start by itself.
 //
 // The state is w / speed, of the speed at the start. A pump of negative pressure rise drives the engine.
-// Source: Isermann 2014, Engine Modeling and Control, sections 4.1 and 7.3 (mean-value torque, speed governor of a
+// Source: Isermann 2014, Engine Modeling and Control (mean-value torque, speed governor of a
 // diesel with proportional degree). Not covered: torque by cylinder, starter, smoke limit and boost of the turbocharger
 // (tau holds their lag), engine brake, fuel maps.
 #pragma once

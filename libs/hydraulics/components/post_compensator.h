@@ -12,8 +12,8 @@
 //
 // The compensator closes against a flow back from the load (load check). Build a section from a spool_valve whose
 // bypass is the metering edge (C the pump, D port 1) and whose P is port 2; a bleed from port 2 to the tank ends
-// p_LS,own when the spool rests. Source: Backe 1992, Grundlagen der Oelhydraulik, section on load-independent flow
-// division. Not covered: flow forces, leak of the load check.
+// p_LS,own when the spool rests. Source: Backe 1992, Grundlagen der Oelhydraulik (load-independent flow division). Not
+// covered: flow forces, leak of the load check.
 #pragma once
 
 #include "hydraulics/component_def.h"

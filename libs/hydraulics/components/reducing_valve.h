@@ -8,7 +8,7 @@
 // sqrt(nominal_pressure_drop). The outlet falls below p_set by regulation_pressure at the flow of the full opening.
 // With a signal it is the pilot valve of a lever or a solenoid.
 //
-// Source: Merritt 1967, Hydraulic Control Systems, section 9.3 (single-stage reducing valve, without its inertia). Not
+// Source: Merritt 1967 for the orifices; (1) is the balance of forces on the spool, without its inertia. Not
 // covered: flow forces, hysteresis, pilot stage.
 #pragma once
 
