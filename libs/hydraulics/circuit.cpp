@@ -25,6 +25,7 @@ Circuit::Circuit(const HydraulicsDef& def)
       start_slew_(def.start_slew_pressure),
       start_pump_(def.start_pump_pressure) {
   CircuitBuilder builder(def);
+  for (const EngineShaft& shaft : builder.shafts()) state_owner_.insert(state_owner_.end(), 2, shaft.engine);
   for (const auto& component : def.components) {
     components_.push_back(find_component_type(component->type_name())->build(*component, builder));
     if (components_.back()->has_equations()) active_.push_back(components_.back().get());
@@ -38,6 +39,12 @@ Circuit::Circuit(const HydraulicsDef& def)
     vapour_.begins_below.push_back(volume.fixed ? -std::numeric_limits<double>::infinity() : floor_);
   }
   actuators_ = builder.actuators();
+  braked_.assign(actuators_.size(), nullptr);
+  for (const auto& component : components_) {
+    for (std::size_t j = 0; j < actuators_.size(); ++j) {
+      if (actuators_[j].brake.state >= 0 && actuators_[j].name == component->name()) braked_[j] = component.get();
+    }
+  }
   states_ = builder.states();
   control_name_ = builder.controls();
   flow_controls_ = builder.flow_controls();
@@ -404,6 +411,8 @@ void Circuit::pressure_forces(const double* y, double* F) const noexcept {
   for (std::size_t j = 0; j < actuators_.size(); ++j) {
     const Actuator& actuator = actuators_[j];
     F[j] = pressure(actuator.port_a, y).value * actuator.area_a - pressure(actuator.port_b, y).value * actuator.area_b;
+    if (actuator.setting.state >= 0) F[j] *= y[actuator.setting.state];
+    if (actuator.brake.state >= 0) F[j] += actuator.brake_at(y);
   }
 }
 

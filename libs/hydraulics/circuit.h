@@ -125,6 +125,8 @@ class Circuit {
   // Both at once, the same bits for two thirds of the cost.
   double* linearise(const double* y, double* f) noexcept;
   void pressure_forces(const double* y, double* F) const noexcept;
+  // Stiffness of the actuator's brake while it holds [N/m or Nm/rad]; 0 without one.
+  [[nodiscard]] double brake_stiffness(int actuator, const double* y) noexcept;
 
   // Absolute pressure of a volume and its slope over the state: 1, less while it cavitates.
   [[nodiscard]] ValueSlope pressure(int volume, const double* y) const noexcept {
@@ -236,6 +238,10 @@ class Circuit {
     [[nodiscard]] double pressure() const noexcept { return sum / actuators; }
   };
   [[nodiscard]] std::vector<Asked> asked_in_equilibrium(std::span<const double> F) const;
+  // Forces of the brakes at an equilibrium start; y has the start pressures.
+  [[nodiscard]] std::vector<double> held_by_brakes(std::span<const double> F, const double* y) const;
+  void start_supply(std::span<double> y) const;
+  void move_brakes(double* y) noexcept;
   void start_components(std::span<double> y) const;
   void add_contents(const CircuitBuilder& builder);
   void order_ls_sources(const CircuitBuilder& builder);
@@ -257,7 +263,7 @@ class Circuit {
   void to_pressure_rates(std::size_t volume, const Capacity& C, double rate, const double* y) noexcept;
   void read_outflow(const double* y, double* slope) noexcept;
   void chamber_rates(const double* y, double* dp) const noexcept;
-  [[nodiscard]] double chamber_growth(std::size_t volume) const noexcept;
+  [[nodiscard]] double chamber_growth(std::size_t volume, const double* y) const noexcept;
   [[nodiscard]] double capacity_at_floor(std::size_t volume, const double* y) const noexcept;
   void move_through_floor(std::size_t volume, double dV, double share, double* y) noexcept;
   void to_state_slopes(const double* y) noexcept;
@@ -295,7 +301,8 @@ class Circuit {
   std::vector<double> scale_, relative_, relative_below_zero_;
 
   std::vector<std::unique_ptr<HydraulicComponent>> components_;
-  std::vector<HydraulicComponent*> active_;  // with equations
+  std::vector<HydraulicComponent*> active_;        // with equations
+  std::vector<const HydraulicComponent*> braked_;  // by actuator: its component if it has a brake, else null
   struct LsSource {
     HydraulicComponent* component;
     LsIndex index;

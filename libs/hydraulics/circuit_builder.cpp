@@ -2,6 +2,7 @@
 #include "hydraulics/circuit_builder.h"
 
 #include "core/check.h"
+#include "hydraulics/components/engine.h"
 
 namespace slew::hydraulics {
 
@@ -12,6 +13,13 @@ CircuitBuilder::CircuitBuilder(const HydraulicsDef& def)
     SLEW_CHECK(type != nullptr);
     actuator_count_ += component->actuator().has_value();
     if (type->has_ls_port) ls_names_.push_back(component->name);
+  }
+  // shafts of engines, which pumps before and after them name
+  for (const auto& component : def.components) {
+    const EngineDef* engine = dynamic_cast<const EngineDef*>(component.get());
+    if (engine == nullptr) continue;
+    const StateIndex speed = add_state({.initial = 1, .scale = 1}), fuel = add_state({.initial = 0, .scale = 1});
+    shafts_.push_back({engine->name, speed, fuel, engine->speed, engine->inertia});
   }
   // oil in rigid blocks
   for (int i = 0; i < volume_count_; ++i) {
@@ -31,6 +39,14 @@ StateIndex CircuitBuilder::volume(std::string_view name) const {
 StateIndex CircuitBuilder::add_state(const ComponentState& state) {
   states_.push_back(state);
   return state_count() - 1;
+}
+
+const EngineShaft& CircuitBuilder::shaft(std::string_view engine) const {
+  for (const EngineShaft& shaft : shafts_) {
+    if (shaft.engine == engine) return shaft;
+  }
+  SLEW_CHECK(!"a validated circuit names existing engines only");
+  return shafts_.front();
 }
 
 int CircuitBuilder::add_control(std::string_view component, SignalMoves moves) {

@@ -28,10 +28,24 @@ struct Content {
   StateIndex position = -1;      // position of x; -1: constant
   double smallest = 0;           // m3
   double swept_by_position = 0;  // m2, oil that leaves per x where it is not `slope`: a motor's displacement
+  StateIndex setting = -1;       // state that scales swept_by_position; -1: none
   WallLaw wall = {};
 
-  // Oil that leaves the volume per x [m2].
+  // Oil that leaves the volume per x [m2], at full setting and at the state y.
   [[nodiscard]] double sweep() const noexcept { return swept_by_position != 0 ? swept_by_position : slope; }
+  [[nodiscard]] double sweep_at(const double* y) const noexcept { return setting < 0 ? sweep() : sweep() * y[setting]; }
+};
+
+// A displacement that changes while the circuit runs: a state e scales both areas of its actuator.
+struct Setting {
+  StateIndex state = -1;  // e, above 0; -1: the areas are constant
+  double at_start = 1;    // e that an equilibrium start assumes
+};
+
+// A brake on an actuator. Its state b is the brake's force in shares of `force`.
+struct Brake {
+  StateIndex state = -1;  // -1: none
+  double force = 0;       // N, or Nm: greatest
 };
 
 // A cylinder as the power port sees it.
@@ -39,11 +53,18 @@ struct Actuator {
   std::string name;   // name of the component
   std::string force;  // driven force element
   StateIndex port_a = 0, port_b = 0;
-  double area_a = 0, area_b = 0;   // m2; F = p_A area_a - p_B area_b
+  double area_a = 0, area_b = 0;   // m2; F = e (p_A area_a - p_B area_b) + b brake.force
   PortCoordinate coordinate = {};  // x = offset + ratio * element coordinate
   LineForceParameters line_force = {};
   StartRule start = StartRule::return_pressure;
   double position_scale = 1, speed_scale = 1;  // m, m/s, typical sizes
+  Setting setting = {};
+  Brake brake = {};
+
+  [[nodiscard]] double setting_at(const double* y) const noexcept { return setting.state < 0 ? 1 : y[setting.state]; }
+  [[nodiscard]] double brake_at(const double* y) const noexcept {
+    return brake.state < 0 ? 0 : brake.force * y[brake.state];
+  }
 };
 
 // A valve that relieves a volume even if all other connections are closed.
@@ -61,6 +82,15 @@ struct ComponentState {
   double scale = 1;  // typical size, for the error measure
 };
 
+// The shaft of an engine: its states and what its pumps need of it.
+struct EngineShaft {
+  std::string engine;    // component
+  StateIndex speed = 0;  // in multiples of `reference`
+  StateIndex fuel = 0;
+  double reference = 1;  // rad/s
+  double inertia = 1;    // kg m2
+};
+
 class CircuitBuilder {
  public:
   // def: validated without errors.
@@ -69,6 +99,7 @@ class CircuitBuilder {
   [[nodiscard]] const HydraulicsDef& def() const noexcept { return def_; }
   [[nodiscard]] StateIndex volume(std::string_view name) const;
   [[nodiscard]] StateIndex add_state(const ComponentState& state);
+  [[nodiscard]] const EngineShaft& shaft(std::string_view engine) const;
   [[nodiscard]] int add_control(std::string_view component, SignalMoves moves);
   // Number of the component's own load-sensing pressure, and of another component's.
   [[nodiscard]] LsIndex ls_index(std::string_view component) const;
@@ -77,6 +108,10 @@ class CircuitBuilder {
   [[nodiscard]] int add_actuator(const std::string& component, const ActuatorDef& actuator);
   [[nodiscard]] StateIndex position(int actuator) const noexcept { return volume_count_ + actuator; }
   [[nodiscard]] StateIndex speed(int actuator) const noexcept { return volume_count_ + actuator_count_ + actuator; }
+  void set_setting(int actuator, const Setting& setting) {
+    actuators_[static_cast<std::size_t>(actuator)].setting = setting;
+  }
+  void set_brake(int actuator, const Brake& brake) { actuators_[static_cast<std::size_t>(actuator)].brake = brake; }
   // The volume starts at the pump pressure in an equilibrium start.
   void mark_supply(StateIndex volume) { supply_.push_back(volume); }
   void add_relief(Relief relief) { reliefs_.push_back(std::move(relief)); }
@@ -88,6 +123,8 @@ class CircuitBuilder {
   [[nodiscard]] const std::vector<Content>& contents() const noexcept { return contents_; }
   [[nodiscard]] const std::vector<Actuator>& actuators() const noexcept { return actuators_; }
   [[nodiscard]] const std::vector<ComponentState>& states() const noexcept { return states_; }
+  // In the order of their states, which come before those of all other components.
+  [[nodiscard]] const std::vector<EngineShaft>& shafts() const noexcept { return shafts_; }
   [[nodiscard]] const std::vector<std::string>& controls() const noexcept { return controls_; }
   // Controls whose signal acts on flows at once.
   [[nodiscard]] const std::vector<int>& flow_controls() const noexcept { return flow_controls_; }
@@ -101,6 +138,7 @@ class CircuitBuilder {
   std::vector<Content> contents_;
   std::vector<Actuator> actuators_;
   std::vector<ComponentState> states_;
+  std::vector<EngineShaft> shafts_;
   std::vector<std::string> controls_;
   std::vector<int> flow_controls_;
   std::vector<std::string> ls_names_;

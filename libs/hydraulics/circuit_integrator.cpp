@@ -25,6 +25,9 @@ math::SparsityPattern coupled_pattern(const Circuit& circuit) {
       }
       pattern.add(row, static_cast<std::size_t>(circuit.position(j)));
       pattern.add(row, static_cast<std::size_t>(circuit.speed(j)));
+      for (const StateIndex state : {actuator.setting.state, actuator.brake.state}) {
+        if (state >= 0) pattern.add(row, static_cast<std::size_t>(state));
+      }
     }
   }
   return pattern;
@@ -277,7 +280,12 @@ void CircuitIntegrator::stamp_accelerations(const double* y, double* J) noexcept
     double* const row = J + circuit_.speed(i) * n;
     for (int j = 0; j < m; ++j) {
       const Actuator& actuator = circuit_.actuators()[static_cast<std::size_t>(j)];
-      const double da_dF = da_dF_[static_cast<std::size_t>(i * m + j)];
+      double da_dF = da_dF_[static_cast<std::size_t>(i * m + j)];
+      if (actuator.brake.state >= 0) row[actuator.brake.state] += da_dF * actuator.brake.force;
+      if (actuator.setting.state >= 0) {
+        row[actuator.setting.state] += da_dF * at_full_setting(actuator, y);
+        da_dF *= y[actuator.setting.state];
+      }
       if (!circuit_.is_fixed(actuator.port_a))
         row[actuator.port_a] += da_dF * actuator.area_a * circuit_.pressure(actuator.port_a, y).slope;
       if (!circuit_.is_fixed(actuator.port_b))
@@ -291,8 +299,23 @@ void CircuitIntegrator::stamp_accelerations(const double* y, double* J) noexcept
 CircuitIntegrator::PressureForce CircuitIntegrator::pressure_force(const Actuator& actuator, const double* y,
                                                                    const double* f) const noexcept {
   const ValueSlope a = circuit_.pressure(actuator.port_a, y), b = circuit_.pressure(actuator.port_b, y);
-  return {a.value * actuator.area_a - b.value * actuator.area_b,
-          a.slope * f[actuator.port_a] * actuator.area_a - b.slope * f[actuator.port_b] * actuator.area_b};
+  PressureForce force{a.value * actuator.area_a - b.value * actuator.area_b,
+                      a.slope * f[actuator.port_a] * actuator.area_a - b.slope * f[actuator.port_b] * actuator.area_b};
+  if (actuator.setting.state >= 0) {
+    const double e = y[actuator.setting.state];
+    force = {e * force.F, e * force.rate + f[actuator.setting.state] * force.F};
+  }
+  if (actuator.brake.state >= 0) {
+    force.F += actuator.brake_at(y);
+    force.rate += actuator.brake.force * f[actuator.brake.state];
+  }
+  return force;
+}
+
+// Force of the pressures at a setting of 1.
+double CircuitIntegrator::at_full_setting(const Actuator& actuator, const double* y) const noexcept {
+  return circuit_.pressure(actuator.port_a, y).value * actuator.area_a -
+         circuit_.pressure(actuator.port_b, y).value * actuator.area_b;
 }
 
 // (1); the slope at the end of a sub-step is taken when the next one starts.
@@ -408,6 +431,16 @@ void CircuitIntegrator::refresh_force_rates() noexcept {
   }
 }
 
+// Stiffness of an actuator's brake: its own while it holds, none while it slips.
+double CircuitIntegrator::brake_stiffness(int actuator) noexcept {
+  const Actuator& braked = circuit_.actuators()[at(actuator)];
+  if (braked.brake.state < 0) return 0;
+  const double K = circuit_.brake_stiffness(actuator, y_.data());
+  const double held = -K * y_[at(circuit_.speed(actuator))];  // rate of its force while it holds
+  if (held == 0) return K;
+  return K * std::clamp(braked.brake.force * f_[at(braked.brake.state)] / held, 0.0, 1.0);
+}
+
 // (2), from y_, its rates f_, outflow_ and C_
 void CircuitIntegrator::publish() noexcept {
   for (std::size_t j = 0; j < m_; ++j) {
@@ -421,12 +454,13 @@ void CircuitIntegrator::publish() noexcept {
     out.p_a = p_a.value, out.p_b = p_b.value;
     const auto [F, F_dot] = pressure_force(actuator, y_.data(), f_.data());
     out.F = F, out.F_dot = F_dot;
-    out.Q_a = C_[a] * f_[a] + out.v * actuator.area_a;
-    out.Q_b = C_[b] * f_[b] - out.v * actuator.area_b;
+    const double e = actuator.setting_at(y_.data()), A_a = e * actuator.area_a, A_b = e * actuator.area_b;
+    out.Q_a = C_[a] * f_[a] + out.v * A_a;
+    out.Q_b = C_[b] * f_[b] - out.v * A_b;
     // a chamber that cavitates is no spring
-    const double K_a = C_[a] > 0 ? actuator.area_a * actuator.area_a / C_[a] * p_a.slope : 0;
-    const double K_b = C_[b] > 0 ? actuator.area_b * actuator.area_b / C_[b] * p_b.slope : 0;
-    out.K = K_a + K_b;
+    const double K_a = C_[a] > 0 ? A_a * A_a / C_[a] * p_a.slope : 0;
+    const double K_b = C_[b] > 0 ? A_b * A_b / C_[b] * p_b.slope : 0;
+    out.K = K_a + K_b + brake_stiffness(static_cast<int>(j));
     const double weighted = (K_a > 0 ? K_a * outflow_[a] / C_[a] : 0) + (K_b > 0 ? K_b * outflow_[b] / C_[b] : 0);
     out.lambda = out.K > 0 ? std::max(0.0, weighted / out.K) : 0;
     out.stiffness = out.K;

@@ -3,7 +3,8 @@
 //
 // Within a step the circuit's equations and the pistons' motion (PistonMotion) are one system for the solver that the
 // Def chooses (math/rodas3.h, runge_kutta4.h, implicit_euler.h, cvode_stepper.h):
-//   y' = rates(y),  x' = v,  v' = a(F, x, v),  F = p_A A_A - p_B A_B
+//   y' = rates(y),  x' = v,  v' = a(F, x, v),  F = e (p_A A_A - p_B A_B) + F_b
+// e is the setting of a variable motor, 1 of all others; F_b the force of a brake (circuit_builder.h), 0 without one.
 // State of a volume is its pressure, below the cavitation floor its vapour (vapour.h).
 // The row of a quasi-static volume is algebraic, 0 = sum Q; its pressure is solved for at the start and again at the
 // start of every step, so that a jump of an input finds it consistent.
@@ -13,8 +14,9 @@
 //   work = F_m (x_1 - x_0) + int (F - F_m) v dt,  the integral by (1):
 // the errors of v then produce no work at a piston that rests under load.
 //
-// Published at the end (coupling study, section 8; K_A = A_A^2/C_A, K_B = A_B^2/C_B):
-//   F, F_dot = A_A p_A' - A_B p_B',  K = K_A + K_B,  lambda = (K_A l_A + K_B l_B)/K,  l = -(dQ/dp)/C             (2)
+// Published at the end (coupling study, section 8; K_A = (e A_A)^2/C_A, K_B = (e A_B)^2/C_B, K_b of a brake that
+// holds):
+//   F, F_dot = F',  K = K_A + K_B + K_b,  lambda = (K_A l_A + K_B l_B)/K,  l = -(dQ/dp)/C                        (2)
 // l on the steeper side of unilateral valves. Chambers have no feed-through, D = 0; where they are transmission lines
 // (line_chambers.h) F is the force of the lines at v, D their impedance, K = F_dot = lambda = 0. The mean pressure of a
 // volume, and with it the oil that the line takes, is integrated by the method itself: the oil that leaves the volume
@@ -117,6 +119,8 @@ class CircuitIntegrator final : private math::StiffSystem {
   };
   // Force and its rate of an actuator at y with rates f.
   [[nodiscard]] PressureForce pressure_force(const Actuator& actuator, const double* y, const double* f) const noexcept;
+  [[nodiscard]] double at_full_setting(const Actuator& actuator, const double* y) const noexcept;
+  [[nodiscard]] double brake_stiffness(int actuator) noexcept;
   void add_accelerations(const double* y, double* f) noexcept;
   void stamp_accelerations(const double* y, double* J) noexcept;
   void publish() noexcept;

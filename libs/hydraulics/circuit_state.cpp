@@ -18,7 +18,7 @@ struct Pair {
   double a, b;
 };
 
-// Pressures that hold F; b is `aim`, or higher if a would be too low.
+// Pressures that hold F; b is `aim`, or higher if a would be too low. Pre-condition here and below: a setting of 1.
 Pair held_by_return_side(const Actuator& actuator, double F, double aim) noexcept {
   Pair p{(F + aim * actuator.area_b) / actuator.area_a, aim};
   if (p.a < kLowestStart && actuator.area_b > 0) {
@@ -53,11 +53,12 @@ std::vector<Circuit::Asked> Circuit::asked_in_equilibrium(std::span<const double
   for (std::size_t j = 0; j < actuators_.size(); ++j) {
     const Actuator& actuator = actuators_[j];
     const std::size_t a = static_cast<std::size_t>(actuator.port_a), b = static_cast<std::size_t>(actuator.port_b);
-    Pair p = actuator.start == StartRule::return_pressure ? held_by_return_side(actuator, F[j], start_return_)
-                                                          : held_around_mean(actuator, F[j], start_slew_);
+    const double F_full = F[j] / actuator.setting.at_start;  // of the whole areas
+    Pair p = actuator.start == StartRule::return_pressure ? held_by_return_side(actuator, F_full, start_return_)
+                                                          : held_around_mean(actuator, F_full, start_slew_);
     // a chamber on a fixed volume keeps its pressure, the other one holds
-    if (is_fixed_[b]) p.a = (F[j] + initial_pressure_[b] * actuator.area_b) / actuator.area_a;
-    if (is_fixed_[a] && actuator.area_b > 0) p.b = (initial_pressure_[a] * actuator.area_a - F[j]) / actuator.area_b;
+    if (is_fixed_[b]) p.a = (F_full + initial_pressure_[b] * actuator.area_b) / actuator.area_a;
+    if (is_fixed_[a] && actuator.area_b > 0) p.b = (initial_pressure_[a] * actuator.area_a - F_full) / actuator.area_b;
     for (const auto& [volume, pressure] : {std::pair(a, p.a), std::pair(b, p.b)}) {
       asked[volume].sum += pressure;
       ++asked[volume].actuators;
@@ -67,23 +68,51 @@ std::vector<Circuit::Asked> Circuit::asked_in_equilibrium(std::span<const double
   return asked;
 }
 
-void Circuit::start_in_equilibrium(std::span<const double> F, std::span<double> y) const {
-  start_at_initial_pressures(y);
+void Circuit::start_supply(std::span<double> y) const {
   for (const StateIndex volume : supply_) {
     if (!is_fixed(volume)) y[static_cast<std::size_t>(volume)] = start_pump_;
   }
+}
+
+// Brakes take what they can of the forces, the pressures the rest.
+std::vector<double> Circuit::held_by_brakes(std::span<const double> F, const double* y) const {
+  const CircuitView at_start{y, control_.data(), ls_.data(), line_force_.data()};
+  std::vector<double> held(actuators_.size(), 0);
+  for (std::size_t j = 0; j < actuators_.size(); ++j) {
+    if (braked_[j] == nullptr) continue;
+    const double most = actuators_[j].brake.force * braked_[j]->brake_share(at_start);
+    held[j] = std::clamp(F[j], -most, most);
+  }
+  return held;
+}
+
+void Circuit::start_in_equilibrium(std::span<const double> F, std::span<double> y) const {
+  start_at_initial_pressures(y);
+  start_supply(y);
+  const std::vector<double> held = held_by_brakes(F, y.data());
+  std::vector<double> by_pressure(F.begin(), F.end());
+  for (std::size_t j = 0; j < held.size(); ++j) by_pressure[j] -= held[j];
   // a volume shared by several cylinders takes the mean of the required pressures
-  const std::vector<Asked> asked = asked_in_equilibrium(F);
+  const std::vector<Asked> asked = asked_in_equilibrium(by_pressure);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     if (asked[i].actuators > 0 && is_fixed_[i] == 0) y[i] = std::max(asked[i].pressure(), floor_);
   }
   start_components(y);
+  for (std::size_t j = 0; j < held.size(); ++j) {
+    const Brake& brake = actuators_[j].brake;
+    if (brake.state >= 0) y[static_cast<std::size_t>(brake.state)] = held[j] / brake.force;
+  }
 }
 
 std::optional<StartDemand> Circuit::demand_beyond_limits(std::span<const double> F) const {
   std::optional<StartDemand> worst;
   double farthest = 0;
-  const std::vector<Asked> asked = asked_in_equilibrium(F);
+  std::vector<double> y(static_cast<std::size_t>(size_)), by_pressure(F.begin(), F.end());
+  start_at_initial_pressures(y);
+  start_supply(y);
+  const std::vector<double> held = held_by_brakes(F, y.data());
+  for (std::size_t j = 0; j < held.size(); ++j) by_pressure[j] -= held[j];
+  const std::vector<Asked> asked = asked_in_equilibrium(by_pressure);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     if (asked[i].actuators == 0 || is_fixed_[i] != 0) continue;
     StartDemand demand{static_cast<int>(i), asked[i].last, asked[i].pressure(), kMostHeld, {}};
@@ -119,6 +148,19 @@ void Circuit::chamber_rates(const double* y, double* du) const noexcept {
   }
 }
 
+double Circuit::brake_stiffness(int actuator, const double* y) noexcept {
+  const auto j = static_cast<std::size_t>(actuator);
+  return braked_[j] == nullptr ? 0 : actuators_[j].brake.force * braked_[j]->brake_grip(view(y));
+}
+
+// A brake that holds is twisted by displacement_.
+void Circuit::move_brakes(double* y) noexcept {
+  for (std::size_t j = 0; j < actuators_.size(); ++j) {
+    if (braked_[j] == nullptr) continue;
+    y[actuators_[j].brake.state] -= displacement_[j] * braked_[j]->brake_grip(view(y));
+  }
+}
+
 bool Circuit::move_pistons(double* y, const double* x_new) noexcept {
   const std::size_t n = volume_name_.size(), m = actuators_.size();
   for (std::size_t j = 0; j < m; ++j) displacement_[j] = x_new[j] - y[n + j];
@@ -128,7 +170,8 @@ bool Circuit::move_pistons(double* y, const double* x_new) noexcept {
     return false;
   }
   const bool is_within = move_lines(x_new);
-  for (std::size_t i = 0; i < n; ++i) growth_[i] = chamber_growth(i);
+  move_brakes(y);
+  for (std::size_t i = 0; i < n; ++i) growth_[i] = chamber_growth(i, y);
   // parts short enough that the stiffness of oil with air changes little within one
   chamber_rates(y, slope_[0].data());
   double change = 0;

@@ -117,6 +117,11 @@ class HydraulicComponent {
   // Sets the component's states in y to those at rest under the start pressures of the volumes in y.
   virtual void start(double* /*y*/) const noexcept {}
 
+  // Of a component with a brake on its actuator: the share of Brake::force that it holds, and the growth of its state
+  // per displacement against it [1/m or 1/rad], less while it opens.
+  [[nodiscard]] virtual double brake_share(const CircuitView&) const noexcept { return 0; }
+  [[nodiscard]] virtual double brake_grip(const CircuitView&) const noexcept { return 0; }
+
   // Load-sensing pressure above tank and its derivatives, for components that have one; called in an order in which
   // every source comes before its consumers.
   [[nodiscard]] virtual std::vector<LsIndex> ls_inputs() const { return {}; }  // pressures that ls_pressure() reads

@@ -39,6 +39,8 @@ struct ComponentDef {
   [[nodiscard]] virtual void* address() noexcept = 0;
   // Facts of a component that drives a force element through a power port; none of the others.
   [[nodiscard]] virtual std::optional<ActuatorDef> actuator() const { return std::nullopt; }
+  // True if an input may name the component; its type has a control signal then.
+  [[nodiscard]] virtual bool takes_signal() const;
   // Adds what connects or relieves volumes whatever the control signals are (pump_lines.h), and pumps.
   virtual void add_lines(PumpLines& /*lines*/) const {}
 };

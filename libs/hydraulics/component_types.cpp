@@ -9,6 +9,8 @@
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/double_rod_cylinder.h"
+#include "hydraulics/components/engine.h"
+#include "hydraulics/components/filter.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose.h"
 #include "hydraulics/components/hose_burst_valve.h"
@@ -16,7 +18,10 @@
 #include "hydraulics/components/l90ls_valve.h"
 #include "hydraulics/components/ls_pump.h"
 #include "hydraulics/components/ls_shuttle.h"
+#include "hydraulics/components/post_compensator.h"
+#include "hydraulics/components/priority_valve.h"
 #include "hydraulics/components/pump.h"
+#include "hydraulics/components/reducing_valve.h"
 #include "hydraulics/components/relief_valve.h"
 #include "hydraulics/components/restrictions.h"
 #include "hydraulics/components/single_acting_cylinder.h"
@@ -40,6 +45,7 @@ std::span<const ComponentType> component_types() {
       ls_shuttle_type(),
       relief_valve_type(),
       direct_relief_valve_type(),
+      reducing_valve_type(),
       check_valve_type(),
       throttle_check_valve_type(),
       pilot_check_valve_type(),
@@ -48,15 +54,24 @@ std::span<const ComponentType> component_types() {
       hose_burst_valve_type(),
       accumulator_type(),
       compensated_orifice_type(),
+      post_compensator_type(),
+      priority_valve_type(),
       ls_pump_type(),
       pump_type(),
+      engine_type(),
       flow_source_type(),
       pressure_source_type(),
       bleed_type(),
       orifice_type(),
       laminar_restriction_type(),
+      filter_type(),
   };
   return types;
+}
+
+bool ComponentDef::takes_signal() const {
+  const ComponentType* type = find_component_type(type_name());
+  return type != nullptr && type->has_control_signal;
 }
 
 const ComponentType* find_component_type(std::string_view name) {

@@ -174,7 +174,8 @@ void check_volumes(const HydraulicsDef& def, Problems& errors) {
 std::vector<std::pair<std::string_view, std::string_view>> ls_references(ComponentDef& component) {
   std::vector<std::pair<std::string_view, std::string_view>> names;
   for (const Field& row : find_component_type(component.type_name())->fields) {
-    if (row.reference != "component") continue;
+    // a pump's engine is no source of a load-sensing pressure
+    if (row.reference != "component" || row.key == "engine") continue;
     const std::string& name = member<std::string>(row, component.address());
     if (!name.empty()) names.emplace_back(row.key, name);
   }
@@ -184,6 +185,8 @@ std::vector<std::pair<std::string_view, std::string_view>> ls_references(Compone
 bool reaches(const HydraulicsDef& def, const ComponentDef& from, std::string_view target, std::size_t depth) {
   if (depth == 0) return true;
   for (const auto& [key, name] : ls_references(const_cast<ComponentDef&>(from))) {
+    // a compensator follows the shared pressure with a lag; what it adds to the chain does not depend on it
+    if (key == "shared_ls") continue;
     const ComponentDef* next = find_component(def, name);
     if (name == target || (next != nullptr && reaches(def, *next, target, depth - 1))) return true;
   }

@@ -61,12 +61,12 @@ void Circuit::follow_vapour(const double* y) noexcept {
 }
 
 // Growth of a volume by its chambers over the whole displacement [m3]; a line's oil follows in move_lines().
-double Circuit::chamber_growth(std::size_t volume) const noexcept {
+double Circuit::chamber_growth(std::size_t volume, const double* y) const noexcept {
   double dV = 0;
   for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
     const Piece& piece = pieces_[k];
     if (piece.position >= 0 && piece.lumped == 1)
-      dV += piece.sweep() * displacement_[static_cast<std::size_t>(piece.position - volume_count())];
+      dV += piece.sweep_at(y) * displacement_[static_cast<std::size_t>(piece.position - volume_count())];
   }
   return dV;
 }
@@ -122,7 +122,7 @@ bool Circuit::is_closed(std::size_t volume, const double* y, const double* f) co
   for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
     const Piece& piece = pieces_[k];
     if (piece.position < 0) continue;
-    const double swept = piece.sweep() * y[piece.position + actuator_count()];
+    const double swept = piece.sweep_at(y) * y[piece.position + actuator_count()];
     if (piece.lumped == 1) sum += swept;
     size += std::fabs(swept);
   }
@@ -193,7 +193,7 @@ void Circuit::keep_closed_oil(double h, const double* y_before, const double* f_
       is_looked_at = true;
     }
     if (!is_closed(i, y, kept_rates_.data())) continue;
-    y[i] = moved_alone(i, chamber_growth(i) + intake_of_lines(i, h, pressures), y_before);
+    y[i] = moved_alone(i, chamber_growth(i, y_before) + intake_of_lines(i, h, pressures), y_before);
   }
 }
 

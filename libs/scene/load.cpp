@@ -399,8 +399,7 @@ class SceneReader {
   void check_primitive(const InputDef& input, Problems& errors) const {
     std::vector<std::string_view> controlled;
     for (const auto& component : scene_.hydraulics.components) {
-      const hydraulics::ComponentType* type = hydraulics::find_component_type(component->type_name());
-      if (type != nullptr && type->has_control_signal) controlled.push_back(component->name);
+      if (component->takes_signal()) controlled.push_back(component->name);
     }
     for (const multibody::PointForceDef& load : scene_.mechanics.point_forces) controlled.push_back(load.name);
     for (const multibody::PointTorqueDef& load : scene_.mechanics.point_torques) controlled.push_back(load.name);

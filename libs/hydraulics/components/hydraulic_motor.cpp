@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/hydraulic_motor.h"
 
+#include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/check_poppet.h"
 #include "hydraulics/components/cylinder_fields.h"
 #include "hydraulics/components/cylinder_rules.h"
+#include "hydraulics/components/displacement_servo.h"
 
 namespace slew::hydraulics {
 namespace {
@@ -17,6 +20,9 @@ namespace {
 constexpr std::string_view kMotorCouplings[] = {"session", "hold", "linear", "two"};
 
 constexpr ReadBy kReadByCase[] = {read_by_set<&HydraulicMotorDef::port_c>("port_c", "a port_c")};
+
+constexpr ReadBy kReadByVariable[] = {read_by<&HydraulicMotorDef::is_variable, true>("variable", "variable: true")};
+constexpr ReadBy kReadByBrake[] = {read_by_set<&HydraulicMotorDef::brake_port>("brake_port", "a brake_port")};
 
 constexpr Field kHydraulicMotorFields[] = {
     field<&HydraulicMotorDef::force>("force", {.presence = Presence::required,
@@ -67,7 +73,58 @@ constexpr Field kHydraulicMotorFields[] = {
         "coupling", {.change = Change::live,
                      .choices = kMotorCouplings,
                      .doc = "coupling level of this motor's port; session: the level of session.coupling"}),
+    field<&HydraulicMotorDef::is_variable>(
+        "variable", {.doc = "the displacement follows setting and the control signal; false: it is fixed"}),
+    field<&HydraulicMotorDef::setting>("setting", {.range = kFraction,
+                                                   .change = Change::live,
+                                                   .read_by = kReadByVariable,
+                                                   .doc = "share of the displacement without a control signal"}),
+    field<&HydraulicMotorDef::setting_per_signal>("setting_per_signal",
+                                                  {.range = kFinite,
+                                                   .change = Change::live,
+                                                   .read_by = kReadByVariable,
+                                                   .doc = "share of the displacement per unit of the control signal"}),
+    field<&HydraulicMotorDef::minimum_setting>("minimum_setting", {.range = kFractionAboveZero,
+                                                                   .change = Change::live,
+                                                                   .read_by = kReadByVariable,
+                                                                   .doc = "least share of the displacement"}),
+    field<&HydraulicMotorDef::time_constant>("time_constant", {.dimension = Dimension::time,
+                                                               .range = kPositive,
+                                                               .change = Change::live,
+                                                               .read_by = kReadByVariable,
+                                                               .doc = "time constant of the displacement's servo"}),
+    field<&HydraulicMotorDef::setting_rate_limit>("setting_rate_limit",
+                                                  {.dimension = Dimension::frequency,
+                                                   .range = kNotNegative,
+                                                   .change = Change::live,
+                                                   .read_by = kReadByVariable,
+                                                   .doc = "greatest rate of the setting; 0: none"}),
+    field<&HydraulicMotorDef::brake_port>(
+        "brake_port", {.reference = "volume", .doc = "volume whose pressure releases the holding brake; absent: none"}),
+    field<&HydraulicMotorDef::brake, &ShaftBrakeParameters::torque>(
+        "brake_torque", {.dimension = Dimension::torque,
+                         .range = kNotNegative,
+                         .read_by = kReadByBrake,
+                         .doc = "greatest torque of the brake at the shaft, without pressure"}),
+    field<&HydraulicMotorDef::brake, &ShaftBrakeParameters::release_pressure>(
+        "brake_release_pressure", {.dimension = Dimension::pressure,
+                                   .range = kPositive,
+                                   .change = Change::live,
+                                   .read_by = kReadByBrake,
+                                   .doc = "pressure above the case, without port_c above 1 bar, that opens the brake"}),
+    field<&HydraulicMotorDef::brake, &ShaftBrakeParameters::twist>(
+        "brake_twist", {.dimension = Dimension::angle,
+                        .range = kPositive,
+                        .read_by = kReadByBrake,
+                        .doc = "turn of the shaft against the brake from no torque to brake_torque"}),
+    field<&HydraulicMotorDef::brake, &ShaftBrakeParameters::share>(
+        "brake_share", {.range = kFraction,
+                        .change = Change::live,
+                        .read_by = kReadByBrake,
+                        .doc = "share of brake_torque that worn or oily discs still hold"}),
 };
+
+constexpr double kAtmosphere = 1e5;  // Pa, in the room of the brake's springs without a case drain
 
 // speed of the shaft from which on its friction is fully there: a gear of 100 turns the joint by 1e-4 rad/s then
 constexpr double kRestSpeed = 1e-2;  // rad/s
@@ -86,30 +143,64 @@ class HydraulicMotor final : public HydraulicComponent {
         actuator_(builder.add_actuator(def.name, def.actuator().value())),
         x_(builder.position(actuator_)),
         v_(builder.speed(actuator_)) {
+    if (def.is_variable) {
+      const double at_start = commanded(0);
+      setting_ = builder.add_state({.initial = at_start, .scale = 1});
+      control_ = builder.add_control(def.name, SignalMoves::a_state);
+      builder.set_setting(actuator_, {setting_, at_start});
+    }
+    if (!def.brake_port.empty()) {
+      brake_port_ = builder.volume(def.brake_port);
+      brake_ = builder.add_state({.initial = 0, .scale = 1});
+      builder.set_brake(actuator_, {brake_, def.brake.torque});
+    }
     // the shaft moves oil through either side, whose content stays
-    builder.add_content(
-        {.volume_index = a_, .volume = def.dead_volume, .position = x_, .swept_by_position = def.displacement});
-    builder.add_content(
-        {.volume_index = b_, .volume = def.dead_volume, .position = x_, .swept_by_position = -def.displacement});
+    for (const auto& [port, D] : {std::pair(a_, def.displacement), std::pair(b_, -def.displacement)}) {
+      builder.add_content({.volume_index = port,
+                           .volume = def.dead_volume,
+                           .position = x_,
+                           .swept_by_position = D,
+                           .setting = setting_});
+    }
     apply_parameters();
   }
 
   void declare_dependencies(DependencyList& dependencies) const override {
     dependencies.add_restriction(a_, b_);
     dependencies.add(a_, v_), dependencies.add(b_, v_);
+    if (setting_ >= 0) {
+      for (const StateIndex row : {a_, b_, setting_}) dependencies.add(row, setting_);
+    }
+    if (brake_ >= 0) {
+      for (const StateIndex column : {brake_, v_, brake_port_}) dependencies.add(brake_, column);
+      if (case_ >= 0) dependencies.add(brake_, case_);
+    }
     if (case_ < 0) return;
     dependencies.add_restriction(a_, case_), dependencies.add_restriction(b_, case_);
   }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
-    rates.move(a_, b_, def_.displacement * view[v_] + leak(view));
+    rates.move(a_, b_, displacement(view) * view[v_] + leak(view));
+    if (setting_ >= 0) rates.set_rate(setting_, setting_rate(view).value);
+    if (brake_ >= 0) rates.set_rate(brake_, brake_rate(view).value);
     if (case_ < 0) return;
     rates.move(a_, case_, case_leak(view, a_));
     rates.move(b_, case_, case_leak(view, b_));
   }
-  void add_jacobian(const CircuitView&, JacobianStamp& jacobian) const noexcept override {
-    jacobian.move(a_, b_, v_, def_.displacement);
+  void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
+    jacobian.move(a_, b_, v_, displacement(view));
     jacobian.move(a_, b_, a_, G_);
     jacobian.move(a_, b_, b_, -G_);
+    if (setting_ >= 0) {
+      jacobian.move(a_, b_, setting_, def_.displacement * view[v_]);
+      jacobian.add(setting_, setting_, -setting_rate(view).slope);
+    }
+    if (brake_ >= 0) {
+      const BrakeRate rate = brake_rate(view);
+      jacobian.add(brake_, brake_, rate.over_b);
+      jacobian.add(brake_, v_, rate.over_speed);
+      jacobian.add(brake_, brake_port_, rate.over_pressure);
+      if (case_ >= 0) jacobian.add(brake_, case_, -rate.over_pressure);
+    }
     if (case_ < 0) return;
     for (const StateIndex port : {a_, b_}) {
       jacobian.move(port, case_, port, G_case_);
@@ -128,15 +219,19 @@ class HydraulicMotor final : public HydraulicComponent {
     variables.push_back(variable("flow_b", Dimension::volume_flow));
     variables.push_back(variable("case_flow", Dimension::volume_flow));
     variables.push_back(variable("power", Dimension::power));
+    variables.push_back(variable("setting", Dimension::none));
+    variables.push_back(variable("brake_torque", Dimension::torque));
+    variables.push_back(variable("brake_capacity", Dimension::torque));
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
-    const double v = view[v_], through = def_.displacement * v + leak(view), shaft_torque = view.line_force[actuator_];
+    const double v = view[v_], D = displacement(view), through = D * v + leak(view);
+    const double shaft_torque = view.line_force[actuator_];
     const double drain_a = case_ < 0 ? 0 : case_leak(view, a_), drain_b = case_ < 0 ? 0 : case_leak(view, b_);
     *values++ = view[x_];
     *values++ = v;
     *values++ = view[a_];
     *values++ = view[b_];
-    *values++ = (view[a_] - view[b_]) * def_.displacement;
+    *values++ = (view[a_] - view[b_]) * D;
     *values++ = shaft_torque;
     *values++ = def_.gear_ratio * shaft_torque;
     // into the motor
@@ -144,7 +239,16 @@ class HydraulicMotor final : public HydraulicComponent {
     *values++ = -through + drain_b;
     *values++ = drain_a + drain_b;
     *values++ = shaft_torque * v;
+    *values++ = setting_ < 0 ? 1 : view[setting_];
+    *values++ = brake_ < 0 ? 0 : def_.brake.torque * view[brake_];
+    *values++ = brake_ < 0 ? 0 : def_.brake.torque * brake_share(view);
     return values;
+  }
+  [[nodiscard]] double brake_share(const CircuitView& view) const noexcept override {
+    return shaft_brake::held_share(def_.brake, release(view)).value;
+  }
+  [[nodiscard]] double brake_grip(const CircuitView& view) const noexcept override {
+    return shaft_brake::grip(brake_share(view)).value / def_.brake.twist;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
@@ -153,6 +257,25 @@ class HydraulicMotor final : public HydraulicComponent {
   }
 
  private:
+  // (6)
+  [[nodiscard]] double commanded(double signal) const noexcept {
+    return std::clamp(def_.setting + def_.setting_per_signal * signal, def_.minimum_setting, 1.0);
+  }
+  // (5)
+  [[nodiscard]] ValueSlope setting_rate(const CircuitView& view) const noexcept {
+    const double error = commanded(view.control[control_]) - view[setting_];
+    return servo_rate(error, def_.time_constant, def_.setting_rate_limit);
+  }
+  [[nodiscard]] double displacement(const CircuitView& view) const noexcept {
+    return setting_ < 0 ? def_.displacement : view[setting_] * def_.displacement;
+  }
+  // p_x - p_c
+  [[nodiscard]] double release(const CircuitView& view) const noexcept {
+    return view[brake_port_] - (case_ < 0 ? kAtmosphere : view[case_]);
+  }
+  [[nodiscard]] BrakeRate brake_rate(const CircuitView& view) const noexcept {
+    return shaft_brake::rate(def_.brake, view[brake_], view[v_], release(view));
+  }
   [[nodiscard]] double leak(const CircuitView& view) const noexcept { return G_ * (view[a_] - view[b_]); }
   [[nodiscard]] double case_leak(const CircuitView& view, StateIndex port) const noexcept {
     return G_case_ * (view[port] - view[case_]);
@@ -162,6 +285,8 @@ class HydraulicMotor final : public HydraulicComponent {
   StateIndex a_, b_, case_;  // case: -1 without a drain
   int actuator_;
   StateIndex x_, v_;
+  StateIndex setting_ = -1, brake_ = -1, brake_port_ = -1;  // -1: fixed displacement, no brake
+  int control_ = -1;
   double G_ = 0, G_case_ = 0;  // m3/s/Pa
 };
 
@@ -169,6 +294,14 @@ void validate_motor(const HydraulicsDef& circuit, const ComponentDef& component,
   const HydraulicMotorDef& def = static_cast<const HydraulicMotorDef&>(component);
   check_distinct(def.name + ".port_b", def.port_a, def.port_b, errors);
   check_friction_curve(circuit, def.name, def.friction_curve, errors);
+  if (def.brake_port.empty()) return;
+  if (def.brake.torque == 0) {
+    errors.push_back({def.name + ".brake_torque", "the brake has no torque", "a torque above 0, or no brake_port", ""});
+  }
+  if (circuit.solver == Solver::rk4) {
+    errors.push_back({def.name + ".brake_port", "the discs of a brake slip faster than the sub-steps of rk4",
+                      "hydraulics.solver: rodas3, implicit_euler or cvode", ""});
+  }
 }
 
 }  // namespace
@@ -197,14 +330,17 @@ std::optional<ActuatorDef> HydraulicMotorDef::actuator() const {
 }
 
 ComponentType hydraulic_motor_type() {
-  return {.name = "hydraulic_motor",
-          .fields = kHydraulicMotorFields,
-          .doc = "motor of fixed displacement that turns a joint through a gear",
-          .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<HydraulicMotorDef>(); },
-          .validate = validate_motor,
-          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
-            return std::make_unique<HydraulicMotor>(static_cast<const HydraulicMotorDef&>(def), builder);
-          }};
+  return {
+      .name = "hydraulic_motor",
+      .fields = kHydraulicMotorFields,
+      .doc =
+          "motor of fixed or variable displacement, with or without a holding brake, that turns a joint through a gear",
+      .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<HydraulicMotorDef>(); },
+      .validate = validate_motor,
+      .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+        return std::make_unique<HydraulicMotor>(static_cast<const HydraulicMotorDef&>(def), builder);
+      },
+      .has_control_signal = true};
 }
 
 }  // namespace slew::hydraulics

@@ -11,6 +11,13 @@ namespace {
 
 constexpr ReadBy kReadByLs[] = {read_by_set<&LsPumpDef::ls_port>("ls_port", "an ls_port")};
 
+constexpr ReadBy kLsPumpReadBySpeed[] = {{"engine", "no engine", [](const void* def) noexcept {
+                                            return static_cast<const LsPumpDef*>(def)->drive.engine.empty();
+                                          }}};
+constexpr ReadBy kLsPumpReadByEngine[] = {{"engine", "an engine", [](const void* def) noexcept {
+                                             return !static_cast<const LsPumpDef*>(def)->drive.engine.empty();
+                                           }}};
+
 constexpr Field kLsPumpFields[] = {
     field<&LsPumpDef::port_a>("port_a",
                               {.presence = Presence::required, .reference = "volume", .doc = "volume at the outlet"}),
@@ -18,10 +25,15 @@ constexpr Field kLsPumpFields[] = {
     field<&LsPumpDef::ls_port>(
         "ls_port", {.reference = "component", .doc = "component whose load-sensing pressure the pump follows"}),
     field<&LsPumpDef::speed>("speed", {.dimension = Dimension::angular_velocity,
-                                       .range = kPositive,
-                                       .presence = Presence::required,
+                                       .range = kNotNegative,
                                        .change = Change::live,
-                                       .doc = "speed of the drive"}),
+                                       .read_by = kLsPumpReadBySpeed,
+                                       .doc = "speed of the drive; required without an engine"}),
+    field<&LsPumpDef::drive, &PumpDriveParameters::engine>(
+        "engine", {.reference = "component", .doc = "engine that drives the pump; absent: the pump has its own speed"}),
+    field<&LsPumpDef::drive, &PumpDriveParameters::speed_ratio>(
+        "speed_ratio",
+        {.range = kPositive, .read_by = kLsPumpReadByEngine, .doc = "speed of the pump over that of the engine"}),
     field<&LsPumpDef::displacement>("displacement", {.dimension = Dimension::displacement_volume,
                                                      .range = kPositive,
                                                      .presence = Presence::required,
@@ -70,7 +82,8 @@ class LsPump final : public HydraulicComponent {
         a_(builder.volume(def.port_a)),
         b_(builder.volume(def.port_b)),
         ls_(def.ls_port.empty() ? -1 : builder.ls_index(def.ls_port)),
-        alpha_(builder.add_state({.initial = 0, .scale = 1})) {
+        alpha_(builder.add_state({.initial = 0, .scale = 1})),
+        drive_(def.drive, def.displacement, def.mechanical_coefficient, builder) {
     builder.mark_supply(a_);
     apply_parameters();
   }
@@ -79,10 +92,12 @@ class LsPump final : public HydraulicComponent {
     dependencies.add(a_, alpha_), dependencies.add(b_, alpha_);
     dependencies.add(alpha_, alpha_), dependencies.add(alpha_, a_), dependencies.add(alpha_, b_);
     if (ls_ >= 0) dependencies.add_ls(alpha_, ls_);
+    drive_.declare_dependencies(a_, b_, alpha_, dependencies);
   }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
     rates.set_rate(alpha_, rate_ * (command(view).value - view[alpha_]));
     rates.move(b_, a_, flow(view));
+    drive_.add_load(view[alpha_], view[a_] - view[b_], rates);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
     const ValueSlope u = command(view);
@@ -91,9 +106,10 @@ class LsPump final : public HydraulicComponent {
     jacobian.add(alpha_, a_, -d_command);
     jacobian.add(alpha_, b_, d_command);
     if (ls_ >= 0) jacobian.add_ls(alpha_, ls_, d_command * set_point(view).slope);
-    jacobian.move(b_, a_, alpha_, full_flow_);
+    jacobian.move(b_, a_, alpha_, full_flow(view));
     jacobian.move(b_, a_, a_, -G_leak_);
     jacobian.move(b_, a_, b_, G_leak_);
+    drive_.stamp(a_, b_, alpha_, view, per_speed_, jacobian);
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("swash", Dimension::none));
@@ -108,11 +124,12 @@ class LsPump final : public HydraulicComponent {
     *values++ = flow(view);
     *values++ = set_point(view).value;
     *values++ = torque;
-    *values++ = torque * def_.speed;
+    *values++ = torque * drive_.speed(view, def_.speed);
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
+    per_speed_ = def_.displacement * def_.volumetric_coefficient;
     full_flow_ = def_.displacement * def_.speed * def_.volumetric_coefficient;
     G_leak_ = def_.leak_flow / def_.leak_pressure;
     rate_ = 1 / def_.time_constant;
@@ -131,18 +148,24 @@ class LsPump final : public HydraulicComponent {
     return unit_clip(def_.controller_gain * (set_point(view).value - (view[a_] - view[b_])), kSwashClipWidth);
   }
   [[nodiscard]] double flow(const CircuitView& view) const noexcept {
-    return full_flow_ * view[alpha_] - G_leak_ * (view[a_] - view[b_]);
+    return full_flow(view) * view[alpha_] - G_leak_ * (view[a_] - view[b_]);
+  }
+  [[nodiscard]] double full_flow(const CircuitView& view) const noexcept {
+    return drive_.has_engine() ? per_speed_ * drive_.speed(view, 0) : full_flow_;
   }
 
   LsPumpDef def_;
   StateIndex a_, b_;
   LsIndex ls_;        // -1: none
   StateIndex alpha_;  // swash 0..1
+  PumpDrive drive_;
+  double per_speed_ = 0;  // m3/rad, flow per speed at full swash
   double full_flow_ = 0, G_leak_ = 0, rate_ = 0;
 };
 
 void validate_pump(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
   const LsPumpDef& def = static_cast<const LsPumpDef&>(component);
+  check_drive(circuit, def.name, def.drive, def.speed, errors);
   for (const VolumeDef& volume : circuit.volumes) {
     if (volume.name != def.port_b || volume.fixed) continue;
     errors.push_back({def.name + ".port_b",
@@ -156,7 +179,7 @@ void validate_pump(const HydraulicsDef& circuit, const ComponentDef& component, 
 void LsPumpDef::add_lines(PumpLines& lines) const {
   lines.pumps.push_back({.name = name,
                          .outlet = port_a,
-                         .flow = speed * displacement * volumetric_coefficient,
+                         .flow = greatest_speed(drive, speed) * displacement * volumetric_coefficient,
                          .pressure = ls_port.empty() ? standby_pressure
                                                      : std::max(standby_pressure, maximum_ls_pressure + set_pressure)});
 }

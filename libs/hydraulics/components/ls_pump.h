@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Variable-displacement pump with load-sensing controller, driven at a given speed.
+// Variable-displacement pump with load-sensing controller, driven at a given speed or by an engine
+// (pump_drive.h).
 //
 //   p_set = max(p_standby, min(p_LS, p_LSmax) + p_margin)                     relative to port B (tank)
 //   T alpha' = clip(K (p_set - (p_A - p_B)), 0, 1) - alpha                    swash 0..1
@@ -8,18 +9,20 @@
 // Steady droop: a flow Q lowers the outlet by alpha / K = Q / (V_rad omega eta_v K) below p_set.
 //
 // Source: the flexible-body tutorial thesis (Saimaa UAS 2017), table 21. Deviations: its controller gain 3.5e-5 is read
-// as % per Pa; the torque is not divided by the volumetric coefficient. Not covered: torque limiter, drive dynamics.
+// as % per Pa; the torque is not divided by the volumetric coefficient. Not covered: torque limiter.
 #pragma once
 
 #include "hydraulics/component_def.h"
+#include "hydraulics/components/pump_drive.h"
 
 namespace slew::hydraulics {
 
 struct LsPumpDef final : ComponentDef {
-  std::string port_a;                  // volume, outlet
-  std::string port_b;                  // volume, tank
-  std::string ls_port;                 // component with an LS port; empty: stand-by only
-  double speed = 0;                    // rad/s
+  std::string port_a;   // volume, outlet
+  std::string port_b;   // volume, tank
+  std::string ls_port;  // component with an LS port; empty: stand-by only
+  double speed = 0;     // rad/s, without an engine
+  PumpDriveParameters drive;
   double displacement = 0;             // m3/rad, full swash
   double mechanical_coefficient = 1;   // eta_m
   double volumetric_coefficient = 1;   // eta_v

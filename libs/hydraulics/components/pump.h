@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pump of fixed or variable displacement at a given speed, with limits of pressure and power.
+// Pump of fixed or variable displacement at a given speed or on the shaft of an engine (pump_drive.h), with limits of
+// pressure and power.
 //
 //   Q = alpha D n eta_v - G_leak (p_a - p_b)       from port b into port a                                      (1)
-//   tau alpha' = min(alpha_c, alpha_p, alpha_P) - alpha                                                         (2)
+//   alpha' = sat((min(alpha_c, alpha_p, alpha_P) - alpha) / tau, swash_rate_limit)     displacement_servo.h     (2)
 //   alpha_c = clip(swash + swash_per_signal signal, 0, 1)                 command                               (3)
 //   alpha_p = clip(controller_gain (maximum_pressure - (p_a - p_b)), 0, 1)          pressure cut-off            (4)
 //   alpha_P = eta_m maximum_power / (D n (p_a - p_b))                               power limit                 (5)
@@ -11,22 +12,25 @@
 // maximum_power of 0 are no limits; a torque limit T is a power limit T n. Without limits and signal the pump is fixed.
 //
 // Source: Merritt 1967, section 4.2, for flow and torque; the limits are those of pump regulators in practice. Not
-// covered: dynamics of the drive, ripple, negative swash (closed circuits), losses that follow pressure or speed.
+// covered: ripple, negative swash (closed circuits), losses that follow pressure or speed.
 #pragma once
 
 #include "hydraulics/component_def.h"
+#include "hydraulics/components/pump_drive.h"
 
 namespace slew::hydraulics {
 
 struct PumpDef final : ComponentDef {
-  std::string port_a, port_b;         // volumes, outlet and tank
-  double speed = 0;                   // n [rad/s]
+  std::string port_a, port_b;  // volumes, outlet and tank
+  double speed = 0;            // n [rad/s], without an engine
+  PumpDriveParameters drive;
   double displacement = 0;            // D [m3/rad], at full swash
   double mechanical_coefficient = 1;  // eta_m
   double volumetric_coefficient = 1;  // eta_v
   double swash = 1;                   // share of the displacement
   double swash_per_signal = 0;        // per unit of the control signal
   double time_constant = 0.1;         // tau [s]
+  double swash_rate_limit = 0;        // 1/s, greatest rate of the swash; 0: none
   double maximum_pressure = 0;        // Pa above tank; 0: none
   double controller_gain = 3.5e-7;    // 1/Pa, of the cut-off
   double maximum_power = 0;           // W of the drive; 0: none

@@ -8,10 +8,15 @@
 #include "hydraulics/components/counterbalance_valve.h"
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_rod_cylinder.h"
+#include "hydraulics/components/engine.h"
+#include "hydraulics/components/filter.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
+#include "hydraulics/components/post_compensator.h"
+#include "hydraulics/components/priority_valve.h"
 #include "hydraulics/components/pump.h"
+#include "hydraulics/components/reducing_valve.h"
 #include "hydraulics/components/single_acting_cylinder.h"
 #include "hydraulics/components/sources.h"
 #include "hydraulics/components/spool_valve.h"
@@ -72,13 +77,19 @@ inline void add_spool_valves(HydraulicsDef& circuit) {
   circuit.curves.push_back({.name = "Edge", .points = {{-1, 0}, {0.1, 0}, {0.4, 0.2}, {1, 1.5}}});
 }
 
-// A motor with a case drain, one without, and a single-acting cylinder.
+// A motor with a case drain, one without, two of variable displacement with brakes, and a single-acting cylinder.
 inline void add_actuators(HydraulicsDef& circuit) {
   HydraulicMotorDef& motor = add<HydraulicMotorDef>(circuit, "Motor");
   motor.force = "Ring", motor.port_a = "Vol_C", motor.port_b = "Vol_D", motor.port_c = "Vol_T";
   motor.displacement = 10e-6, motor.gear_ratio = 50, motor.leak_flow = kLeak, motor.case_leak_flow = 2 * kLeak;
   HydraulicMotorDef& fan = add<HydraulicMotorDef>(circuit, "Fan");
   fan.force = "Fan_Axle", fan.port_a = "Vol_A", fan.port_b = "Vol_T", fan.displacement = 2e-6;
+  for (const char* port_c : {"", "Vol_A"}) {
+    HydraulicMotorDef& winch = add<HydraulicMotorDef>(circuit, *port_c == 0 ? "Winch" : "Drained_Winch");
+    winch.force = winch.name + "_Axle", winch.port_a = "Vol_C", winch.port_b = "Vol_D", winch.port_c = port_c;
+    winch.displacement = 8e-6, winch.is_variable = true, winch.setting = 0.7, winch.setting_rate_limit = 2;
+    winch.brake_port = "Vol_B", winch.brake.torque = 300, winch.brake.release_pressure = 400 * kBar;
+  }
   SingleActingCylinderDef& plunger = add<SingleActingCylinderDef>(circuit, "Plunger");
   plunger.common.force = "Plunger_Force", plunger.common.port_a = "Vol_D", plunger.common.port_b = "Vol_T";
   plunger.common.piston_diameter = 0.06, plunger.common.chamber_length = 0.6, plunger.common.leak_flow = kLeak;
@@ -89,12 +100,49 @@ inline void add_actuators(HydraulicsDef& circuit) {
 inline void add_sources(HydraulicsDef& circuit) {
   PumpDef& pump = add<PumpDef>(circuit, "Limited_Pump");
   pump.port_a = "Vol_C", pump.port_b = "Vol_T", pump.speed = 157, pump.displacement = 8e-6, pump.leak_flow = kLeak;
-  pump.swash = 0.8, pump.maximum_pressure = 190 * kBar, pump.maximum_power = 10e3;
+  pump.swash = 0.8, pump.swash_rate_limit = 3, pump.maximum_pressure = 190 * kBar, pump.maximum_power = 10e3;
   FlowSourceDef& flow = add<FlowSourceDef>(circuit, "Flow_Source");
   flow.port_1 = "Vol_T", flow.port_2 = "Vol_P", flow.flow = 1e-4, flow.flow_per_signal = 1e-7;
   PressureSourceDef& pressure = add<PressureSourceDef>(circuit, "Pressure_Source");
   pressure.port_1 = "Vol_D", pressure.set_pressure = 50 * kBar, pressure.pressure_per_signal = 1e3;
   pressure.nominal_flow = 1e-4;
+}
+
+// An engine with a pump of either kind, and filters with and without a bypass.
+inline void add_engine_and_filters(HydraulicsDef& circuit) {
+  circuit.curves.push_back({.name = "Full_Load", .points = {{80, 200}, {150, 400}, {220, 300}}});
+  PumpDef& pump = add<PumpDef>(circuit, "Engine_Pump");
+  pump.port_a = "Vol_D", pump.port_b = "Vol_T", pump.displacement = 8e-6, pump.mechanical_coefficient = 0.9;
+  pump.drive = {"Engine", 1.5}, pump.maximum_power = 10e3, pump.leak_flow = kLeak;
+  EngineDef& engine = add<EngineDef>(circuit, "Engine");
+  engine.torque_curve = "Full_Load", engine.inertia = 1.2, engine.speed = 200, engine.stall_speed = 60;
+  engine.friction_torque = 20, engine.viscous_friction = 0.05;
+  LsPumpDef& ls_pump = add<LsPumpDef>(circuit, "Engine_Ls_Pump");
+  ls_pump.port_a = "Vol_C", ls_pump.port_b = "Vol_T", ls_pump.displacement = 5e-6, ls_pump.drive = {"Engine", 0.8};
+  ls_pump.standby_pressure = 150 * kBar, ls_pump.mechanical_coefficient = 0.9;
+  FilterDef& filter = add<FilterDef>(circuit, "Filter");
+  filter.port_1 = "Vol_A", filter.port_2 = "Vol_C", filter.nominal_flow = 1e-4, filter.clogging = 0.5;
+  filter.nominal_pressure_drop = 5 * kBar, filter.bypass.nominal_flow = 5e-4;
+  FilterDef& plain = add<FilterDef>(circuit, "Plain_Filter");
+  plain.port_1 = "Vol_C", plain.port_2 = "Vol_T", plain.nominal_flow = 1e-5;
+}
+
+// A section with flow sharing, priority valves with and without load sensing, a reducing valve with a signal.
+inline void add_flow_sharing(HydraulicsDef& circuit) {
+  PostCompensatorDef& compensator = add<PostCompensatorDef>(circuit, "Compensator");
+  compensator.port_1 = "Vol_C", compensator.port_2 = "Vol_B", compensator.port_t = "Vol_T";
+  compensator.shared_ls = "Shuttle_3", compensator.nominal_flow = 1e-3, compensator.regulation_pressure = 50 * kBar;
+  LsShuttleDef& shuttle = add<LsShuttleDef>(circuit, "Shuttle_3");
+  shuttle.port_1 = "Compensator", shuttle.port_2 = "Metering_B";
+  PriorityValveDef& priority = add<PriorityValveDef>(circuit, "Priority");
+  priority.port_1 = "Vol_P", priority.port_2 = "Vol_A", priority.port_3 = "Vol_C", priority.port_t = "Vol_T";
+  priority.ls_port = "Metering_A", priority.nominal_flow = 5e-4, priority.regulation_pressure = 20 * kBar;
+  PriorityValveDef& fixed = add<PriorityValveDef>(circuit, "Fixed_Priority");
+  fixed.port_1 = "Vol_D", fixed.port_2 = "Vol_B", fixed.port_3 = "Vol_T", fixed.port_t = "Vol_T";
+  fixed.nominal_flow = 5e-4, fixed.spring_pressure = 50 * kBar, fixed.regulation_pressure = 60 * kBar;
+  ReducingValveDef& reducing = add<ReducingValveDef>(circuit, "Reducing");
+  reducing.port_1 = "Vol_P", reducing.port_2 = "Vol_D", reducing.port_3 = "Vol_C", reducing.nominal_flow = 5e-4;
+  reducing.setting_pressure = 20 * kBar, reducing.pressure_per_signal = 5e3, reducing.regulation_pressure = 40 * kBar;
 }
 
 inline HydraulicsDef bench_circuit() {
@@ -152,6 +200,8 @@ inline HydraulicsDef bench_circuit() {
   add_spool_valves(circuit);
   add_actuators(circuit);
   add_sources(circuit);
+  add_engine_and_filters(circuit);
+  add_flow_sharing(circuit);
   return circuit;
 }
 

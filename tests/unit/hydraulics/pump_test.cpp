@@ -68,6 +68,18 @@ TEST(Pump, follows_its_signal_with_a_lag) {
   EXPECT_NEAR(rig.variable("swash"), 1, 1e-4);
 }
 
+// The error over tau, 0.8/0.05, is far above 2/s until the last 0.1.
+TEST(Pump, its_swash_turns_no_faster_than_its_limit) {
+  Rig rig(101);
+  rig.pump().swash = 0.2, rig.pump().swash_per_signal = 0.1, rig.pump().swash_rate_limit = 2;
+  rig.run(8, 0.1);
+  EXPECT_NEAR(rig.variable("swash"), 0.4, 1e-4);
+  rig.run(8, 0.15);
+  EXPECT_NEAR(rig.variable("swash"), 0.7, 1e-4);
+  rig.run(8, 0.5);
+  EXPECT_NEAR(rig.variable("swash"), 1, 1e-3);
+}
+
 TEST(Pump, the_power_limit_is_a_hyperbola) {
   for (const auto& [bar, swash] : {std::pair{50.0, 1.0}, {100.0, 0.9}, {150.0, 0.6}, {300.0, 0.3}}) {
     Rig rig(bar + 1);

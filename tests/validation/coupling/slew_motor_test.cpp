@@ -170,5 +170,24 @@ TEST(SlewMotor, late_and_lost_samples_leave_it_close) {
   }
 }
 
+// Variable displacement and holding brake: scenes/slewing_upper_brake.yaml.
+TEST(SlewMotorBrake, two_speeds_and_a_brake_follow_the_monolith) {
+  scene::Scene scene = scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/scenes/slewing_upper_brake.yaml");
+  const Traces reference = reference_traces(scene, 6);
+  const Comparison run = compare(scene, 1e-3, Level::two, reference, 6);
+  RecordProperty("share", std::to_string(run.ports[0].F / run.ports[0].F_range));
+  RecordProperty("angle", std::to_string(run.ports[0].x));
+  EXPECT_FALSE(run.has_failed);
+  EXPECT_LT(run.ports[0].F, 1e-2 * run.ports[0].F_range);
+  EXPECT_FALSE(creates_energy(run.flags));
+  // it turns by several turns of the shaft, and rests on the slope from the brake's stop on
+  const auto at = [&](double t) {
+    return reference[0].x[static_cast<std::size_t>(std::lround(t / kTraceGrid.seconds()))];
+  };
+  EXPECT_NEAR(at(0.2), at(0), 1e-9);  // held before the release
+  EXPECT_GT(at(4.8), 100);
+  EXPECT_NEAR(at(6), at(5.8), 1e-3);
+}
+
 }  // namespace slew_motor_test
 }  // namespace slew::coupling::test

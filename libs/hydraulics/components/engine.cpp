@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hydraulics/components/engine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hydraulics/circuit_builder.h"
+#include "hydraulics/component.h"
+#include "hydraulics/curve.h"
+#include "hydraulics/smooth.h"
+
+namespace slew::hydraulics {
+namespace {
+
+constexpr Field kEngineFields[] = {
+    field<&EngineDef::torque_curve>(
+        "torque_curve",
+        {.presence = Presence::required,
+         .reference = "curve",
+         .doc = "torque at full load [Nm] over the speed [rad/s]; the last value is held beyond the ends"}),
+    field<&EngineDef::inertia>("inertia",
+                               {.dimension = Dimension::inertia,
+                                .range = kPositive,
+                                .presence = Presence::required,
+                                .doc = "moment of inertia of crankshaft, flywheel and what turns with them"}),
+    field<&EngineDef::speed>("speed", {.dimension = Dimension::angular_velocity,
+                                       .range = kPositive,
+                                       .presence = Presence::required,
+                                       .change = Change::live,
+                                       .doc = "governed speed at full load without a control signal"}),
+    field<&EngineDef::speed_per_signal>("speed_per_signal", {.dimension = Dimension::angular_velocity,
+                                                             .change = Change::live,
+                                                             .doc = "governed speed per unit of the control signal"}),
+    field<&EngineDef::minimum_speed>(
+        "minimum_speed",
+        {.dimension = Dimension::angular_velocity, .range = kNotNegative, .doc = "least governed speed"}),
+    field<&EngineDef::droop>("droop", {.range = kFractionAboveZero,
+                                       .change = Change::live,
+                                       .doc = "rise of the governed speed from full load to none, as a share of it"}),
+    field<&EngineDef::fuel_time_constant>(
+        "fuel_time_constant", {.dimension = Dimension::time,
+                               .range = kPositive,
+                               .change = Change::live,
+                               .doc = "time constant of the torque behind the governor: injection and boost"}),
+    field<&EngineDef::stall_speed>("stall_speed", {.dimension = Dimension::angular_velocity,
+                                                   .range = kPositive,
+                                                   .presence = Presence::required,
+                                                   .doc = "speed below which there is no combustion"}),
+    field<&EngineDef::friction_torque>("friction_torque", {.dimension = Dimension::torque,
+                                                           .range = kNotNegative,
+                                                           .change = Change::live,
+                                                           .doc = "losses and auxiliaries at any speed"}),
+    field<&EngineDef::viscous_friction>("viscous_friction",
+                                        {.dimension = Dimension::rotational_damping,
+                                         .range = kNotNegative,
+                                         .change = Change::live,
+                                         .doc = "losses and auxiliaries in proportion to the speed"}),
+};
+
+constexpr double kFuelWidth = 0.02;       // share of the fuel, smoothing of the governor's limits
+constexpr double kCombustionWidth = 0.1;  // share of g, smoothing
+constexpr double kCombustionRange = 0.1;  // share of stall_speed over which combustion sets in
+constexpr double kFrictionSpeed = 1;      // w_f [rad/s], below which the friction goes to zero
+
+class Engine final : public HydraulicComponent {
+ public:
+  Engine(const EngineDef& def, CircuitBuilder& builder)
+      : HydraulicComponent(def),
+        def_(def),
+        shaft_(builder.shaft(def.name)),
+        w_(shaft_.speed),
+        u_(shaft_.fuel),
+        control_(builder.add_control(def.name, SignalMoves::a_state)),
+        full_load_(straight_lines(*find_curve(builder.def(), def.torque_curve))) {}
+
+  // at the governed speed under its own losses
+  void start(double* y) const noexcept override {
+    const double w_s = governed(0), most = full_torque(w_s).value;
+    const double u = most > 0 ? std::min(1.0, loss(w_s).value / most) : 0;
+    y[w_] = w_s * (1 + def_.droop * (1 - u)) / shaft_.reference;
+    y[u_] = u;
+  }
+  void declare_dependencies(DependencyList& dependencies) const override {
+    for (const StateIndex row : {w_, u_}) dependencies.add(row, w_), dependencies.add(row, u_);
+  }
+  // (1), to which the pumps add their loads, and (2)
+  void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
+    const double w = speed(view);
+    rates.add_flow(w_, (view[u_] * full_torque(w).value - loss(w).value) * per_torque());
+    rates.set_rate(u_, (fuel_command(view).value - view[u_]) / def_.fuel_time_constant);
+  }
+  void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
+    const double w = speed(view);
+    const ValueSlope torque = full_torque(w);
+    jacobian.add(w_, w_, (view[u_] * torque.slope - loss(w).slope) * per_torque() * shaft_.reference);
+    jacobian.add(w_, u_, torque.value * per_torque());
+    jacobian.add(u_, w_, fuel_command(view).slope * shaft_.reference / def_.fuel_time_constant);
+    jacobian.add(u_, u_, -1 / def_.fuel_time_constant);
+  }
+  void list_variables(std::vector<ElementVariable>& variables) const override {
+    variables.push_back(variable("speed", Dimension::angular_velocity));
+    variables.push_back(variable("speed_setting", Dimension::angular_velocity));
+    variables.push_back(variable("fuel", Dimension::none));
+    variables.push_back(variable("torque", Dimension::torque));
+    variables.push_back(variable("available_torque", Dimension::torque));
+    variables.push_back(variable("power", Dimension::power));
+    variables.push_back(variable("is_stalled", Dimension::none));
+  }
+  double* read_variables(const CircuitView& view, double* values) const noexcept override {
+    const double w = speed(view), available = full_torque(w).value, torque = view[u_] * available - loss(w).value;
+    *values++ = w;
+    *values++ = governed(view.control[control_]);
+    *values++ = view[u_];
+    *values++ = torque;
+    *values++ = available;
+    *values++ = torque * w;
+    *values++ = w < def_.stall_speed ? 1 : 0;
+    return values;
+  }
+  [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void apply_parameters() noexcept override {}
+
+ private:
+  [[nodiscard]] double speed(const CircuitView& view) const noexcept { return view[w_] * shaft_.reference; }
+  // rate of the state per torque [1/(N m s)]
+  [[nodiscard]] double per_torque() const noexcept { return 1 / (shaft_.inertia * shaft_.reference); }
+  // w_s of (3)
+  [[nodiscard]] double governed(double signal) const noexcept {
+    return std::max({def_.speed + def_.speed_per_signal * signal, def_.minimum_speed, def_.stall_speed});
+  }
+  // u_c of (2), with its slope over w
+  [[nodiscard]] ValueSlope fuel_command(const CircuitView& view) const noexcept {
+    const double w_s = governed(view.control[control_]), range = def_.droop * w_s;
+    const ValueSlope u = unit_clip((w_s + range - speed(view)) / range, kFuelWidth);
+    return {u.value, -u.slope / range};
+  }
+  // T_full g
+  [[nodiscard]] ValueSlope full_torque(double w) const noexcept {
+    const double range = kCombustionRange * def_.stall_speed;
+    const ValueSlope g = unit_clip((w - def_.stall_speed) / range, kCombustionWidth), T = on_curve(w);
+    return {T.value * g.value, T.slope * g.value + T.value * g.slope / range};
+  }
+  [[nodiscard]] ValueSlope on_curve(double w) const noexcept {
+    if (w <= full_load_.front()[0]) return {full_load_.front()[1], 0};
+    for (std::size_t i = 1; i < full_load_.size(); ++i) {
+      const auto& a = full_load_[i - 1];
+      const auto& b = full_load_[i];
+      if (w >= b[0]) continue;
+      const double slope = (b[1] - a[1]) / (b[0] - a[0]);
+      return {a[1] + slope * (w - a[0]), slope};
+    }
+    return {full_load_.back()[1], 0};
+  }
+  // friction of (1), with its slope
+  [[nodiscard]] ValueSlope loss(double w) const noexcept {
+    const double square = w * w + kFrictionSpeed * kFrictionSpeed, length = std::sqrt(square);
+    return {def_.friction_torque * w / length + def_.viscous_friction * w,
+            def_.friction_torque * kFrictionSpeed * kFrictionSpeed / (square * length) + def_.viscous_friction};
+  }
+
+  EngineDef def_;
+  EngineShaft shaft_;
+  StateIndex w_, u_;  // speed over its reference, fuel
+  int control_;
+  Table full_load_;
+};
+
+void validate_engine(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors,
+                     Problems& warnings) {
+  const EngineDef& def = static_cast<const EngineDef&>(component);
+  const CurveDef* curve = find_curve(circuit, def.torque_curve);
+  if (curve != nullptr) {
+    const auto is_negative = [](const auto& point) { return point[1] < 0; };
+    if (curve->odd || std::any_of(curve->points.begin(), curve->points.end(), is_negative)) {
+      errors.push_back({def.name + ".torque_curve", "the curve '" + curve->name + "' has negative torques",
+                        "torques >= 0 over speeds >= 0, without odd: true; losses are friction_torque", ""});
+    }
+  }
+  if (def.speed <= def.stall_speed) {
+    errors.push_back(
+        {def.name + ".stall_speed", "the engine would stand at its governed speed", "a speed below `speed`", ""});
+  }
+  const auto is_driven = [&](const auto& other) {
+    const std::span<const Field> fields = find_component_type(other->type_name())->fields;
+    return std::any_of(fields.begin(), fields.end(), [&](const Field& row) {
+      return row.key == "engine" && *static_cast<const std::string*>(row.member(other->address())) == def.name;
+    });
+  };
+  if (std::none_of(circuit.components.begin(), circuit.components.end(), is_driven)) {
+    warnings.push_back({def.name, "no pump is driven by the engine", "a pump with engine: " + def.name, ""});
+  }
+}
+
+}  // namespace
+
+ComponentType engine_type() {
+  return {.name = "engine",
+          .fields = kEngineFields,
+          .doc = "combustion engine with torque curve, governor and inertia that drives pumps",
+          .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<EngineDef>(); },
+          .validate = validate_engine,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return std::make_unique<Engine>(static_cast<const EngineDef&>(def), builder);
+          },
+          .has_control_signal = true};
+}
+
+}  // namespace slew::hydraulics
