@@ -149,7 +149,8 @@ void PhysicsNode::receive_sample(const transport::Received& message, std::int64_
 void PhysicsNode::measure_release(StepIndex step, std::int64_t source_ns) noexcept {
   const std::string& host = is_follower() ? member_.peer(Role::mechanics).status.host : member_.session().host;
   const bool is_local = host == member_.identity().host;
-  step_timing_.release(step, sent_ns(source_ns, is_local ? WriterClock::same : WriterClock::other));
+  const std::int64_t now_ns = monotonic_ns();
+  step_timing_.release(step, sent_ns(source_ns, now_ns, is_local ? WriterClock::same : WriterClock::other), now_ns);
 }
 
 void PhysicsNode::receive_resend(std::span<const std::byte> bytes) {
