@@ -289,7 +289,9 @@ void PhysicsNode::apply_commands(std::span<const wire::Command> commands) {
 
 void PhysicsNode::publish_sample(Phase phase, StepIndex step) {
   published_.level = built_.subsystem->level();
-  published_.state_hash = built_.subsystem->state_hash();
+  // nodes do not read the hash: it is for those that record and compare
+  const bool is_hashed = member_.transport().needs_bytes(transport::traits(member_.role()).sample);
+  published_.state_hash = is_hashed ? built_.subsystem->state_hash() : 0;
   samples_.publish(member_, phase, step, published_, own_);
 }
 
