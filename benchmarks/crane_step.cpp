@@ -16,6 +16,7 @@
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "node/driver.h"
+#include "node/open_transport.h"
 #include "node/physics_node.h"
 #include "scene/scene.h"
 #include "scene/script.h"
@@ -180,11 +181,9 @@ BENCHMARK_CAPTURE(BM_SavedState, load_two_modes, Boom::two_modes, Saving::load)-
 void BM_Session(benchmark::State& state, Boom boom) {
   for (auto _ : state) {
     transport::InProcessBus bus;
-    const auto endpoint = [&](const char* role) {
-      return std::make_unique<transport::InProcessEndpoint>(
-          bus, transport::InProcessOptions{role, transport::TopicSet::all(), transport::TopicSet::all()});
-    };
-    const auto io_end = endpoint("io"), mechanics_end = endpoint("mechanics"), hydraulics_end = endpoint("hydraulics");
+    const auto io_end = node::open_transport(wire::Role::io, bus);
+    const auto mechanics_end = node::open_transport(wire::Role::mechanics, bus);
+    const auto hydraulics_end = node::open_transport(wire::Role::hydraulics, bus);
     io_node::IoConfig config = io_config(boom);
     config.session.pace = Pace::free;
     config.session.window = 4;
@@ -202,10 +201,10 @@ void BM_Session(benchmark::State& state, Boom boom) {
                                    return Status::ok();
                                  });
     std::vector<node::Node*> nodes = {&io, &mechanics, &hydraulics};
-    std::unique_ptr<transport::InProcessEndpoint> flex_end;
+    std::unique_ptr<transport::Transport> flex_end;
     std::unique_ptr<node::PhysicsNode> flex;
     if (crane(boom).has_modes()) {
-      flex_end = endpoint("flex");
+      flex_end = node::open_transport(wire::Role::flex, bus);
       flex = std::make_unique<node::PhysicsNode>(wire::Role::flex, *flex_end,
                                                  [boom](const wire::SessionDescription&, node::BuiltSubsystem& built) {
                                                    built.subsystem = flex_node::make_flex_subsystem(crane(boom));

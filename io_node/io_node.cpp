@@ -148,7 +148,7 @@ void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
     case Topic::actuators:
     case Topic::elastic:
     case Topic::sensors:
-      return receive_sample(message.bytes, message.topic, now_ns);
+      return receive_sample(message, now_ns);
     case Topic::controller_input:
       return requests_.receive_controller(message, n_, now_ns, times_);
     case Topic::control_request:
@@ -186,14 +186,14 @@ void IoNode::receive_session(std::span<const std::byte> bytes) {
   stage_ = Stage::finished;
 }
 
-void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::int64_t now_ns) {
+void IoNode::receive_sample(const transport::Received& message, std::int64_t now_ns) {
   wire::Header header;
-  if (!transport::decode_header(bytes, header)) {
+  if (!transport::header_of(message, header)) {
     ++member_.refusals().undecodable;
     return;
   }
-  if (!member_.fits(header, topic)) return;
-  member_.acknowledge(header, topic, now_ns);
+  if (!member_.fits(header, message.topic)) return;
+  member_.acknowledge(header, message.topic, now_ns);
   if (header.phase != Phase::running) return;
   const SampleProgress::Receipt receipt = samples_.receive(header.role, header.step, n_);
   if (receipt == SampleProgress::Receipt::too_far_ahead) {
@@ -487,7 +487,7 @@ void IoNode::issue_tick(std::int64_t now_ns) {
     tick.controls[i] = gate.control(i);
     tick.age[i] = gate.age(i);
   }
-  tick.state_hash = inputs_.state_hash(n_);
+  tick.state_hash = member_.transport().needs_bytes(Topic::tick) ? inputs_.state_hash(n_) : 0;
   ticks_.send(n_);
   times_.count_tick(n_, now_ns);
   if (is_paced()) {

@@ -59,7 +59,7 @@ class IoNode final : public node::Node {
   // ---- receiving
   void receive(const transport::Received& message, std::int64_t now_ns);
   void receive_session(std::span<const std::byte> bytes);
-  void receive_sample(std::span<const std::byte> bytes, wire::Topic topic, std::int64_t now_ns);
+  void receive_sample(const transport::Received& message, std::int64_t now_ns);
   void receive_resend(std::span<const std::byte> bytes, std::int64_t now_ns);
   void receive_state_request(const wire::ResendRequest& request, std::int64_t now_ns);
   void receive_control(std::span<const std::byte> bytes, std::int64_t now_ns);

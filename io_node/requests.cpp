@@ -35,7 +35,8 @@ void Requests::receive_controller(const transport::Received& message, StepIndex 
   if (is_known && input_.action == wire::ControllerAction::write) {
     if (gate.write(channel, input_.controller, input_.value, n, now_ns, input_.based_on_step, message.writer)) {
       const bool has_stamp = config_.controllers_clock == node::WriterClock::same;
-      times.receive_value(channel, has_stamp ? node::sent_ns(message.source_ns, node::WriterClock::same) : now_ns);
+      times.receive_value(
+          channel, has_stamp ? node::sent_ns(message.source_ns, monotonic_ns(), node::WriterClock::same) : now_ns);
     } else if (auto refusal = gate.answer_to_write(channel, input_.controller, now_ns, message.writer)) {
       publish_lease(std::move(*refusal), n);
     }

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
-#include "core/check.h"
 #include "node/sent_cache.h"
 #include "node/session_member.h"
+#include "transport/message_object.h"
 
 namespace slew::io_node {
 
@@ -23,10 +24,11 @@ class TickSender {
   [[nodiscard]] wire::Tick& tick() noexcept { return tick_; }
   // Sends tick() and keeps it as that of this step.
   void send(StepIndex step) {
-    const bool is_encoded = transport::encode(tick_, buffer_);
-    SLEW_CHECK(is_encoded);
-    sent_.keep(step, buffer_);
-    member_.send(wire::Topic::tick, buffer_);
+    const std::shared_ptr<wire::Tick>& tick = out_.take();
+    *tick = tick_;
+    member_.publish_object<wire::Tick>(tick, buffer_);
+    // a tick that every reader took as an object is not lost
+    if (!buffer_.empty()) sent_.keep(step, buffer_);
   }
   // An epoch begins: no earlier tick can be requested, and tick() is empty.
   void restart() {
@@ -48,6 +50,7 @@ class TickSender {
  private:
   node::SessionMember& member_;
   wire::Tick tick_;
+  transport::MessagePool<wire::Tick> out_{1};
   std::vector<std::byte> buffer_;
   node::SentCache sent_;
 };

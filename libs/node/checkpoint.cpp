@@ -53,7 +53,7 @@ std::uint64_t check_of(std::span<const std::byte> bytes) {
 void save_node(const coupling::Subsystem& subsystem, const wire::SampleState& published, StepIndex step,
                Checkpoint& checkpoint) {
   checkpoint.step = step;
-  checkpoint.state_hash = published.state_hash;
+  checkpoint.state_hash = subsystem.state_hash();
   checkpoint.bytes.clear();
   put(checkpoint.bytes, kLayout);
   put(checkpoint.bytes, published.level);

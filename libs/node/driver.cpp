@@ -169,7 +169,8 @@ ExitCode run_alone(Node& node, HeapMeter meter) {
   return node.member().exit_code();
 }
 
-ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>& each_round) {
+ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>& each_round,
+                      const std::function<void()>& each_turn) {
   set_floating_point_mode();
   bool stop_passed_on = false;
   std::int64_t next_round_ns = 0;
@@ -198,6 +199,7 @@ ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>&
     for (Node* node : nodes) {
       if (!node->is_finished()) any |= node->poll(now);
     }
+    if (each_turn) each_turn();
     if (any) continue;
     std::int64_t deadline = now + kLongestWaitNs;
     for (const Node* node : nodes) {

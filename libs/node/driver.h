@@ -31,7 +31,9 @@ using HeapMeter = HeapCalls (*)() noexcept;
 ExitCode run_alone(Node& node, HeapMeter meter = nullptr);
 
 // Runs all nodes in turn on this thread until every one has finished, and sends their health every 100 ms. each_round
-// is called between rounds, at most every 20 ms (status line, keyboard); it may be empty.
-ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>& each_round);
+// is called between rounds, at most every 20 ms (status line, keyboard), each_turn after every turn of the nodes: for
+// one that takes their messages, and would hold many of them after 20 ms. Both may be empty.
+ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>& each_round,
+                      const std::function<void()>& each_turn = {});
 
 }  // namespace slew::node

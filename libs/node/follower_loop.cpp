@@ -6,15 +6,15 @@ namespace slew::node {
 using wire::Role;
 using wire::Topic;
 
-bool FollowerLoop::receive_tick(std::span<const std::byte> bytes, const wire::Header&, StepIndex, std::int64_t) {
-  if (!transport::decode(bytes, last_tick_)) {
+bool FollowerLoop::receive_tick(const transport::Received& received, const wire::Header&, StepIndex, std::int64_t) {
+  if (!last_tick_.put(received, 0)) {
     ++member_.refusals().undecodable;
     return false;
   }
-  tick_flags_ = last_tick_.flags;
+  tick_flags_ = last_tick_.find(0)->flags;
   if (const TickEnd end = end_of(tick_flags_); end != TickEnd::none) {
     end_ = end;
-    last_step_ = last_tick_.header.step;
+    last_step_ = last_tick_.find(0)->header.step;
   }
   return false;
 }

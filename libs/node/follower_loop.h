@@ -12,7 +12,7 @@ class FollowerLoop final : public StepLoop {
   FollowerLoop(SessionMember& member, const SampleExchange& samples) noexcept : member_(member), samples_(samples) {}
 
   // False: the mechanics' samples release the steps of a follower.
-  bool receive_tick(std::span<const std::byte> bytes, const wire::Header& header, StepIndex n,
+  bool receive_tick(const transport::Received& received, const wire::Header& header, StepIndex n,
                     std::int64_t now_ns) override;
   Next next(StepIndex n, std::int64_t now_ns, StepInput& input) override;
   [[nodiscard]] bool lacks_tick(StepIndex) const noexcept override { return false; }
@@ -30,8 +30,8 @@ class FollowerLoop final : public StepLoop {
 
   SessionMember& member_;
   const SampleExchange& samples_;
-  wire::Tick last_tick_;          // a member so that its memory is kept
-  std::uint32_t tick_flags_ = 0;  // flags of the last tick that could be decoded
+  ReceivedRing<wire::Tick> last_tick_{1};  // as that of step 0; a member so that its memory is kept
+  std::uint32_t tick_flags_ = 0;           // flags of the last tick that could be decoded
   TickEnd end_ = TickEnd::none;
   StepIndex last_step_ = 0;  // last step of the session, once end_ is known
 };

@@ -8,23 +8,25 @@ namespace slew::node {
 using wire::Role;
 using wire::Topic;
 
-bool FreeLoop::receive_tick(std::span<const std::byte> bytes, const wire::Header& header, StepIndex n,
+bool FreeLoop::receive_tick(const transport::Received& received, const wire::Header& header, StepIndex n,
                             std::int64_t now_ns) {
   if (header.step > newest_tick_) {
     newest_tick_ = header.step;
     newest_tick_ns_ = now_ns;
   }
-  if (header.step >= n) return ticks_.keep(bytes, header.step, n, member_.refusals());
-  receive_late(bytes);
+  if (header.step >= n) return ticks_.keep(received, header.step, n, member_.refusals());
+  receive_late(received);
   return false;
 }
 
 // Commands of a tick are taken once: a tick that was requested may arrive twice.
-void FreeLoop::receive_late(std::span<const std::byte> bytes) {
-  wire::Tick tick;
-  if (!transport::decode(bytes, tick)) {
+void FreeLoop::receive_late(const transport::Received& received) {
+  if (!late_tick_.put(received, 0)) {
     ++member_.refusals().undecodable;
-  } else if (std::erase(missed_ticks_, tick.header.step) == 0) {
+    return;
+  }
+  const wire::Tick& tick = *late_tick_.find(0);
+  if (std::erase(missed_ticks_, tick.header.step) == 0) {
     ++member_.refusals().duplicate;
   } else {
     late_commands_.insert(late_commands_.end(), tick.commands.begin(), tick.commands.end());

@@ -17,7 +17,7 @@ class FreeLoop final : public StepLoop {
   FreeLoop(SessionMember& member, const SampleExchange& samples, SimDuration wait_budget) noexcept
       : member_(member), samples_(samples), wait_budget_(wait_budget) {}
 
-  bool receive_tick(std::span<const std::byte> bytes, const wire::Header& header, StepIndex n,
+  bool receive_tick(const transport::Received& received, const wire::Header& header, StepIndex n,
                     std::int64_t now_ns) override;
   Next next(StepIndex n, std::int64_t now_ns, StepInput& input) override;
   [[nodiscard]] bool lacks_tick(StepIndex n) const noexcept override { return ticks_.find(n) == nullptr; }
@@ -34,7 +34,7 @@ class FreeLoop final : public StepLoop {
   void take_over(const wire::SampleState& published) noexcept override;
 
  private:
-  void receive_late(std::span<const std::byte> bytes);
+  void receive_late(const transport::Received& received);
   [[nodiscard]] bool is_time_over(StepIndex n, std::int64_t now_ns) const noexcept;
   [[nodiscard]] bool waits_for_sample(StepIndex n, StepIndex age, std::int64_t now_ns) noexcept;
   void use_tick(StepIndex n, const wire::Tick* tick, StepInput& input);
@@ -50,6 +50,7 @@ class FreeLoop final : public StepLoop {
   StepIndex newest_tick_ = kNoStep;             // highest step of a tick that was received
   std::int64_t newest_tick_ns_ = 0;             // time at which it was received
   std::vector<StepIndex> missed_ticks_;         // steps that were done without their tick, ascending
+  ReceivedRing<wire::Tick> late_tick_{1};       // the last late tick, as that of step 0
   std::vector<wire::Command> late_commands_;    // commands for the next step
   std::vector<wire::Command> handed_commands_;  // late commands of the step that is being done
   std::vector<double> controls_;                // controls of the newest tick that was used

@@ -8,9 +8,9 @@ namespace slew::node {
 using wire::Role;
 using wire::Topic;
 
-bool LockstepLoop::receive_tick(std::span<const std::byte> bytes, const wire::Header& header, StepIndex n,
+bool LockstepLoop::receive_tick(const transport::Received& received, const wire::Header& header, StepIndex n,
                                 std::int64_t) {
-  return ticks_.keep(bytes, header.step, n, member_.refusals());
+  return ticks_.keep(received, header.step, n, member_.refusals());
 }
 
 StepLoop::Next LockstepLoop::next(StepIndex n, std::int64_t, StepInput& input) {

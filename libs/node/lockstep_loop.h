@@ -11,7 +11,7 @@ class LockstepLoop final : public StepLoop {
   LockstepLoop(SessionMember& member, const SampleExchange& samples, StepTiming& timing) noexcept
       : member_(member), samples_(samples), timing_(timing) {}
 
-  bool receive_tick(std::span<const std::byte> bytes, const wire::Header& header, StepIndex n,
+  bool receive_tick(const transport::Received& received, const wire::Header& header, StepIndex n,
                     std::int64_t now_ns) override;
   Next next(StepIndex n, std::int64_t now_ns, StepInput& input) override;
   [[nodiscard]] bool lacks_tick(StepIndex n) const noexcept override { return ticks_.find(n) == nullptr; }

@@ -20,6 +20,10 @@ using wire::Topic;
 
 namespace {
 
+// Topics whose messages are published as objects.
+constexpr transport::TopicSet kStepTopics = {Topic::tick,    Topic::mechanism, Topic::actuators, Topic::flexible,
+                                             Topic::elastic, Topic::poses,     Topic::sensors};
+
 transport::Middleware middleware_of(const std::string& name) {
   const auto found = std::find(std::begin(transport::kMiddlewares), std::end(transport::kMiddlewares), name);
   return static_cast<transport::Middleware>(found - std::begin(transport::kMiddlewares));
@@ -62,7 +66,8 @@ std::unique_ptr<transport::Transport> open_observer_with_samples(const SessionOp
 
 std::unique_ptr<transport::Transport> open_observer_with_samples(transport::InProcessBus& bus) {
   return std::make_unique<transport::InProcessEndpoint>(
-      bus, transport::InProcessOptions{"observer", traits(Role::observer).writes, topics_readable(Role::observer)});
+      bus, transport::InProcessOptions{"observer", traits(Role::observer).writes, topics_readable(Role::observer),
+                                       traits(Role::observer).reads_on_request});
 }
 
 std::unique_ptr<transport::Transport> open_viewer(const SessionOptions& options) {
@@ -83,8 +88,11 @@ std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options)
 }
 
 std::unique_ptr<transport::Transport> open_transport(Role role, transport::InProcessBus& bus) {
+  // the recorder writes bytes
+  const transport::TopicSet objects = role == Role::recorder ? transport::TopicSet() : kStepTopics;
   return std::make_unique<transport::InProcessEndpoint>(
-      bus, transport::InProcessOptions{std::string(traits(role).name), traits(role).writes, traits(role).reads});
+      bus,
+      transport::InProcessOptions{std::string(traits(role).name), traits(role).writes, traits(role).reads, objects});
 }
 
 }  // namespace slew::node

@@ -256,12 +256,10 @@ void PhysicsNode::do_step(const StepInput& input, std::int64_t now_ns) {
   apply_commands(input.late_commands);
   apply_commands(input.commands);
   if (member_.state() != NodeState::running) member_.set_state(NodeState::running);
-  const std::int64_t begin_ns = monotonic_ns();
   step_timing_.begin(input.released_by);
   StepReport report = built_.subsystem->step(n_, input.partners, input.controls, own_);
   if (added_work_.ns > 0) burn_added_work();
-  step_timing_.computed();
-  const std::int64_t spent_ns = monotonic_ns() - begin_ns;
+  const std::int64_t spent_ns = step_timing_.computed();
   // a flag of the sample only: no clock enters the hashed state
   if (step_timing_.is_late()) report.raise(StepFlag::overrun);
 
@@ -291,7 +289,9 @@ void PhysicsNode::apply_commands(std::span<const wire::Command> commands) {
 
 void PhysicsNode::publish_sample(Phase phase, StepIndex step) {
   published_.level = built_.subsystem->level();
-  published_.state_hash = built_.subsystem->state_hash();
+  // nodes do not read the hash: it is for those that record and compare
+  const bool is_hashed = member_.transport().needs_bytes(transport::traits(member_.role()).sample);
+  published_.state_hash = is_hashed ? built_.subsystem->state_hash() : 0;
   samples_.publish(member_, phase, step, published_, own_);
 }
 

@@ -118,7 +118,7 @@ void PhysicsNode::receive_state(std::span<const std::byte> bytes) {
 
 void PhysicsNode::receive_tick(const transport::Received& message, std::int64_t now_ns) {
   wire::Header header;
-  if (!transport::decode_header(message.bytes, header)) {
+  if (!transport::header_of(message, header)) {
     ++member_.refusals().undecodable;
     return;
   }
@@ -127,12 +127,12 @@ void PhysicsNode::receive_tick(const transport::Received& message, std::int64_t 
   if (!member_.fits(header, Topic::tick)) return;
   member_.acknowledge(header, Topic::tick, now_ns);
   if (header.phase != Phase::running) return;
-  if (loop_->receive_tick(message.bytes, header, n_, now_ns)) measure_release(header.step, message.source_ns);
+  if (loop_->receive_tick(message, header, n_, now_ns)) measure_release(header.step, message.source_ns);
 }
 
 void PhysicsNode::receive_sample(const transport::Received& message, std::int64_t now_ns) {
   wire::Header header;
-  if (!transport::decode_header(message.bytes, header)) {
+  if (!transport::header_of(message, header)) {
     ++member_.refusals().undecodable;
     return;
   }
@@ -141,7 +141,7 @@ void PhysicsNode::receive_sample(const transport::Received& message, std::int64_
   samples_.for_each_missing(n_, [&](Role role, Topic missing, StepIndex) {
     if (missing == message.topic) step_timing_.came(role, now_ns);
   });
-  samples_.receive(message.bytes, header, message.topic, n_, member_.refusals());
+  samples_.receive(message, header, n_, member_.refusals());
   const bool releases = is_follower() && header.phase == Phase::running && header.step > n_;
   if (releases) measure_release(header.step, message.source_ns);
 }
@@ -149,7 +149,8 @@ void PhysicsNode::receive_sample(const transport::Received& message, std::int64_
 void PhysicsNode::measure_release(StepIndex step, std::int64_t source_ns) noexcept {
   const std::string& host = is_follower() ? member_.peer(Role::mechanics).status.host : member_.session().host;
   const bool is_local = host == member_.identity().host;
-  step_timing_.release(step, sent_ns(source_ns, is_local ? WriterClock::same : WriterClock::other));
+  const std::int64_t now_ns = monotonic_ns();
+  step_timing_.release(step, sent_ns(source_ns, now_ns, is_local ? WriterClock::same : WriterClock::other), now_ns);
 }
 
 void PhysicsNode::receive_resend(std::span<const std::byte> bytes) {

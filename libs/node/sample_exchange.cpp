@@ -71,12 +71,12 @@ bool SampleExchange::has_partner() const noexcept {
 
 // ---- receiving ------------------------------------------------------------------------------------------------
 
-void SampleExchange::receive(std::span<const std::byte> bytes, const wire::Header& header, Topic topic, StepIndex n,
+void SampleExchange::receive(const transport::Received& received, const wire::Header& header, StepIndex n,
                              Refusals& refusals) {
   for_each_inbox([&](auto& inbox) {
-    if (inbox.reading.sample != topic || !inbox.is_needed) return;
-    if (header.phase == Phase::init) inbox.keep_init(bytes, refusals);
-    if (header.phase == Phase::running && inbox.is_needed_each_step) inbox.keep(bytes, header.step, n, refusals);
+    if (inbox.reading.sample != received.topic || !inbox.is_needed) return;
+    if (header.phase == Phase::init) inbox.keep_init(received, refusals);
+    if (header.phase == Phase::running && inbox.is_needed_each_step) inbox.keep(received, header.step, n, refusals);
   });
 }
 
@@ -107,53 +107,54 @@ void SampleExchange::find_newest(StepIndex step, coupling::PartnerSamples& partn
 
 // ---- sending --------------------------------------------------------------------------------------------------
 
+template <typename Message>
+void SampleExchange::publish_probe(SessionMember& member, transport::MessagePool<Message>& pool) {
+  const std::shared_ptr<Message>& message = pool.take();
+  message->header = member.header(Phase::join, kJoinStep);
+  member.publish(transport::kTopicOf<Message>, *message);
+}
+
 void SampleExchange::probe(SessionMember& member) {
-  const wire::Header header = member.header(Phase::join, kJoinStep);
-  mechanism_out_.header = actuators_out_.header = flexible_out_.header = elastic_out_.header = header;
-  poses_out_.header = sensors_out_.header = header;
   for (const Outbox& outbox : outboxes_) {
     if (member.is_acknowledged_on(outbox.topic)) continue;
-    if (outbox.topic == Topic::mechanism) member.publish(outbox.topic, mechanism_out_);
-    if (outbox.topic == Topic::actuators) member.publish(outbox.topic, actuators_out_);
-    if (outbox.topic == Topic::flexible) member.publish(outbox.topic, flexible_out_);
-    if (outbox.topic == Topic::elastic) member.publish(outbox.topic, elastic_out_);
-    if (outbox.topic == Topic::poses) member.publish(outbox.topic, poses_out_);
-    if (outbox.topic == Topic::sensors) member.publish(outbox.topic, sensors_out_);
+    if (outbox.topic == Topic::mechanism) publish_probe(member, mechanism_out_);
+    if (outbox.topic == Topic::actuators) publish_probe(member, actuators_out_);
+    if (outbox.topic == Topic::flexible) publish_probe(member, flexible_out_);
+    if (outbox.topic == Topic::elastic) publish_probe(member, elastic_out_);
+    if (outbox.topic == Topic::poses) publish_probe(member, poses_out_);
+    if (outbox.topic == Topic::sensors) publish_probe(member, sensors_out_);
   }
 }
 
+// A message that every reader took as an object is not lost: it is not kept.
 template <typename Message>
-void SampleExchange::send(SessionMember& member, Topic topic, StepIndex step, const Message& message) {
-  Outbox& outbox = *std::find_if(outboxes_.begin(), outboxes_.end(), [&](const Outbox& o) { return o.topic == topic; });
-  const bool is_encoded = transport::encode(message, buffer_);
-  SLEW_CHECK(is_encoded);
-  outbox.sent.keep(step, buffer_);
-  member.send(outbox.topic, buffer_);
+void SampleExchange::send(SessionMember& member, StepIndex step, const std::shared_ptr<Message>& message) {
+  constexpr Topic kTopic = transport::kTopicOf<Message>;
+  Outbox& outbox = *std::find_if(outboxes_.begin(), outboxes_.end(), [](const Outbox& o) { return o.topic == kTopic; });
+  member.publish_object<Message>(message, buffer_);
+  if (!buffer_.empty()) outbox.sent.keep(step, buffer_);
 }
 
 void SampleExchange::publish(SessionMember& member, Phase phase, StepIndex step, const wire::SampleState& state,
                              const coupling::OwnSample& own) {
-  const auto fill = [&](auto& message, const auto& sample) -> auto& {
-    message.header = member.header(phase, step);
-    message.sample = sample;
+  const auto fill = [&](auto& pool, const auto& sample) -> const auto& {
+    const auto& message = pool.take();
+    message->header = member.header(phase, step);
+    if constexpr (requires { message->state; }) message->state = state;
+    message->sample = sample;
     return message;
   };
   const auto is_due = [&](Topic topic) { return phase == Phase::running && rules_.age(topic, step) == 0; };
   if (own_ == Role::mechanics) {
-    mechanism_out_.state = state;
-    send(member, Topic::mechanism, step, fill(mechanism_out_, own.mechanism));
-    if (has_flexible_ && is_due(Topic::flexible))
-      send(member, Topic::flexible, step, fill(flexible_out_, own.flexible));
-    if (has_sensors_ && is_due(Topic::poses)) send(member, Topic::poses, step, fill(poses_out_, own.poses));
+    send(member, step, fill(mechanism_out_, own.mechanism));
+    if (has_flexible_ && is_due(Topic::flexible)) send(member, step, fill(flexible_out_, own.flexible));
+    if (has_sensors_ && is_due(Topic::poses)) send(member, step, fill(poses_out_, own.poses));
   } else if (own_ == Role::hydraulics) {
-    actuators_out_.state = state;
-    send(member, Topic::actuators, step, fill(actuators_out_, own.actuators));
+    send(member, step, fill(actuators_out_, own.actuators));
   } else if (own_ == Role::flex) {
-    elastic_out_.state = state;
-    send(member, Topic::elastic, step, fill(elastic_out_, own.elastic));
+    send(member, step, fill(elastic_out_, own.elastic));
   } else {
-    sensors_out_.state = state;
-    send(member, Topic::sensors, step, fill(sensors_out_, own.sensors));
+    send(member, step, fill(sensors_out_, own.sensors));
   }
 }
 

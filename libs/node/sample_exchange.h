@@ -12,9 +12,10 @@
 
 #include "coupling/subsystem.h"
 #include "node/exchange.h"
+#include "node/received_ring.h"
 #include "node/sent_cache.h"
 #include "node/session_member.h"
-#include "node/step_ring.h"
+#include "transport/message_object.h"
 #include "transport/roles.h"
 
 namespace slew::node {
@@ -33,22 +34,22 @@ class Inbox {
   explicit Inbox(const Reading& of) : reading(of) {}
 
   // Takes a message of a step that is still needed, once. n: the next step to do.
-  void keep(std::span<const std::byte> bytes, StepIndex step, StepIndex n, Refusals& refusals) {
+  void keep(const transport::Received& received, StepIndex step, StepIndex n, Refusals& refusals) {
     if (step % every != 0) return;
     const StepIndex place = step / every;
     // a node that took a state over between two exchanges needs the last one
     const StepIndex first = takes_late ? n - static_cast<StepIndex>(kRingDepth) + 1 : n - n % every;
+    ring_.drop_before(first / every);
     if (place >= n / every + static_cast<StepIndex>(kRingDepth)) {
       ++(reading.reader == wire::Role::sensor ? refusals.early : refusals.too_far_ahead);
     } else if (step < first || ring_.find(place) != nullptr) {
       ++refusals.duplicate;
-    } else if (!transport::decode(bytes, ring_.put(place))) {
-      ring_.remove(place);
+    } else if (!ring_.put(received, place)) {
       ++refusals.undecodable;
     }
   }
-  void keep_init(std::span<const std::byte> bytes, Refusals& refusals) {
-    has_init_ = transport::decode(bytes, init_);
+  void keep_init(const transport::Received& received, Refusals& refusals) {
+    has_init_ = init_.put(received, 0);
     if (!has_init_) ++refusals.undecodable;
   }
   // The session has this partner.
@@ -56,7 +57,7 @@ class Inbox {
     is_needed = true;
     is_needed_each_step = rules.is_used_in_steps(reading.sample);
     every = is_needed_each_step ? rules.every(reading.sample) : 1;
-    ring_ = StepRing<Message>(kRingDepth);
+    ring_ = ReceivedRing<Message>(kRingDepth);
   }
   void clear() noexcept {
     ring_.clear();
@@ -75,7 +76,7 @@ class Inbox {
   // The message that the reader starts from.
   [[nodiscard]] const Message* find_start() const noexcept {
     if (reading.start == StartSample::first) return find(0);
-    return has_init_ ? &init_ : nullptr;
+    return has_init_ ? init_.find(0) : nullptr;
   }
 
   const Reading reading;
@@ -85,8 +86,8 @@ class Inbox {
   StepIndex every = 1;
 
  private:
-  StepRing<Message> ring_{1};
-  Message init_;
+  ReceivedRing<Message> ring_{1};
+  ReceivedRing<Message> init_{1};  // as that of step 0
   bool has_init_ = false;
 };
 
@@ -107,8 +108,7 @@ class SampleExchange {
   }
 
   // A partner's message, of this session and epoch. n: the next step to do.
-  void receive(std::span<const std::byte> bytes, const wire::Header& header, wire::Topic topic, StepIndex n,
-               Refusals& refusals);
+  void receive(const transport::Received& received, const wire::Header& header, StepIndex n, Refusals& refusals);
 
   // False while a needed sample is missing.
   [[nodiscard]] bool find_start(coupling::PartnerSamples& partners) const noexcept;
@@ -146,7 +146,9 @@ class SampleExchange {
     SentCache sent;
   };
   template <typename Message>
-  void send(SessionMember& member, wire::Topic topic, StepIndex step, const Message& message);
+  void publish_probe(SessionMember& member, transport::MessagePool<Message>& pool);
+  template <typename Message>
+  void send(SessionMember& member, StepIndex step, const std::shared_ptr<Message>& message);
   template <typename Visit>
   void for_each_inbox(Visit visit) {
     visit(actuators_);
@@ -172,12 +174,12 @@ class SampleExchange {
   Inbox<wire::MechanismMessage> mechanism_{reading_of(wire::Topic::mechanism)};
   Inbox<wire::FlexibleMessage> flexible_{reading_of(wire::Topic::flexible)};
   Inbox<wire::PoseMessage> poses_{reading_of(wire::Topic::poses)};
-  wire::MechanismMessage mechanism_out_;
-  wire::ActuatorMessage actuators_out_;
-  wire::FlexibleMessage flexible_out_;
-  wire::ElasticMessage elastic_out_;
-  wire::PoseMessage poses_out_;
-  wire::SensorMessage sensors_out_;
+  transport::MessagePool<wire::MechanismMessage> mechanism_out_;
+  transport::MessagePool<wire::ActuatorMessage> actuators_out_;
+  transport::MessagePool<wire::FlexibleMessage> flexible_out_;
+  transport::MessagePool<wire::ElasticMessage> elastic_out_;
+  transport::MessagePool<wire::PoseMessage> poses_out_;
+  transport::MessagePool<wire::SensorMessage> sensors_out_;
   std::vector<Outbox> outboxes_;  // by topics_written()
   std::vector<std::byte> buffer_;
 };

@@ -567,11 +567,22 @@ std::string SessionMember::join_failure_text(SimDuration within) {
          "; start what is missing or find what holds it up; --join-timeout waits longer";
 }
 
-void SessionMember::send(Topic topic, std::span<const std::byte> bytes) noexcept {
-  const std::int64_t begin_ns = monotonic_ns();
-  Status status = transport_.publish(topic, bytes);
-  sending_ns_ += monotonic_ns() - begin_ns;
+// Measures the time in which the network may have held this node up.
+template <typename Publish>
+void SessionMember::send_measured(const Publish& publish) noexcept {
+  const bool may_wait = transport_.is_network();
+  const std::int64_t begin_ns = may_wait ? monotonic_ns() : 0;
+  Status status = publish();
+  if (may_wait) sending_ns_ += monotonic_ns() - begin_ns;
   if (!status.is_ok() && send_failure_.is_ok()) send_failure_ = std::move(status);
+}
+
+void SessionMember::send(Topic topic, std::span<const std::byte> bytes) noexcept {
+  send_measured([&] { return transport_.publish(topic, bytes); });
+}
+
+void SessionMember::send(const transport::MessageObject& object, std::vector<std::byte>& buffer) noexcept {
+  send_measured([&] { return transport_.publish_object(object, buffer); });
 }
 
 }  // namespace slew::node

@@ -20,6 +20,7 @@
 #include "node/identity.h"
 #include "node/sent_cache.h"
 #include "transport/cdr/codec.h"
+#include "transport/message_object.h"
 #include "transport/transport.h"
 #include "transport/wire.h"
 
@@ -211,10 +212,18 @@ class SessionMember {
     send(topic, buffer_);
   }
   void send(wire::Topic topic, std::span<const std::byte> bytes) noexcept;
+  // Publishes a message as an object. The buffer holds its bytes then, or nothing when no reader needs them.
+  template <typename Message>
+  void publish_object(std::shared_ptr<const Message> message, std::vector<std::byte>& buffer) {
+    send(transport::object_of(std::move(message)), buffer);
+  }
   // The error of the first message that could not be sent; ok: all were sent. The node ends the session for it.
   [[nodiscard]] const Status& send_failure() const noexcept { return send_failure_; }
 
  private:
+  void send(const transport::MessageObject& object, std::vector<std::byte>& buffer) noexcept;
+  template <typename Publish>
+  void send_measured(const Publish& publish) noexcept;
   [[nodiscard]] Status take_status(const wire::NodeStatus& status, std::int64_t now_ns);
   [[nodiscard]] bool is_given_up(wire::Role role, std::uint32_t incarnation) const noexcept;
   void forget_given_up(std::int64_t now_ns);

@@ -22,7 +22,6 @@
 #include "node/sample_exchange.h"
 #include "node/session_member.h"
 #include "node/stall_watch.h"
-#include "node/step_ring.h"
 #include "node/step_timing.h"
 #include "node/subsystem_factory.h"
 
@@ -52,7 +51,7 @@ class StepLoop {
   virtual ~StepLoop() = default;
 
   // Takes a running tick of the present epoch. True when the tick releases a step that is still to be done.
-  virtual bool receive_tick(std::span<const std::byte> bytes, const wire::Header& header, StepIndex n,
+  virtual bool receive_tick(const transport::Received& received, const wire::Header& header, StepIndex n,
                             std::int64_t now_ns) = 0;
   // Pre-condition: `input` is as constructed. A loop that returns `step` takes the step for done.
   virtual Next next(StepIndex n, std::int64_t now_ns, StepInput& input) = 0;
@@ -91,13 +90,13 @@ class TickRing {
  public:
   // Keeps the tick of a step that is still to be done, once. n: the next step to do. False: the tick was dropped and
   // counted in `refusals`.
-  bool keep(std::span<const std::byte> bytes, StepIndex step, StepIndex n, Refusals& refusals) {
+  bool keep(const transport::Received& received, StepIndex step, StepIndex n, Refusals& refusals) {
+    ring_.drop_before(n);
     if (step >= n + static_cast<StepIndex>(kRingDepth)) {
       ++refusals.too_far_ahead;
     } else if (step < n || ring_.find(step) != nullptr) {
       ++refusals.duplicate;
-    } else if (!transport::decode(bytes, ring_.put(step))) {
-      ring_.remove(step);
+    } else if (!ring_.put(received, step)) {
       ++refusals.undecodable;
     } else {
       return true;
@@ -108,7 +107,7 @@ class TickRing {
   void clear() noexcept { ring_.clear(); }
 
  private:
-  StepRing<wire::Tick> ring_{kRingDepth};
+  ReceivedRing<wire::Tick> ring_{kRingDepth};
 };
 
 // fault: the session ends for an error; the status of io gives the reason.

@@ -72,15 +72,14 @@ std::int64_t thread_cpu_ns() noexcept {
   return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
 }
 
-std::int64_t sent_ns(std::int64_t source_wall_ns, WriterClock clock) noexcept {
-  const std::int64_t now_ns = monotonic_ns();
+std::int64_t sent_ns(std::int64_t source_wall_ns, std::int64_t now_ns, WriterClock clock) noexcept {
   if (clock == WriterClock::other) return now_ns;
   const std::int64_t flight_ns = wall_clock_ns() - source_wall_ns;
   return flight_ns >= 0 && flight_ns <= kLongestFlightNs ? now_ns - flight_ns : now_ns;
 }
 
-void StepTiming::release(StepIndex step, std::int64_t released_ns) noexcept {
-  releases_[static_cast<std::size_t>(step) % kDepth] = {step, released_ns, monotonic_ns()};
+void StepTiming::release(StepIndex step, std::int64_t released_ns, std::int64_t in_hand_ns) noexcept {
+  releases_[static_cast<std::size_t>(step) % kDepth] = {step, released_ns, in_hand_ns};
 }
 
 void StepTiming::begin(StepIndex step) noexcept {
@@ -91,8 +90,9 @@ void StepTiming::begin(StepIndex step) noexcept {
   release_ = released.step == step ? released : Release{step, begin_ns_, begin_ns_};
 }
 
-void StepTiming::computed() noexcept {
+std::int64_t StepTiming::computed() noexcept {
   computed_ns_ = monotonic_ns();
+  return computed_ns_ - begin_ns_;
 }
 
 bool StepTiming::is_late() const noexcept {
@@ -106,11 +106,21 @@ std::int64_t StepTiming::held_back_ns() const noexcept {
   return std::max<std::int64_t>(0, std::min(came_.ns, release_.in_hand_ns) - due_ns);
 }
 
+// The clock is read after the first step, then after each step or kCpuSteps of them.
+void StepTiming::measure_cpu_time() noexcept {
+  const bool is_first = published_ns_ == 0;
+  if (!is_first && ++cpu_steps_ < (deadline_ns_ > 0 ? 1 : kCpuSteps)) return;
+  const std::int64_t now_ns = thread_cpu_ns();
+  if (!is_first && step_ >= first_) timing_.cpu_time.record((now_ns - cpu_ns_) / cpu_steps_);
+  cpu_ns_ = now_ns;
+  cpu_steps_ = 0;
+}
+
 void StepTiming::published() noexcept {
-  const std::int64_t now_ns = monotonic_ns(), cpu_ns = thread_cpu_ns();
-  const std::int64_t before_ns = published_ns_, cpu_before_ns = cpu_ns_, held_ns = held_back_ns();
+  const std::int64_t now_ns = monotonic_ns();
+  measure_cpu_time();
+  const std::int64_t before_ns = published_ns_, held_ns = held_back_ns();
   published_ns_ = now_ns;
-  cpu_ns_ = cpu_ns;
   released_ns_ = release_.released_ns;
   const wire::Role partner = std::exchange(partner_, wire::Role::io);
   if (step_ < first_) return;
@@ -118,7 +128,6 @@ void StepTiming::published() noexcept {
   timing_.last_release_jitter_ns.store(release_.in_hand_ns - release_.released_ns, kRelaxed);
   timing_.execution.record(computed_ns_ - begin_ns_);
   if (before_ns != 0) {
-    timing_.cpu_time.record(cpu_ns - cpu_before_ns);
     timing_.wait.record(begin_ns_ - before_ns);
     // until the release the node waits for io, from then on for the partner whose sample arrived last
     const std::int64_t to_io_ns =
@@ -138,6 +147,7 @@ void StepTiming::published() noexcept {
 void StepTiming::restart() noexcept {
   releases_.fill({});
   published_ns_ = 0;
+  cpu_steps_ = 0;
 }
 
 }  // namespace slew::node

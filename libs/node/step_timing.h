@@ -81,10 +81,11 @@ struct NodeTiming {
 // CPU time of the calling thread so far.
 [[nodiscard]] std::int64_t thread_cpu_ns() noexcept;
 
-// Time at which a message was sent, on the monotonic clock: from its stamp when its writer has the same clock, else
-// now. An impossible stamp (the clock was set) is replaced by now.
+// Time at which a message that has just been received was sent, on the monotonic clock, whose present time is now_ns:
+// from its stamp when its writer has the same clock, else now. An impossible stamp (the clock was set) is replaced by
+// now.
 enum class WriterClock : std::uint8_t { same, other };
-[[nodiscard]] std::int64_t sent_ns(std::int64_t source_wall_ns, WriterClock clock) noexcept;
+[[nodiscard]] std::int64_t sent_ns(std::int64_t source_wall_ns, std::int64_t now_ns, WriterClock clock) noexcept;
 
 // Measures the steps of one node; its functions are called in the order of a step. Real-time safe.
 class StepTiming {
@@ -95,14 +96,15 @@ class StepTiming {
   void set_deadline(SimDuration deadline) noexcept { deadline_ns_ = deadline.ns; }
   // Earlier steps are not measured.
   void judge_from(StepIndex first) noexcept { first_ = first; }
-  // The message that releases this step has arrived.
-  void release(StepIndex step, std::int64_t released_ns) noexcept;
+  // The message that releases this step has arrived: times at which it was sent and received.
+  void release(StepIndex step, std::int64_t released_ns, std::int64_t in_hand_ns) noexcept;
   // The step waits for a partner although it is released.
   void waits_for(wire::Role partner) noexcept { partner_ = partner; }
   // A sample that the next step needs has arrived.
   void came(wire::Role partner, std::int64_t now_ns) noexcept { came_ = {partner, now_ns}; }
   void begin(StepIndex step) noexcept;
-  void computed() noexcept;
+  // Returns the time since begin() [ns].
+  std::int64_t computed() noexcept;
   // The step's response so far exceeds the deadline.
   [[nodiscard]] bool is_late() const noexcept;
   void published() noexcept;
@@ -111,6 +113,8 @@ class StepTiming {
 
  private:
   static constexpr std::size_t kDepth = 128;  // steps that may be released ahead
+  // Without a deadline the CPU time is the mean of so many steps: the thread's clock is a call of the kernel.
+  static constexpr int kCpuSteps = 64;
   struct Release {
     StepIndex step = kJoinStep - 1;
     std::int64_t released_ns = 0, in_hand_ns = 0;
@@ -130,9 +134,12 @@ class StepTiming {
   } came_;
   std::int64_t begin_ns_ = 0, computed_ns_ = 0;
   // the step before
-  std::int64_t published_ns_ = 0, cpu_ns_ = 0, released_ns_ = 0;
+  std::int64_t published_ns_ = 0, released_ns_ = 0;
+  std::int64_t cpu_ns_ = 0;  // CPU time when it was read last
+  int cpu_steps_ = 0;        // steps published since
 
   [[nodiscard]] std::int64_t held_back_ns() const noexcept;
+  void measure_cpu_time() noexcept;
 };
 
 }  // namespace slew::node

@@ -29,6 +29,10 @@ constexpr SimDuration kLastReplies = milliseconds(200);
 void Observer::drain() {
   transport::Received message;
   while (transport_->take(message)) {
+    if (message.object != nullptr) {
+      view_.take_object(message, options_.receiver);
+      continue;
+    }
     view_.take(message.topic, message.bytes, std::nullopt, options_.receiver);
     wire::ControlReply reply;
     const bool is_wanted = on_reply_ || options_.receiver != nullptr;

@@ -5,6 +5,7 @@
 
 #include "core/status.h"
 #include "transport/cdr/codec.h"
+#include "transport/message_object.h"
 #include "transport/session_state.h"
 
 namespace slew::observer {
@@ -57,6 +58,16 @@ void SessionView::take(Topic topic, Bytes bytes, std::optional<double> time, Rec
     default:
       return;
   }
+}
+
+void SessionView::take_object(const transport::Received& sample, Receiver* receiver) {
+  if (receiver == nullptr || node_of(*sample.header) == nullptr) return;
+  const auto pass = [&](const auto& object) {
+    if (object != nullptr) receiver->take_sample(object->header, object->state);
+  };
+  pass(transport::object_in<wire::MechanismMessage>(sample));
+  pass(transport::object_in<wire::ActuatorMessage>(sample));
+  pass(transport::object_in<wire::SensorMessage>(sample));
 }
 
 void SessionView::pass_on(Topic topic, Bytes bytes, std::optional<double> time, Receiver& receiver) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/time.h"
+#include "transport/transport.h"
 #include "transport/wire.h"
 
 namespace slew::observer {
@@ -97,6 +98,8 @@ class SessionView {
   // time: of the message in the session [s]; none: that of its step. receiver: may be null.
   void take(wire::Topic topic, std::span<const std::byte> bytes, std::optional<double> time = std::nullopt,
             Receiver* receiver = nullptr);
+  // A sample of a physics node that came as an object. The receiver gets its state, not its bytes.
+  void take_object(const transport::Received& sample, Receiver* receiver);
 
   [[nodiscard]] bool has_session() const noexcept { return session_.has_value(); }
   [[nodiscard]] const wire::SessionDescription& session() const noexcept { return *session_; }

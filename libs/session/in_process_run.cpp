@@ -51,7 +51,8 @@ class InProcessRun {
     count_interrupts();
     watcher_.begin();
     RunOutcome outcome;
-    outcome.code = node::run_together(nodes_, [this] { each_round(); });
+    outcome.code = node::run_together(
+        nodes_, [this] { each_round(); }, [this] { observer_->drain(); });
     watcher_.end();
     observer_->drain();
     finish(outcome);
@@ -87,7 +88,6 @@ class InProcessRun {
 
   void each_round() {
     const std::int64_t now_ns = monotonic_ns();
-    observer_->drain();
     has_stepped_ = has_stepped_ || io_->next_step() > begin_;
     if (has_stepped_ && io_->member().state() < wire::NodeState::ended) {
       clock_.measure(now_ns, io_->next_step(), io_->is_paused());

@@ -133,12 +133,20 @@ TopicSet topics_readable(Role role) noexcept {
   return traits(role).reads | traits(role).reads_on_request;
 }
 
-std::uint32_t writers_of(Topic topic) noexcept {
-  std::uint32_t bits = 0;
-  for (const Role role : wire::kNodeRoles) {
-    if (traits(role).writes.contains(topic)) bits |= bit(role);
+// needed for every received message
+constexpr std::array kWriters = [] {
+  std::array<std::uint32_t, wire::kTopics> writers{};
+  for (std::size_t topic = 0; topic < wire::kTopics; ++topic) {
+    for (const Role role : wire::kNodeRoles) {
+      const RoleTraits& traits = kRoles[static_cast<std::size_t>(role)];
+      if (traits.writes.contains(static_cast<Topic>(topic))) writers[topic] |= bit(role);
+    }
   }
-  return bits;
+  return writers;
+}();
+
+std::uint32_t writers_of(Topic topic) noexcept {
+  return kWriters[static_cast<std::size_t>(topic)];
 }
 
 std::uint32_t readers_of(Topic topic) noexcept {

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,13 +18,24 @@
 
 namespace slew::transport {
 
-// A received message; the bytes stay valid until the next take() on the same transport.
+// A received message: its bytes, which stay valid until the next take() on the same transport, or the object that a
+// writer of the same process published (message_object.h).
 struct Received {
   wire::Topic topic = wire::Topic::session;
-  std::span<const std::byte> bytes;  // encapsulation header (4 bytes) and CDR
+  std::span<const std::byte> bytes;  // encapsulation header (4 bytes) and CDR; empty when there is an object
   std::int64_t source_ns = 0;        // writer's wall clock at the write
   // Number of the writer of controller_input, the same after the writer was lost and discovered again. 0: not known.
   std::uint64_t writer = 0;
+  std::shared_ptr<const void> object{};  // of the topic's message type; null: the message came as bytes
+  const wire::Header* header = nullptr;  // of the object
+};
+
+// A message as an object to publish; object_of() in message_object.h makes it.
+struct MessageObject {
+  wire::Topic topic;
+  std::shared_ptr<const void> message;  // of the topic's message type; does not change once published
+  const wire::Header* header;           // of the message
+  void (*encode)(const void* message, std::vector<std::byte>& buffer);
 };
 
 // State of a writer, as the transport sees it.
@@ -38,6 +50,17 @@ class Transport {
 
   // Sends; never blocks longer than the transport's own bound (stated in the implementation). Thread-safe.
   virtual Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept = 0;
+
+  // The same for a message that exists as an object: readers that take objects get it, the others its bytes. Encodes it
+  // into the buffer when a reader needs the bytes, and else leaves the buffer empty. One thread only.
+  virtual Status publish_object(const MessageObject& object, std::vector<std::byte>& buffer) noexcept {
+    object.encode(object.message.get(), buffer);
+    return publish(object.topic, buffer);
+  }
+  // Some reader may need the bytes of this topic's messages.
+  [[nodiscard]] virtual bool needs_bytes(wire::Topic) const noexcept { return true; }
+  // Messages may be lost, and a writer may have to wait for the network.
+  [[nodiscard]] virtual bool is_network() const noexcept { return true; }
 
   // Next received message of any subscribed topic; false when there is none now. One thread only.
   virtual bool take(Received& message) = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/check.h"
 #include "core/time.h"
 
 namespace slew::transport {
@@ -31,11 +32,14 @@ InProcessEndpoint::~InProcessEndpoint() {
   std::erase(bus_.endpoints_, this);
 }
 
+Status InProcessEndpoint::check_written(wire::Topic topic) const {
+  if (options_.writes.contains(topic)) return Status::ok();
+  return Status::error(ExitCode::failed, std::string("internal error: ") + options_.role +
+                                             " publishes on the undeclared topic " + traits(topic).name);
+}
+
 Status InProcessEndpoint::publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept {
-  if (!options_.writes.contains(topic)) {
-    return Status::error(ExitCode::failed, std::string("internal error: ") + options_.role +
-                                               " publishes on the undeclared topic " + traits(topic).name);
-  }
+  if (Status written = check_written(topic); !written.is_ok()) return written;
   const std::int64_t now = wall_clock_ns();
   const std::lock_guard lock(bus_.mutex_);
   keep(topic, bytes, now);
@@ -43,6 +47,37 @@ Status InProcessEndpoint::publish(wire::Topic topic, std::span<const std::byte> 
     if (reader != this) reader->receive(topic, bytes, now, number_);
   }
   return Status::ok();
+}
+
+Status InProcessEndpoint::publish_object(const MessageObject& object, std::vector<std::byte>& buffer) noexcept {
+  SLEW_ASSERT(traits(object.topic).kept == 0);  // late readers get bytes
+  if (Status written = check_written(object.topic); !written.is_ok()) return written;
+  buffer.clear();
+  const std::int64_t now = wall_clock_ns();
+  const std::lock_guard lock(bus_.mutex_);
+  if (is_read_as_bytes(object.topic)) object.encode(object.message.get(), buffer);
+  for (InProcessEndpoint* reader : bus_.endpoints_) {
+    if (reader == this || !reader->options_.reads.contains(object.topic)) continue;
+    if (reader->options_.objects.contains(object.topic)) {
+      reader->receive(object, now);
+    } else {
+      reader->receive(object.topic, buffer, now, number_);
+    }
+  }
+  return Status::ok();
+}
+
+bool InProcessEndpoint::needs_bytes(wire::Topic topic) const noexcept {
+  const std::lock_guard lock(bus_.mutex_);
+  return is_read_as_bytes(topic);
+}
+
+// the bus's mutex is held
+bool InProcessEndpoint::is_read_as_bytes(wire::Topic topic) const noexcept {
+  return std::any_of(bus_.endpoints_.begin(), bus_.endpoints_.end(), [&](const InProcessEndpoint* reader) {
+    const InProcessOptions& options = reader->options_;
+    return reader != this && options.reads.contains(topic) && !options.objects.contains(topic);
+  });
 }
 
 void InProcessEndpoint::keep(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns) {
@@ -59,6 +94,20 @@ void InProcessEndpoint::keep(wire::Topic topic, std::span<const std::byte> bytes
 void InProcessEndpoint::receive(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns,
                                 std::uint64_t writer) {
   if (!options_.reads.contains(topic)) return;
+  Message& slot = add_message(topic, source_ns);
+  slot.writer = topic == wire::Topic::controller_input ? writer : 0;
+  slot.bytes.assign(bytes.begin(), bytes.end());
+}
+
+// the bus's mutex is held
+void InProcessEndpoint::receive(const MessageObject& object, std::int64_t source_ns) {
+  Message& slot = add_message(object.topic, source_ns);
+  slot.bytes.clear();
+  slot.object = object.message;
+  slot.header = object.header;
+}
+
+InProcessEndpoint::Message& InProcessEndpoint::add_message(wire::Topic topic, std::int64_t source_ns) {
   if (count_ == inbox_.size() && count_ < InProcessBus::kInboxLimit) grow();
   if (count_ == inbox_.size()) {
     first_ = (first_ + 1) % inbox_.size();
@@ -68,10 +117,12 @@ void InProcessEndpoint::receive(wire::Topic topic, std::span<const std::byte> by
   Message& slot = inbox_[(first_ + count_) % inbox_.size()];
   slot.topic = topic;
   slot.source_ns = source_ns;
-  slot.writer = topic == wire::Topic::controller_input ? writer : 0;
-  slot.bytes.assign(bytes.begin(), bytes.end());
+  slot.writer = 0;
+  slot.object.reset();
+  slot.header = nullptr;
   ++count_;
-  has_message_.notify_one();
+  if (is_waiting_) has_message_.notify_one();
+  return slot;
 }
 
 // twice the places, the oldest message first
@@ -89,7 +140,7 @@ bool InProcessEndpoint::take(Received& message) {
   std::swap(taken_, inbox_[first_]);
   first_ = (first_ + 1) % inbox_.size();
   --count_;
-  message = {taken_.topic, taken_.bytes, taken_.source_ns, taken_.writer};
+  message = {taken_.topic, taken_.bytes, taken_.source_ns, taken_.writer, std::move(taken_.object), taken_.header};
   return true;
 }
 
@@ -103,7 +154,9 @@ WriterSight InProcessEndpoint::see_writer(wire::Topic, std::uint64_t writer) {
 void InProcessEndpoint::wait_until(std::int64_t monotonic_deadline_ns) {
   const std::chrono::steady_clock::time_point deadline{std::chrono::nanoseconds(monotonic_deadline_ns)};
   std::unique_lock lock(bus_.mutex_);
+  is_waiting_ = true;
   has_message_.wait_until(lock, deadline, [this] { return count_ > 0; });
+  is_waiting_ = false;
 }
 
 std::size_t InProcessEndpoint::matched_readers(wire::Topic topic) const {

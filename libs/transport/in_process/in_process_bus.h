@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The transport of one process: endpoints of one bus hand each other copies of the encoded bytes.
+// The transport of one process: endpoints of one bus hand each other copies of the encoded bytes or, on topics that a
+// reader takes as objects, the messages themselves (message_object.h), which then are encoded for the other readers
+// only.
 //
 // Messages of all writers reach every endpoint in the order in which they were published; an endpoint does not receive
 // its own. A late endpoint first gets the kept messages of the transient-local topics, as with DDS. Endpoints may be
@@ -29,6 +31,7 @@ struct InProcessOptions {
   std::string role;  // how discovered_writers() names this endpoint, "mechanics"
   TopicSet writes;   // publish() of another topic is refused
   TopicSet reads;
+  TopicSet objects{};  // of those read: taken as objects where the writer publishes one; on the writers' thread only
 };
 
 // One node's place at a bus; the bus must outlive it.
@@ -40,6 +43,9 @@ class InProcessEndpoint final : public Transport {
   InProcessEndpoint& operator=(const InProcessEndpoint&) = delete;
 
   Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept override;
+  Status publish_object(const MessageObject& object, std::vector<std::byte>& buffer) noexcept override;
+  [[nodiscard]] bool needs_bytes(wire::Topic topic) const noexcept override;
+  [[nodiscard]] bool is_network() const noexcept override { return false; }
   bool take(Received& message) override;
   [[nodiscard]] WriterSight see_writer(wire::Topic topic, std::uint64_t writer) override;
   void wait_until(std::int64_t monotonic_deadline_ns) override;
@@ -57,9 +63,15 @@ class InProcessEndpoint final : public Transport {
     std::int64_t source_ns = 0;
     std::vector<std::byte> bytes;
     std::uint64_t writer = 0;
+    std::shared_ptr<const void> object{};  // in place of the bytes
+    const wire::Header* header = nullptr;
   };
 
+  [[nodiscard]] Status check_written(wire::Topic topic) const;
+  [[nodiscard]] bool is_read_as_bytes(wire::Topic topic) const noexcept;
   void receive(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns, std::uint64_t writer);
+  void receive(const MessageObject& object, std::int64_t source_ns);
+  [[nodiscard]] Message& add_message(wire::Topic topic, std::int64_t source_ns);
   void grow();
   void keep(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns);
 
@@ -71,6 +83,7 @@ class InProcessEndpoint final : public Transport {
   std::size_t count_ = 0;
   std::uint64_t dropped_ = 0;
   std::condition_variable has_message_;
+  bool is_waiting_ = false;  // in wait_until()
   Message taken_;
   std::vector<Message> kept_;  // own messages for late endpoints, oldest first
 };

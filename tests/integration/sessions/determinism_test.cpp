@@ -66,6 +66,10 @@ TEST(Determinism, OneProcessRecordsEveryStepOfEveryNodeAndGivesTheSameBitsTwice)
   EXPECT_EQ(first_difference(undisturbed_chain(kScene, kSteps), reference().chain()), "");
 }
 
+TEST(Determinism, OneProcessWithoutARecorderEndsWithTheSameBits) {
+  EXPECT_EQ(last_hashes_without_recorder(load_scene(kScene, "1.6s")), physics_only(reference().chain()).at(kSteps));
+}
+
 TEST(Determinism, RealPaceGivesTheSameBitsAsFreePace) {
   Session session({"--pace", "real", "--duration", "1.6s"});
   session.start_all();

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "direct_chain.h"
 
-#include <array>
+#include <map>
 #include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include "io_node/io_node.h"
 #include "io_node/scene_config.h"
@@ -51,29 +52,53 @@ HashChain chain_of_ticks(const scene::Scene& scene, const std::map<StepIndex, wi
   return chain;
 }
 
-RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesystem::path& runs) {
+namespace {
+
+// All nodes on this thread, with a recorder when `runs` names its folder. The physics hashes after the last step.
+StepHashes run_nodes(const scene::Scene& scene, const std::filesystem::path& runs) {
   transport::InProcessBus bus;
   std::vector<std::unique_ptr<transport::Transport>> ends;
   const auto endpoint = [&](Role role) -> transport::Transport& {
     return *ends.emplace_back(node::open_transport(role, bus));
   };
-  io_node::IoConfig config = io_node::make_config(scene, "in_process", io_node::Recording::required);
+  const auto wanted = runs.empty() ? io_node::Recording::none : io_node::Recording::required;
+  io_node::IoConfig config = io_node::make_config(scene, "in_process", wanted);
   config.name_check = {};
   io_node::IoNode io(endpoint(Role::io), std::move(config));
+  std::map<Role, const coupling::Subsystem*> subsystems;
   const auto physics = [&](Role role) {
-    const auto make = [role](const scene::Scene& s) { return session::SubsystemFamily().make(role, s); };
+    const auto make = [role, &subsystems](const scene::Scene& s) {
+      auto subsystem = session::SubsystemFamily().make(role, s);
+      subsystems[role] = subsystem.get();
+      return subsystem;
+    };
     return std::make_unique<node::PhysicsNode>(role, endpoint(role), node::subsystem_factory(make, "."));
   };
   const auto mechanics = physics(Role::mechanics), hydraulics = physics(Role::hydraulics);
-  recorder_node::RecorderConfig recording;
-  recording.runs_directory = runs;
-  recorder_node::RecorderNode recorder(endpoint(Role::recorder), std::move(recording));
-  const std::array<node::Node*, 4> nodes = {&io, mechanics.get(), hydraulics.get(), &recorder};
+  std::vector<node::Node*> nodes = {&io, mechanics.get(), hydraulics.get()};
+  std::unique_ptr<recorder_node::RecorderNode> recorder;
+  if (!runs.empty()) {
+    recorder_node::RecorderConfig recording;
+    recording.runs_directory = runs;
+    recorder = std::make_unique<recorder_node::RecorderNode>(endpoint(Role::recorder), std::move(recording));
+    nodes.push_back(recorder.get());
+  }
   const ExitCode code = node::run_together(nodes, {});
   if (code != ExitCode::ok) {
     throw std::runtime_error("the run in one process ended with an error: " + io.member().reason());
   }
+  return {0, subsystems.at(Role::mechanics)->state_hash(), subsystems.at(Role::hydraulics)->state_hash()};
+}
+
+}  // namespace
+
+RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesystem::path& runs) {
+  run_nodes(scene, runs);
   return read_session(runs);
+}
+
+StepHashes last_hashes_without_recorder(const scene::Scene& scene) {
+  return run_nodes(scene, {});
 }
 
 HashChain undisturbed_chain(const std::string& scene_file, StepIndex steps) {

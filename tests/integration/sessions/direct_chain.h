@@ -23,6 +23,10 @@ namespace slew::testing {
 // All four nodes on this thread over the in-process bus; the recording goes to `runs`.
 [[nodiscard]] RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesystem::path& runs);
 
+// The physics hashes after the last step of the other three nodes on this thread without a recorder: no message of a
+// step is encoded, no hash computed while it runs.
+[[nodiscard]] StepHashes last_hashes_without_recorder(const scene::Scene& scene);
+
 // The chain of an undisturbed session with this number of steps of 1 ms, by the nodes on one thread.
 [[nodiscard]] HashChain undisturbed_chain(const std::string& scene_file, StepIndex steps);
 

@@ -14,7 +14,8 @@ class Timing : public ::testing::Test {
  protected:
   // one step, released this long ago, then done at once
   void step(StepIndex n, std::int64_t released_ago_ns, Role waits_for = Role::io) {
-    steps.release(n, monotonic_ns() - released_ago_ns);
+    const std::int64_t now_ns = monotonic_ns();
+    steps.release(n, now_ns - released_ago_ns, now_ns);
     if (waits_for != Role::io) steps.waits_for(waits_for);
     steps.begin(n);
     steps.computed();
@@ -45,6 +46,20 @@ TEST_F(Timing, AResponseBeyondTheDeadlineIsAnOverrunAndFlagged) {
   EXPECT_EQ(timing->execution.count(), 4u);
   EXPECT_EQ(timing->cpu_time.count(), 3u) << "the first step has none before it";
   EXPECT_GE(timing->response_recent_ns, 2 * kHour);
+}
+
+TEST_F(Timing, WithoutADeadlineTheProcessorTimeIsTheMeanOfManySteps) {
+  for (StepIndex n = 0; n <= 64; ++n) {
+    EXPECT_EQ(timing->cpu_time.count(), 0u) << n;
+    step(n, 0);
+  }
+  EXPECT_EQ(timing->cpu_time.count(), 1u);
+  steps.restart();
+  for (StepIndex n = 0; n < 64; ++n) step(n, 0);
+  EXPECT_EQ(timing->cpu_time.count(), 1u) << "the first step of an epoch has none before it";
+  step(64, 0);
+  EXPECT_EQ(timing->cpu_time.count(), 2u);
+  EXPECT_EQ(timing->execution.count(), 130u);
 }
 
 TEST_F(Timing, NothingIsLateWithoutADeadlineAndNothingJudgedInTheGrace) {
@@ -100,12 +115,13 @@ TEST_F(Timing, AStepWithoutReleaseBeginsAtOnce) {
 
 TEST(SentTime, IsThatOfTheStampUnlessItCannotBeTrue) {
   const std::int64_t before_ns = monotonic_ns();
-  EXPECT_LE(sent_ns(wall_clock_ns() - 1'000'000, WriterClock::same), monotonic_ns() - 1'000'000 + 500'000'000);
-  EXPECT_LT(sent_ns(wall_clock_ns() - 1'000'000'000, WriterClock::same), before_ns);
+  EXPECT_LE(sent_ns(wall_clock_ns() - 1'000'000, monotonic_ns(), WriterClock::same),
+            monotonic_ns() - 1'000'000 + 500'000'000);
+  EXPECT_LT(sent_ns(wall_clock_ns() - 1'000'000'000, monotonic_ns(), WriterClock::same), before_ns);
   // another clock, a stamp in the future, one an hour old: the time of arrival
-  EXPECT_GE(sent_ns(wall_clock_ns() - 1'000'000, WriterClock::other), before_ns);
-  EXPECT_GE(sent_ns(wall_clock_ns() + kHour, WriterClock::same), before_ns);
-  EXPECT_GE(sent_ns(wall_clock_ns() - kHour, WriterClock::same), before_ns);
+  EXPECT_GE(sent_ns(wall_clock_ns() - 1'000'000, monotonic_ns(), WriterClock::other), before_ns);
+  EXPECT_GE(sent_ns(wall_clock_ns() + kHour, monotonic_ns(), WriterClock::same), before_ns);
+  EXPECT_GE(sent_ns(wall_clock_ns() - kHour, monotonic_ns(), WriterClock::same), before_ns);
 }
 
 }  // namespace step_timing_test

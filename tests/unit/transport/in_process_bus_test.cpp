@@ -9,6 +9,7 @@
 
 #include "core/allocation_guard.h"
 #include "core/time.h"
+#include "transport/message_object.h"
 
 namespace slew::transport {
 namespace in_process_bus_test {
@@ -51,6 +52,71 @@ TEST(InProcessBus, DeliversInTheOrderOfPublishingWhoeverPublishes) {
   ASSERT_EQ(numbers.size(), 200u);
   for (std::uint64_t i = 0; i < 200; ++i) EXPECT_EQ(numbers[i], i);
   EXPECT_EQ(take_all(b).size(), 67u);
+}
+
+// A tick of this step, published as an object; the bytes that it was encoded to.
+std::vector<std::byte> publish_tick(InProcessEndpoint& from, MessagePool<wire::Tick>& pool, StepIndex step) {
+  const std::shared_ptr<wire::Tick>& tick = pool.take();
+  tick->header.step = step;
+  std::vector<std::byte> buffer{std::byte{1}};
+  EXPECT_TRUE(from.publish_object(object_of<wire::Tick>(tick), buffer).is_ok());
+  return buffer;
+}
+
+TEST(InProcessBus, GivesAnObjectToReadersThatTakeObjectsAndEncodesItForTheOthersAlone) {
+  InProcessBus bus;
+  InProcessEndpoint writer(bus, {"writer", {Topic::tick}, {}});
+  InProcessEndpoint reader(bus, {"reader", {}, {Topic::tick}, {Topic::tick}});
+  MessagePool<wire::Tick> pool;
+  EXPECT_FALSE(writer.needs_bytes(Topic::tick));
+  EXPECT_TRUE(publish_tick(writer, pool, 7).empty()) << "no reader takes bytes";
+
+  InProcessEndpoint recorder(bus, {"recorder", {}, {Topic::tick}});
+  EXPECT_TRUE(writer.needs_bytes(Topic::tick));
+  const std::vector<std::byte> bytes = publish_tick(writer, pool, 8);
+  Received message;
+  wire::Header header;
+  for (const StepIndex step : {7, 8}) {
+    ASSERT_TRUE(reader.take(message));
+    EXPECT_TRUE(message.bytes.empty());
+    ASSERT_TRUE(header_of(message, header));
+    EXPECT_EQ(header.step, step);
+    ASSERT_NE(object_in<wire::Tick>(message), nullptr);
+    EXPECT_EQ(object_in<wire::Tick>(message)->header.step, step);
+    EXPECT_EQ(object_in<wire::ActuatorMessage>(message), nullptr) << "an object of another type";
+  }
+  ASSERT_TRUE(recorder.take(message));
+  EXPECT_EQ(message.object, nullptr);
+  EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), message.bytes.begin(), message.bytes.end()));
+  ASSERT_TRUE(header_of(message, header));
+  EXPECT_EQ(header.step, 8);
+  EXPECT_FALSE(recorder.take(message));
+}
+
+TEST(InProcessBus, AReaderOfObjectsTakesBytesWhereTheWriterHasNoObject) {
+  InProcessBus bus;
+  InProcessEndpoint writer(bus, {"writer", {Topic::tick}, {}});
+  InProcessEndpoint reader(bus, {"reader", {}, {Topic::tick}, {Topic::tick}});
+  ASSERT_TRUE(writer.publish(Topic::tick, NumberedBytes(3).bytes).is_ok());
+  EXPECT_EQ(take_all(reader), Numbers{3});
+}
+
+TEST(InProcessBus, AnObjectIsNotFilledAgainWhileAReaderHoldsIt) {
+  InProcessBus bus;
+  InProcessEndpoint writer(bus, {"writer", {Topic::tick}, {}});
+  InProcessEndpoint reader(bus, {"reader", {}, {Topic::tick}, {Topic::tick}});
+  MessagePool<wire::Tick> pool;
+  std::vector<std::shared_ptr<const wire::Tick>> held;
+  Received message;
+  for (StepIndex step = 0; step < 50; ++step) {
+    publish_tick(writer, pool, step);
+    ASSERT_TRUE(reader.take(message));
+    held.push_back(object_in<wire::Tick>(message));
+  }
+  for (StepIndex step = 0; step < 50; ++step) EXPECT_EQ(held[static_cast<std::size_t>(step)]->header.step, step);
+  const wire::Tick* first = held.front().get();
+  held.erase(held.begin(), held.begin() + 1);
+  EXPECT_EQ(pool.take().get(), first) << "the one that is free again";
 }
 
 TEST(InProcessBus, DistinguishesTheWritersOfValuesAndSeesThemLeave) {
