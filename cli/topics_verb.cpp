@@ -65,7 +65,7 @@ std::string roles_text(std::uint32_t bits) {
   return text;
 }
 
-// Nodes of the session, and other programs, which the table of roles knows.
+// Nodes of the session, and other programs, by the table of roles.
 std::uint32_t roles_of(std::uint32_t required, wire::Topic topic,
                        const transport::TopicSet transport::RoleTraits::*set) {
   std::uint32_t bits = 0;
