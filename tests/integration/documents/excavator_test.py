@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What docs/machines/excavator.md states: digging forces by lever arms, and the end of the cycle.
+
+Usage: excavator_test.py PROJECT SLEWRING digging|cycle
+The lever arms are computed here from the pins of the scene, by plane geometry alone.
+"""
+import csv
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+PROJECT, SLEWRING, WHAT = sys.argv[1:]
+STICK, TEETH, BOOM = 2.92, 1.47, 5.70  # lengths between the pins [m]
+FOOT = (0.05, 1.75)
+
+
+def output(*arguments):
+    return subprocess.run([SLEWRING, *arguments], check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
+def record(scene, folder, *options):
+    """Columns of a run by name, SI units; its output is printed."""
+    text = output("run", f"{PROJECT}/scenes/{scene}.yaml", "--in-process", "--pace", "free", "--out", folder, *options)
+    print(text)
+    recording = next(path.parent for path in pathlib.Path(folder).rglob("session.mcap"))
+    header, *rows = csv.reader(output("export", recording, "--csv").splitlines())
+    columns = zip(*[[float(cell or "nan") for cell in row] for row in rows])
+    return text, {name.split(" ")[0]: column for name, column in zip(header, columns)}
+
+
+def polar(length, angle):
+    return (length * math.cos(angle), length * math.sin(angle))
+
+
+def plus(a, b):
+    return (a[0] + b[0], a[1] + b[1])
+
+
+def arm(pin, start, end):
+    """Distance of a pin from the line of a force."""
+    x, y = end[0] - start[0], end[1] - start[1]
+    return abs((start[0] - pin[0]) * y - (start[1] - pin[1]) * x) / math.hypot(x, y)
+
+
+def intersection(a, radius_a, b, radius_b):
+    """The intersection of two circles on the left of the line from a to b."""
+    x, y = b[0] - a[0], b[1] - a[1]
+    distance = math.hypot(x, y)
+    along = (radius_a**2 - radius_b**2 + distance**2) / (2 * distance)
+    across = math.sqrt(radius_a**2 - along**2)
+    return (a[0] + (along * x - across * y) / distance, a[1] + (along * y + across * x) / distance)
+
+
+def lever_of_bucket_cylinder(bucket):
+    """Arms about the pins of rocker and bucket, stick's axes."""
+    pin, rocker, barrel = (STICK, 0.0), (STICK - 0.46, 0.02), (0.30, 0.65)
+    link = plus(pin, polar(0.50, bucket + math.radians(112)))
+    end = intersection(rocker, 0.64, link, 0.60)
+    return arm(rocker, barrel, end) / arm(rocker, end, link) * arm(pin, end, link)
+
+
+def lever_of_stick_cylinder(stick):
+    return arm((BOOM, 0.0), (3.05, 0.90), plus((BOOM, 0.0), polar(0.84, stick + math.radians(160))))
+
+
+def pins(boom, stick, bucket):
+    """Boom's tip, bucket's pin and teeth, axes of Ground."""
+    tip = plus(FOOT, polar(BOOM, boom))
+    pin = plus(tip, polar(STICK, boom + stick))
+    return tip, pin, plus(pin, polar(TEETH, boom + stick + bucket))
+
+
+def expect(statement, holds):
+    print(("ok: " if holds else "FAILED: ") + statement)
+    return holds
+
+
+def digging(folder):
+    tip, pin, teeth = pins(*map(math.radians, (10, -71.3, -26)))
+    good = True
+    for stick_digs, name, rod in (0, "Bucket_Cylinder", 0.085), (1, "Stick_Cylinder", 0.100):
+        _, run = record("excavator_20t_digging", f"{folder}/{stick_digs}", "--set", f"stick_digs={stick_digs}")
+        last = {key: values[-1] for key, values in run.items()}
+        angles = [last[joint + ".position"] for joint in ("Boom_Foot", "Stick_Pin", "Bucket_Pin")]
+        # the spring from the teeth to its point in Ground, 3 m behind the teeth as they stood at the start
+        x, y = teeth[0] - (pin, tip)[stick_digs][0], teeth[1] - (pin, tip)[stick_digs][1]
+        radius = math.hypot(x, y)
+        anchor = (teeth[0] - 3 * y / radius, teeth[1] + 3 * x / radius)
+        now = pins(*angles)
+        lever = lever_of_stick_cylinder(angles[1]) if stick_digs else lever_of_bucket_cylinder(angles[2])
+        by_hand = last[name + ".force"] * lever / arm(now[1 - stick_digs], anchor, now[2])
+        bore = 0.140 if stick_digs else 0.120
+        area_a, area_b = math.pi / 4 * bore**2, math.pi / 4 * (bore**2 - rod**2)
+        of_pressures = last[name + ".pressure_a"] * area_a - last[name + ".pressure_b"] * area_b
+        of_pressures *= by_hand / last[name + ".force"]
+        force = -last["Teeth.force"]
+        print(f"{name}: {force:.0f} N at the teeth, by hand {by_hand:.0f} N, without friction {of_pressures:.0f} N")
+        good &= expect("the teeth have the force of the lever arms", abs(force / by_hand - 1) < 1e-4)
+        good &= expect("friction takes up to 3 %", 0 < of_pressures - force < 0.03 * force)
+        good &= expect("the cylinder has the working pressure", abs(last[name + ".pressure_a"] / 350e5 - 1) < 0.01)
+    return good
+
+
+def cycle(folder):
+    text, run = record("excavator_20t", folder)
+    lamps = [line.split()[2] for line in text.splitlines() if line.startswith("coupling ")]
+    good = expect("all lamps are green", lamps == ["green:"] * 5)
+    for joint in "Ring", "Boom_Foot", "Stick_Pin", "Bucket_Pin":
+        position = run[joint + ".position"]
+        good &= expect(f"{joint} returns", abs(position[-1] - position[0]) < math.radians(1))
+    good &= expect("the structure slews by 90 deg", abs(max(run["Ring.position"]) - math.radians(90)) < math.radians(2))
+    good &= expect("and stands at the end", abs(run["Ring.velocity"][-1]) < math.radians(0.2))
+    bucket = run["Bucket_Pin.position"]
+    good &= expect("the bucket curls and opens", min(bucket) < math.radians(-90) and max(bucket) > 0)
+    good &= expect("the main relief stays closed", max(run["Vol_P.pressure"]) < 350e5 and max(run["Relief.flow"]) <= 0)
+    good &= expect("no volume cavitates", "cavitated" not in text)
+    good &= expect("the engine does not stall", max(run["Engine.is_stalled"]) == 0)
+    return good
+
+
+with tempfile.TemporaryDirectory() as work:
+    sys.exit(0 if {"digging": digging, "cycle": cycle}[WHAT](work) else 1)
