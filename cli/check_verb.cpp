@@ -15,6 +15,7 @@
 #include "core/printable.h"
 #include "io_node/scene_config.h"
 #include "io_node/session_variables.h"
+#include "scene/canonical.h"
 #include "scene/name_pattern.h"
 #include "scene/scene_options.h"
 #include "session/direct_session.h"
@@ -66,12 +67,13 @@ void check_payload(scene::Scene& scene) {
   }
 }
 
-// The scene as sessions publish and recordings keep it: a file of its own, with its warnings on standard error.
-ExitCode print_expanded(const scene::Scene& scene) {
+// The scene as sessions publish and recordings keep it, less what nothing reads: a file of its own, with its warnings
+// on standard error.
+ExitCode print_expanded(scene::Scene& scene) {
   for (const std::string& warning : scene.warnings) {
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
   }
-  fmt::print("{}", scene.expanded_text);
+  fmt::print("{}", scene::file_text(scene));
   return ExitCode::ok;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -66,8 +67,17 @@ const TableFile* file_of(const Scene& scene, const std::string& path) {
   return nullptr;
 }
 
-void write_fields(std::string& text, const Scene& scene, const ElementRef& element, std::string_view indent) {
+enum class UnreadKeys : std::uint8_t { written, left_out };
+
+bool is_written(const Field& field, const void* def, UnreadKeys unread) {
+  return unread == UnreadKeys::written || std::all_of(field.read_by.begin(), field.read_by.end(),
+                                                      [&](const ReadBy& condition) { return condition.holds(def); });
+}
+
+void write_fields(std::string& text, const Scene& scene, const ElementRef& element, std::string_view indent,
+                  UnreadKeys unread) {
   for (const Field& field : element.fields) {
+    if (!is_written(field, element.def, unread)) continue;
     const TableFile* file =
         field.type == FieldType::table ? file_of(scene, fmt::format("{}.{}", element.name, field.key)) : nullptr;
     const std::string value = file != nullptr ? reference_text(*file) : value_text(field, element.def);
@@ -75,13 +85,14 @@ void write_fields(std::string& text, const Scene& scene, const ElementRef& eleme
   }
 }
 
-void write_lists(std::string& text, const ElementRef& element) {
+void write_lists(std::string& text, const ElementRef& element, UnreadKeys unread) {
   for (const ListTable& list : element.lists) {
     const std::vector<void*> rows = list.rows(element.def);
     if (!rows.empty()) text += fmt::format("    {}:\n", list.key);
     for (void* const row : rows) {
       std::string line;
       for (const Field& field : list.fields) {
+        if (!is_written(field, row, unread)) continue;
         const std::string value = value_text(field, row);
         if (!value.empty()) line += fmt::format("{}{}: {}", line.empty() ? "" : ", ", field.key, value);
       }
@@ -96,7 +107,7 @@ struct Longest {
 };
 
 void write_elements(std::string& text, const Scene& scene, const std::vector<ElementRef>& all, std::string_view section,
-                    Longest& longest) {
+                    UnreadKeys unread, Longest& longest) {
   bool is_first = true;
   for (const ElementRef& element : all) {
     if (element.section != section) continue;
@@ -104,8 +115,8 @@ void write_elements(std::string& text, const Scene& scene, const std::vector<Ele
     is_first = false;
     std::string fields;
     if (!element.type.empty()) fields += fmt::format("    type: {}\n", element.type);
-    write_fields(fields, scene, element, "    ");
-    write_lists(fields, element);
+    write_fields(fields, scene, element, "    ", unread);
+    write_lists(fields, element, unread);
     text += fmt::format("  {}:{}{}", element.name, fields.empty() ? " {}\n" : "\n", fields);
     if (fields.size() > longest.bytes) longest = {std::string(element.name), fields.size()};
   }
@@ -202,7 +213,9 @@ std::string yaml_scalar(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string canonical_text(Scene& scene, Problems& problems) {
+namespace {
+
+std::string text_of(Scene& scene, UnreadKeys unread, Problems& problems) {
   std::string text = "scene: " + yaml_text(scene.name) + "\n";
   if (!scene.description.empty()) text += "description: " + yaml_text(scene.description) + "\n";
   if (!scene.assets.empty()) {
@@ -216,10 +229,10 @@ std::string canonical_text(Scene& scene, Problems& problems) {
   const std::vector<ElementRef> all = elements(scene);
   for (const ElementRef& single : single_sections(scene)) {
     text += fmt::format("{}:\n", single.section);
-    write_fields(text, scene, single, "  ");
+    write_fields(text, scene, single, "  ", unread);
   }
   Longest longest;
-  for (const std::string_view section : element_sections()) write_elements(text, scene, all, section, longest);
+  for (const std::string_view section : element_sections()) write_elements(text, scene, all, section, unread, longest);
   write_script(text, scene);
   if (text.size() > kMaxExpandedBytes) {
     problems.push_back(
@@ -233,9 +246,9 @@ std::string canonical_text(Scene& scene, Problems& problems) {
   return text;
 }
 
-std::string canonical_text(Scene& scene) {
+std::string text_of(Scene& scene, UnreadKeys unread) {
   Problems problems;
-  std::string text = canonical_text(scene, problems);
+  std::string text = text_of(scene, unread, problems);
   if (problems.empty()) return text;
   const Problem& problem = problems.front();
   throw LoadError({{.file = scene.name,
@@ -244,6 +257,20 @@ std::string canonical_text(Scene& scene) {
                     .expected = problem.expected,
                     .suggestion = problem.suggestion}},
                   0);
+}
+
+}  // namespace
+
+std::string canonical_text(Scene& scene, Problems& problems) {
+  return text_of(scene, UnreadKeys::written, problems);
+}
+
+std::string canonical_text(Scene& scene) {
+  return text_of(scene, UnreadKeys::written);
+}
+
+std::string file_text(Scene& scene) {
+  return text_of(scene, UnreadKeys::left_out);
 }
 
 }  // namespace slew::scene

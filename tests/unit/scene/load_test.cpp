@@ -68,6 +68,16 @@ TEST(Load, EveryAcceptedSceneReadsBackFromItsExpansion) {
   EXPECT_GE(accepted, 5);
 }
 
+// what `check --expanded` prints is a scene for a file, beside the files that it names
+TEST(Load, AnExpansionIsAFileWithoutProblems) {
+  const TemporaryFolder folder;
+  for (const char* file : {"single_cylinder", "tipper", "two_dof_crane", "flow_sharing", "first_steps"}) {
+    Scene scene = load_file(std::string(SLEWRING_SOURCE_DIR "/scenes/") + file + ".yaml");
+    const Scene again = load_file(folder.write(std::string(file) + ".yaml", file_text(scene)));
+    EXPECT_EQ(again.expanded_text, scene.expanded_text) << file;
+  }
+}
+
 // a bound of the solver that the circuit's build would otherwise meet as an internal error
 TEST(Load, ACircuitOfMoreUnknownsThanItsSolverTakesIsRefusedByName) {
   const auto chain = [](int volumes, const std::string& solver) {
