@@ -16,8 +16,8 @@ namespace slew::scene {
 // Throws LoadError instead.
 [[nodiscard]] std::string canonical_text(Scene& scene);
 
-// The same for a file: without the keys that nothing reads, which a file must not have. Reading it gives the same Scene,
-// but for values of such keys that an override carried along.
+// The same for a file: without the keys that nothing reads, which a file must not have. Reading it gives the same
+// Scene, but for values of such keys that an override carried along.
 [[nodiscard]] std::string file_text(Scene& scene);
 
 // The value of one field as YAML; empty if a scene cannot express it.
