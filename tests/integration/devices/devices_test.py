@@ -175,8 +175,8 @@ def case_closed_loop(folder, domain):
     require(abs(min(raw) + (495 / 512 - 0.05) / 0.95) < 1e-9, f"smallest raw value {min(raw)}")
     require(raw[0] == 0 and raw[-1] == 0, f"{raw[0]} {raw[-1]}")
     angle = value_at_end(result, "Body_Pillar.position")
-    # how far depends on how far the session came while the recorded stick was held
-    require(angle[-1] < angle[0] - 1e-3, f"the crane did not slew with the stick: {angle[0]} to {angle[-1]}")
+    # how far depends on how far the session came while the recorded stick was held; at rest it turns by 3e-4 rad
+    require(angle[-1] < angle[0] - 5e-3, f"the crane did not slew with the stick: {angle[0]} to {angle[-1]}")
 
 
 def case_dead_or_hanging(folder, domain):
