@@ -15,7 +15,6 @@
 #include "core/step_report.h"
 #include "core/time.h"
 #include "node/identity.h"
-#include "node/session_member.h"
 #include "recording/reader.h"
 #include "recording/recovery.h"
 #include "session.h"
@@ -126,7 +125,8 @@ TEST_P(KilledNode, InFreePaceIsNamedAsWell) {
 INSTANTIATE_TEST_SUITE_P(Roles, KilledNode, ::testing::Values(Role::hydraulics, Role::recorder), role_name);
 INSTANTIATE_TEST_SUITE_P(NightlyRoles, KilledNode, ::testing::Values(Role::io, Role::mechanics), role_name);
 
-TEST(StoppedForGood, NodeIsNamedAfter300MillisecondsAndGivenUpAfter2Seconds) {
+// that it is not named too early is in session_member_test.cpp, on a clock that nothing delays
+TEST(StoppedForGood, NodeIsNamedAndGivenUpAfter2Seconds) {
   Session session({"--pace", "real", "--duration", "20s"});
   Observer& observer = session.observer();
   session.start_all();
@@ -141,23 +141,14 @@ TEST(StoppedForGood, NodeIsNamedAfter300MillisecondsAndGivenUpAfter2Seconds) {
   EXPECT_EQ(session.node(Role::io).wait(), 4) << session.errors();
   EXPECT_EQ(session.node(Role::mechanics).wait(), 4) << session.errors();
   EXPECT_EQ(session.node(Role::recorder).wait(), 4) << session.errors();
-  // not before it had been silent for 0.3 s
-  const RecordedSession recorded = session.recorded();
-  EXPECT_EQ(recorded.problem, "");
-  std::int64_t named_ns = INT64_MAX;
-  for (const PublishedStatus& published : recorded.statuses) {
-    if (published.status.reason.find("silent for 0.3 s") != std::string::npos)
-      named_ns = std::min(named_ns, published.sent_ns);
-  }
-  ASSERT_NE(named_ns, INT64_MAX);
-  EXPECT_GE(named_ns - recorded.last_word_before(Role::hydraulics, named_ns), node::kSilentAfter.ns);
+  EXPECT_EQ(session.recorded().problem, "");
   // when it comes back it finds that the others have gone
   session.node(Role::hydraulics).send(SIGCONT);
   EXPECT_EQ(session.node(Role::hydraulics).wait(), 4) << session.errors();
 }
 
 // no tick waits for sensors: each of its samples takes three times as long as the ten steps between two
-TEST(SlowSensor, EndsTheSessionWithTheReasonOnceItsPosesAreGone) {
+TEST(SlowSensor, NightlyEndsTheSessionWithTheReasonOnceItsPosesAreGone) {
   Session session({"--pace", "real", "--duration", "100s"}, SLEWRING_SOURCE_DIR "/scenes/truck_crane_sensors.yaml");
   session.start_all();
   session.start(Role::sensor, {"--add-work", "30000"});

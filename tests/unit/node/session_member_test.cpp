@@ -404,6 +404,12 @@ TEST_F(Member, ThatWasGivenUpReportsWhetherItStoodStillOrItsMessagesWereLost) {
   EXPECT_EQ(member.end_text(Role::io, io.reason), io.reason);
 }
 
+TEST_F(Member, NamesASilentPeerAfter300MillisecondsAndNotBefore) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  EXPECT_EQ(watch(kSilentAfter.ns), PeerEvent::none);
+  EXPECT_EQ(watch(kSilentAfter.ns + 1), PeerEvent::silent);
+}
+
 TEST_F(Member, ThatStoodStillAndReceivesNothingAfterwardsReportsIt) {
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
   EXPECT_EQ(watch(10 * kMs), PeerEvent::none);
