@@ -49,7 +49,7 @@ TEST_F(CompareVerb, PrintsTheTableAndWritesPictureAndValues) {
 }
 
 // nodes of flexible bodies are joints of the mechanism, not of the scene
-TEST_F(CompareVerb, AFlexibleBodyRunsInEveryFormulation) {
+TEST_F(CompareVerb, NightlyAFlexibleBodyRunsInEveryFormulation) {
   for (const std::string scene : {"truck_crane_flexible", "truck_crane_segmented"}) {
     const CommandResult result = compare(scene + ".yaml", {"--until", "0.01s", "--repeats", "1", "--json"});
     ASSERT_EQ(result.code, 0) << result.err;

@@ -93,7 +93,7 @@ TEST_F(Distributed, CranesHaveTheSameHashesAsInOneProcess) {
   }
 }
 
-TEST_F(Distributed, OfTwoRunsOfOneNameStartedTogetherOneStays) {
+TEST_F(Distributed, NightlyOfTwoRunsOfOneNameStartedTogetherOneStays) {
   const auto first = start("first_steps.yaml", {"--session", "twin", "--pace", "free", "--out", "first"});
   const auto second = start("first_steps.yaml", {"--session", "twin", "--pace", "free", "--out", "second"});
   const CommandResult a = first->wait(), b = second->wait();
@@ -375,7 +375,7 @@ class SlowDisk : public Distributed {
 };
 
 // four sessions at once, since each of them waits for its disk
-TEST_F(SlowDisk, IsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
+TEST_F(SlowDisk, NightlyIsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
   const auto left_alone = start_with("left_alone", 8);
   const auto ended = start_with("ended", 8);
   const auto interrupted = start_with("interrupted", 600);
@@ -416,7 +416,7 @@ TEST_F(SlowDisk, IsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
 
 // The loop of a recorder that closes its file stands still, and others would give it up after 3 s. The disk has to fail
 // long before the session ends: the message after the session's end is another one.
-TEST_F(SlowDisk, ThatTakesLongToCloseAFileInMidSessionEndsNothing) {
+TEST_F(SlowDisk, NightlyThatTakesLongToCloseAFileInMidSessionEndsNothing) {
   const CommandResult result =
       run("/bin/bash",
           {"-c", "ulimit -f 1000; LD_PRELOAD=" SLEWRING_SLOW_DISK " SLEWRING_SLOW_DISK=5 exec " +

@@ -447,7 +447,7 @@ TEST_F(ClientLibrary, NightlyAControllerThatStoodStillLongerThanItsLivelinessLea
   stop();
 }
 
-TEST_F(ClientLibrary, AControllerThatStoodStillOverAResetSeesIt) {
+TEST_F(ClientLibrary, NightlyAControllerThatStoodStillOverAResetSeesIt) {
   start();
   const Client reader = join("reader");
   const auto probe = start_probe("probe", "probe");
@@ -549,7 +549,7 @@ TEST_F(ClientLibrary, OneOfTwoWithOneNameThatRequestTogetherHasTheChannel) {
   stop();
 }
 
-TEST_F(ClientLibrary, CountsTheBlocksThatItWasTooSlowFor) {
+TEST_F(ClientLibrary, NightlyCountsTheBlocksThatItWasTooSlowFor) {
   start({"--set", "recording.every=1"});
   const Client reader = join("reader"), slow = join("slow");
   const int stroke = slewring_find(slow.get(), "Cyl_Lift.stroke", kSoon);
@@ -619,7 +619,7 @@ class Environment {
   const char* name_;
 };
 
-TEST_F(ClientLibrary, InASessionWithKeysMovesItsChannelAndWithoutThemReceivesNothing) {
+TEST_F(ClientLibrary, NightlyInASessionWithKeysMovesItsChannelAndWithoutThemReceivesNothing) {
   session = std::make_unique<Session>(
       std::vector<std::string>{"--pace", "real", "--duration", "60s", "--input", "none"}, kScene);
   const std::string plant = (session->folder() / "plant").string();

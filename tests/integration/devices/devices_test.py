@@ -401,7 +401,7 @@ def case_can_utils(folder, domain):
 
 
 CASES = {
-    "APeerOnUdpClosesThePositionLoopAndAJoystickSlews": case_closed_loop,
+    "NightlyAPeerOnUdpClosesThePositionLoopAndAJoystickSlews": case_closed_loop,
     "ADeadOrHangingDeviceIsNeutralAndStopsNoTick": case_dead_or_hanging,
     "ADeviceRunsWithoutAScene": case_without_a_scene,
     "VerbsWorkWithoutASession": case_verbs,

@@ -174,7 +174,7 @@ TEST_F(RealTime, MemoryThatMayNotBeLockedLeavesTheScheduling) {
   EXPECT_EQ(result.err.find("SCHED_FIFO"), std::string::npos) << result.err;
 }
 
-TEST_F(RealTime, StressReportsOnceThatMemoryMayNotBeLocked) {
+TEST_F(RealTime, NightlyStressReportsOnceThatMemoryMayNotBeLocked) {
   if (!kLocksMemory) GTEST_SKIP() << "the sanitizers lock no memory";
   if (geteuid() != 0) GTEST_SKIP() << "needs the right to SCHED_FIFO: run it as root";
   const CommandResult result =

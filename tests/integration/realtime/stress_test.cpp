@@ -66,7 +66,7 @@ class Stress : public ::testing::Test {
   WorkFolder work_;
 };
 
-TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
+TEST_F(Stress, NightlyMeasuresASessionBesideItsYardstickAndTheBooksBalance) {
   const CommandResult result =
       stress({"--json", "--load", is_nightly() ? "none,mixed" : "mixed", "--max-miss", "100", "-o", "stress.html"});
   ASSERT_EQ(result.code, 0) << result.err;
@@ -136,7 +136,7 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
   EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
 }
 
-TEST_F(Stress, StepsThatAreGivenUpAreMissed) {
+TEST_F(Stress, NightlyStepsThatAreGivenUpAreMissed) {
   const auto options =
       arguments({"--json", "--no-record", "--seconds", "4", "--set", "session.start_grace=0 s", "--max-miss", "10"});
   Command session("slewring", options, work_.path());
@@ -204,7 +204,7 @@ TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {
   EXPECT_EQ(result.out.find("NOT BALANCE"), std::string::npos) << result.out;
 }
 
-TEST_F(Stress, WorkThatIsAddedIsDone) {
+TEST_F(Stress, NightlyWorkThatIsAddedIsDone) {
   // twice the step's time: every step overruns, all of them in a row, and the session falls behind; it goes on to its
   // end with any overrun policy of the scene
   const CommandResult result =

@@ -216,7 +216,7 @@ TEST_F(ClientExamples, TheShortestOneWaitsThroughAPauseAndCtrlCGivesTheChannelBa
   stop();
 }
 
-TEST_F(ClientExamples, TheSameLoopInPython) {
+TEST_F(ClientExamples, NightlyTheSameLoopInPython) {
   if (is_sanitized()) GTEST_SKIP() << "the interpreter cannot load a library with a sanitizer in it";
   start({"--pace", "real"});
   const std::string script = SLEWRING_SOURCE_DIR "/examples/python/position_controller.py";

@@ -90,7 +90,7 @@ TEST(Determinism, SeparateProcessesAndTheirReplayGiveTheSameBits) {
   EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
 }
 
-TEST(Determinism, LoadOnEveryCoreChangesNoBit) {
+TEST(Determinism, NightlyLoadOnEveryCoreChangesNoBit) {
   std::atomic<bool> is_done{false};
   std::vector<std::thread> burners;
   for (unsigned i = 0; i < 2 * std::thread::hardware_concurrency(); ++i) {

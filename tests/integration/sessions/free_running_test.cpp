@@ -27,7 +27,7 @@ TEST(FreeRunning, BridgesAPartnerThatStandsStillForAWhile) {
 }
 
 // whether it is green or amber is in wall_time_test.cpp
-TEST(FreeRunning, OverACableThatLosesOnePercentGoesOnToItsEnd) {
+TEST(FreeRunning, NightlyOverACableThatLosesOnePercentGoesOnToItsEnd) {
   const LossyRun run = run_over_a_lossy_cable(3);
   if (!run.problem.empty()) GTEST_SKIP() << run.problem;
   EXPECT_EQ(run.recorded.last_complete_step(), 3000);

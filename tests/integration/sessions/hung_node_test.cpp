@@ -143,7 +143,7 @@ TEST_P(HungNode, ThatComesBackInTimeGoesOnWithTheSameBits) {
 
 // For longer than the 2 s that a session without the key waits. The middleware misses it meanwhile: blocks of variables
 // that are sent before it is found again may be missing, which are not sent again.
-TEST_P(HungNode, ThatComesBackWithinGiveUpAfterGoesOnWithTheSameBits) {
+TEST_P(HungNode, NightlyThatComesBackWithinGiveUpAfterGoesOnWithTheSameBits) {
   std::vector<std::string> patient = kRealPace;
   patient.insert(patient.end(), {"--set", "session.give_up_after=20"});
   Session session(patient, scene_with(GetParam()));
@@ -168,7 +168,7 @@ TEST_P(HungNode, ThatComesBackWithinGiveUpAfterGoesOnWithTheSameBits) {
 }
 
 // For 30 s (nightly) or somewhat longer than it is waited for. Meanwhile another session has got its name.
-TEST_P(HungNode, ThatIsGivenUpFindsThatItsSessionIsOverAndDoesNotDisturbTheNextOne) {
+TEST_P(HungNode, NightlyThatIsGivenUpFindsThatItsSessionIsOverAndDoesNotDisturbTheNextOne) {
   const Role hung = GetParam();
   Session session(kRealPace, scene_with(hung));
   start_with(hung, session);

@@ -83,7 +83,7 @@ TEST_P(KilledAndReplaced, InMidMotionTheSessionGoesOnToTheSameBits) {
   }
 }
 
-TEST_P(KilledAndReplaced, TwiceInFreePace) {
+TEST_P(KilledAndReplaced, NightlyTwiceInFreePace) {
   // long enough for the second one to be found computing on a machine that is busy
   Session session(places_held("free", "16s"));
   Observer& observer = session.observer();
@@ -129,7 +129,7 @@ TEST(Replaced, AStoppedProcessThatWakesUpReportsThatItsRoleWasGivenAway) {
 }
 
 // no node waits for sensors: the session is 2 s ahead when one that hangs is given up
-TEST(Replaced, ASensorNodeThatHangsInRealPace) {
+TEST(Replaced, NightlyASensorNodeThatHangsInRealPace) {
   Session session({"--pace", "real", "--duration", "6s", "--set", "session.rejoin=20s"},
                   SLEWRING_SOURCE_DIR "/scenes/truck_crane_sensors.yaml");
   Observer& observer = session.observer();
@@ -220,16 +220,13 @@ TEST_P(ReplacedFlex, TheSessionGoesOnToTheSameBits) {
 }
 
 const auto name_of_loss = [](const ::testing::TestParamInfo<FlexLoss>& loss) { return std::string(loss.param.name); };
-INSTANTIATE_TEST_SUITE_P(Losses, ReplacedFlex,
-                         ::testing::Values(FlexLoss{
-                             "all_every_step", "every_step", {Role::mechanics, Role::hydraulics, Role::flex}}),
-                         name_of_loss);
-INSTANTIATE_TEST_SUITE_P(NightlyLosses, ReplacedFlex,
-                         ::testing::Values(FlexLoss{"flex_every_step", "every_step", {Role::flex}},
-                                           FlexLoss{"flex_once", "once", {Role::flex}},
-                                           FlexLoss{
-                                               "all_once", "once", {Role::mechanics, Role::hydraulics, Role::flex}}),
-                         name_of_loss);
+INSTANTIATE_TEST_SUITE_P(
+    NightlyLosses, ReplacedFlex,
+    ::testing::Values(FlexLoss{"flex_every_step", "every_step", {Role::flex}},
+                      FlexLoss{"flex_once", "once", {Role::flex}},
+                      FlexLoss{"all_every_step", "every_step", {Role::mechanics, Role::hydraulics, Role::flex}},
+                      FlexLoss{"all_once", "once", {Role::mechanics, Role::hydraulics, Role::flex}}),
+    name_of_loss);
 
 // ---- `slewring run` -------------------------------------------------------------------------------------------
 
@@ -270,7 +267,7 @@ TEST_F(RunWithRejoin, StartsAKilledNodeAgainAndEndsWellWithTheSameBits) {
   expect_one_restart_and_undisturbed_bits();
 }
 
-TEST_F(RunWithRejoin, ReplacesANodeThatHangs) {
+TEST_F(RunWithRejoin, NightlyReplacesANodeThatHangs) {
   send_to(Role::hydraulics, SIGSTOP);
   expect_one_restart_and_undisturbed_bits();
   EXPECT_NE(run_.err().find("was silent for 2 s (session.give_up_after) and has lost its place; it is killed"),

@@ -208,7 +208,7 @@ TEST_F(SavedSession, IsMadeOfARecordingAndGoesOnLive) {
   EXPECT_NE(errors.find("the recording ends before"), std::string::npos) << errors;
 }
 
-TEST_F(SavedSession, BehindARecordingIsSteeredByAController) {
+TEST_F(SavedSession, NightlyBehindARecordingIsSteeredByAController) {
   Session session({"--pace", "free", "--duration", kDuration});
   session.start_all();
   ASSERT_EQ(session.wait_all(), all_ok()) << session.errors();
@@ -242,7 +242,7 @@ TEST_F(SavedSession, BehindARecordingIsSteeredByAController) {
 
 // A state saved with a controller that every tick waits for can go on without it: the script or no controller moves the
 // input.
-TEST_F(SavedSession, OfALockstepControllerIsHandedOver) {
+TEST_F(SavedSession, NightlyOfALockstepControllerIsHandedOver) {
   Session session({"--pace", "free", "--duration", kDuration, "--set", "Input_Lift.controller=lockstep"});
   session.start_all();
   // a controller that takes its channel and is silent: the channel is held, then put to neutral

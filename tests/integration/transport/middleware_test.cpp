@@ -195,7 +195,7 @@ TEST_P(Bus, TheGreatestDomainHasPortsForAllProcesses) {
   EXPECT_TRUE(status.is_ok()) << status.text;
 }
 
-TEST_P(Bus, AnExhaustedParticipantIndexIsExplained) {
+TEST_P(Bus, NightlyAnExhaustedParticipantIndexIsExplained) {
   const auto hold = [this] {
     std::unique_ptr<Transport> transport;
     const Status status = open_transport(network(), {"a", "observer", {}, {}}, transport);

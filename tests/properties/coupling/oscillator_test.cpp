@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
+
+#include "tests/support/nightly.h"
 
 namespace slew::coupling::test {
 namespace oscillator_test {
@@ -13,9 +16,12 @@ namespace oscillator_test {
 constexpr double kOmegas[] = {0.02, 0.05, 0.2, 0.5, 1, 1.5, 2, 3, 5, 10, 20, 50};
 
 TEST(LevelTwo, NeverGrowsAtAnyStepOnALinearPort) {
+  const bool is_nightly = slew::testing::is_nightly();
+  const auto zetas = is_nightly ? std::vector{0.0, 0.001, 0.05, 0.2} : std::vector{0.0, 0.05};
+  const auto lambdas = is_nightly ? std::vector{0.0, 0.1, 1.0, 10.0} : std::vector{0.0, 1.0};
   for (const double Omega : kOmegas) {
-    for (const double zeta : {0.0, 0.001, 0.05, 0.2}) {
-      for (const double lambda : {0.0, 0.1, 1.0, 10.0}) {
+    for (const double zeta : zetas) {
+      for (const double lambda : lambdas) {
         SplitOscillator oscillator({.Omega = Omega, .zeta = zeta, .lambda = lambda});
         double largest = 0;
         for (int i = 0; i < 400; ++i) {

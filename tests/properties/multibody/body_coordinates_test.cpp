@@ -128,7 +128,8 @@ TEST(BodyCoordinates, MoveAsTheRecursionDoes) {
     constexpr double h = 1e-4;
     State joints = state;
     both.joints = state;
-    for (int i = 0; i < 500; ++i) {
+    const int steps = slew::testing::rounds(100, 500);
+    for (int i = 0; i < steps; ++i) {
       evaluate(model, joints, both.recursive.ws);
       advance(model, joints, both.recursive.ws, h, mean, slope);
       ASSERT_TRUE(evaluate(model, both.body, bodies, both.joints, both.ws, both.bws));

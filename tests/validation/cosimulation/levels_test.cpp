@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "tests/support/nightly.h"
 #include "tests/validation/cosimulation/split_masses.h"
 
 namespace slew::cosimulation {
@@ -68,9 +70,11 @@ double growth(const TwoMasses& of, double lambda, Scheme scheme, double H) {
 
 // the springs to the walls stand behind the port: 31.6 rad/s of k2, so that H = 0.2 s is 6 rad of it
 TEST(LevelsOnTheOscillator, LevelTwoOverTheStepHasNoLimit) {
+  const bool is_nightly = slew::testing::is_nightly();
+  const auto steps = is_nightly ? std::vector{0.02, 0.1, 0.2, 0.5, 1.0, 3.0} : std::vector{0.2, 3.0};
   for (const double lambda : {10.0, 100.0}) {
-    for (const double c : {0.0, 0.1, 1.0}) {
-      for (const double H : {0.02, 0.1, 0.2, 0.5, 1.0, 3.0}) {
+    for (const double c : is_nightly ? std::vector{0.0, 0.1, 1.0} : std::vector{0.0, 1.0}) {
+      for (const double H : steps) {
         EXPECT_LT(growth({.c1 = c, .c2 = c}, lambda, kTwoOverStep, H), 1.0001) << lambda << " " << c << " " << H;
       }
     }

@@ -88,7 +88,7 @@ void expect_return(const scene::Overrides& overrides, double tolerance) {
 }
 
 TEST(ClosedCylinder, returns_after_twenty_pulls_into_vapour_at_any_tolerance) {
-  for (const char* tolerance : {"1e-3", "1e-4", "1e-6", "1e-8"}) {
+  for (const char* tolerance : {"1e-3", "1e-6"}) {
     expect_return({std::string("hydraulics.relative_tolerance=") + tolerance}, kWithoutAir);
   }
 }
@@ -103,15 +103,13 @@ TEST(ClosedCylinder, cavitates_in_every_pull) {
   EXPECT_GT(run.variable("Vol_A.pressure"), 0);
 }
 
-TEST(ClosedCylinder, returns_with_every_solver) {
-  for (const char* solver : {"rk4", "implicit_euler", "cvode"}) {
-    expect_return({std::string("hydraulics.solver=") + solver}, kWithoutAir);
-  }
+TEST(ClosedCylinder, returns_with_another_solver_and_oil_law) {
+  expect_return({"hydraulics.solver=implicit_euler"}, kWithoutAir);
+  expect_return({"hydraulics.oil_law=density_parabola"}, kWithoutAir);
 }
 
-TEST(ClosedCylinder, returns_with_every_oil_law) {
-  expect_return({"hydraulics.oil_law=density_parabola"}, kWithoutAir);
-  for (const char* air : {"1e-4", "0.005", "0.05"}) {
+TEST(ClosedCylinder, returns_with_air) {
+  for (const char* air : {"1e-4", "0.05"}) {
     expect_return({std::string("hydraulics.entrained_air=") + air}, kWithAir);
   }
 }
@@ -142,8 +140,11 @@ TEST(ClosedCylinder, returns_with_chambers_that_are_lines) {
   expect_return({"session.coupling=tlm", "hydraulics.entrained_air=0.005"}, 4e-2);
 }
 
-TEST(ClosedCylinder, returns_with_steps_of_5_ms_and_with_held_forces) {
+TEST(ClosedCylinder, returns_with_steps_of_5_ms) {
   expect_return({"session.step=5ms"}, kWithoutAir);
+}
+
+TEST(ClosedCylinder, returns_with_held_forcesNightly) {
   expect_return({"session.coupling=hold", "session.step=0.1ms"}, kWithoutAir);
 }
 

@@ -68,7 +68,7 @@ TEST(HardStart, bag_falls_and_bounces_as_a_planar_crane_does) {
   EXPECT_NEAR(fall.drop, 0.83, 0.01);
 }
 
-TEST(HardStart, with_a_fifth_of_the_air_the_planar_crane_agrees_on_a_shorter_fall) {
+TEST(HardStart, with_a_fifth_of_the_air_the_planar_crane_agrees_on_a_shorter_fallNightly) {
   const Fall fall = compared_with_planar({"hydraulics.start=table13", "hydraulics.entrained_air=0.1 %"}, 0.001);
   EXPECT_LT(fall.height_error, 3e-3);
   EXPECT_LT(fall.pressure_error, 0.01 * fall.highest_pressure);

@@ -74,8 +74,8 @@ TEST(HeavyTip, OnModesOfItsOwnStaticShapeSwingsAsTheClosedForm) {
                              {Formulation::recursive, Integrator::generalised_alpha, 1e-3, 2e-3},
                              {Formulation::recursive, Integrator::sdirk2, 1e-3, 2e-3}};
   for (const auto stiffening : {flex::GeometricStiffening::none, flex::GeometricStiffening::straight_beam}) {
-    // in the gate one of each formulation, and one without stiffening
-    const std::size_t gate = stiffening == flex::GeometricStiffening::none ? 1 : 3;
+    // in the gate two formulations, and one without stiffening
+    const std::size_t gate = stiffening == flex::GeometricStiffening::none ? 1 : 2;
     for (const Case& c : std::span(kCases).first(slew::testing::rounds(gate, std::size(kCases)))) {
       MechanicsDef def = loaded(0, stiffening);
       def.formulation = c.formulation;
@@ -93,8 +93,9 @@ TEST(HeavyTip, OnModesOfItsOwnStaticShapeSwingsAsTheClosedForm) {
 // two modes reach 99.4 % of the tip's compliance; the second turns with 7e4 rad/s
 TEST(HeavyTip, OnTwoModesSwingsInEveryFormulation) {
   constexpr double kStep = 3.5e-5;
-  for (const Formulation formulation :
-       {Formulation::recursive, Formulation::lagrange, Formulation::augmented, Formulation::penalty}) {
+  constexpr Formulation kFormulations[] = {Formulation::recursive, Formulation::penalty, Formulation::lagrange,
+                                           Formulation::augmented};
+  for (const Formulation formulation : std::span(kFormulations).first(slew::testing::rounds<std::size_t>(2, 4))) {
     MechanicsDef def = loaded(2, flex::GeometricStiffening::none);
     def.formulation = formulation;
     def.max_substep = kStep;
@@ -104,13 +105,13 @@ TEST(HeavyTip, OnTwoModesSwingsInEveryFormulation) {
 }
 
 TEST(HeavyTip, OnSegmentsSwingsAsTheClosedForm) {
-  // in the gate one rule of each formulation
+  // in the gate the first
   constexpr std::pair<Formulation, Integrator> kChoices[] = {
       {Formulation::recursive, Integrator::trapezoidal},       {Formulation::lagrange, Integrator::sdirk2},
       {Formulation::recursive, Integrator::generalised_alpha}, {Formulation::recursive, Integrator::sdirk2},
       {Formulation::lagrange, Integrator::trapezoidal},        {Formulation::lagrange, Integrator::generalised_alpha}};
   for (const auto& [formulation, rule] :
-       std::span(kChoices).first(slew::testing::rounds<std::size_t>(2, std::size(kChoices)))) {
+       std::span(kChoices).first(slew::testing::rounds<std::size_t>(1, std::size(kChoices)))) {
     MechanicsDef def = clamped_segments(20, kModulus);
     load(def);
     def.formulation = formulation;
