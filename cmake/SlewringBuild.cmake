@@ -89,7 +89,8 @@ set(SLEWRING_QUICKEST_TO_COMPILE $<$<CONFIG:Release>:-O0>)
 # source still includes what it uses. KIND: usual, computes or texts (see slewring_library), or tests.
 set(SLEWRING_STANDARD_HEADERS
     <algorithm> <array> <cmath> <cstdint> <cstdio> <filesystem> <functional> <limits> <map> <memory> <numbers> <numeric>
-    <optional> <set> <span> <sstream> <stdexcept> <string> <string_view> <utility> <vector> <fmt/format.h>)
+    <optional> <set> <span> <sstream> <stdexcept> <string> <string_view> <utility> <vector>
+    ${PROJECT_SOURCE_DIR}/libs/core/fmt_once.h)
 function(slewring_precompile target kind)
   set(owner slewring_precompiled_${kind})
   if(NOT TARGET ${owner})

@@ -281,6 +281,11 @@ void read_flexible_bodies(const LoadContext& load_context, Scene& scene, Problem
   }
 }
 
+Scene::Scene() = default;
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
 bool Scene::has_modes() const noexcept {
   return std::any_of(mechanics.bodies.begin(), mechanics.bodies.end(), [](const BodyDef& body) {
     return body.type == multibody::BodyType::flexible && body.flex_modes != "none";

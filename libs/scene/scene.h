@@ -74,6 +74,12 @@ struct ParameterText {
 };
 
 struct Scene {
+  // compiled once, in the source file, and not in every unit that holds one
+  Scene();
+  ~Scene();
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+
   std::string name;
   std::string description;
   SessionDef session;

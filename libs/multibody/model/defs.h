@@ -184,6 +184,14 @@ enum class Integrator : int {
 
 // The lists of force kinds beyond spring-dampers (point_forces, bushings, ...) come with the table of kinds.
 struct MechanicsDef : ForceKinds::Defs {
+  // compiled once, in the source file, and not in every unit that holds one
+  MechanicsDef();
+  ~MechanicsDef();
+  MechanicsDef(const MechanicsDef&);
+  MechanicsDef(MechanicsDef&&) noexcept;
+  MechanicsDef& operator=(const MechanicsDef&);
+  MechanicsDef& operator=(MechanicsDef&&) noexcept;
+
   Triple gravity{0, -9.81, 0};  // m/s2
   Formulation formulation = Formulation::recursive;
   double assembly_tolerance = 1e-3;  // m and rad, largest violation of a joint at the start

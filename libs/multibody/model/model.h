@@ -241,6 +241,14 @@ struct PenaltyNumbers {
 };
 
 struct Model {
+  // compiled once, in the source file, and not in every unit that holds one
+  Model();
+  ~Model();
+  Model(const Model&);
+  Model(Model&&) noexcept;
+  Model& operator=(const Model&);
+  Model& operator=(Model&&) noexcept;
+
   math::Vec3 gravity;         // m/s2, Ground axes
   double max_substep = 1e-3;  // s
   PenaltyNumbers penalty;

@@ -9,6 +9,10 @@
 
 namespace slew::multibody {
 
+Workspace::~Workspace() = default;
+Workspace::Workspace(Workspace&&) noexcept = default;
+Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+
 Workspace::Workspace(const Model& model)
     : motion(model.links.size()),
       inertia(model.links.size()),

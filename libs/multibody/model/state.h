@@ -105,6 +105,10 @@ struct LoopWorkspace {
 
 struct Workspace {
   explicit Workspace(const Model& model);
+  // compiled once, in the source file
+  ~Workspace();
+  Workspace(Workspace&&) noexcept;
+  Workspace& operator=(Workspace&&) noexcept;
 
   double time = 0;                  // s, time of the motion
   std::vector<MotionValue> drives;  // by Model::drives, at that time: set_time()
