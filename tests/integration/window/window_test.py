@@ -91,9 +91,9 @@ class Program:
             sys.exit("FAILED: a program does not end at SIGINT")
 
 
-def start_scene(folder, domain, *more):
+def start_scene(folder, domain, *more, scene=f"{SOURCES}/scenes/truck_crane.yaml"):
     """The crane with its window, from one command. A machine that is busy keeps up with 4 ms."""
-    return Program(folder, "window", "window", f"{SOURCES}/scenes/truck_crane.yaml", "--port", "0", "--json",
+    return Program(folder, "window", "window", scene, "--port", "0", "--json",
                    "--session", SESSION, "--domain", domain, "--step", "4 ms", "--no-record", "--quiet",
                    "--set", "session.give_up_after=60 s", "--set", "session.controller_timeout=60 s", *more)
 
@@ -127,6 +127,25 @@ def page_live(folder, case="live"):
     window = start_scene(folder, domain)
     try:
         run_page(case, window.address(), "--session", SESSION, "--domain", domain)
+    finally:
+        window.end()
+
+
+def page_edits(folder):
+    need_page()
+    domain = take_domain()
+    shutil.copytree(f"{SOURCES}/scenes/meshes", f"{folder}/meshes")
+    scene = shutil.copy(f"{SOURCES}/scenes/truck_crane.yaml", folder)
+    window = start_scene(folder, domain, scene=scene)
+    try:
+        run_page("edit", window.address(), scene, "--session", SESSION, "--domain", domain)
+    finally:
+        window.end()
+    window = Program(folder, "other", "window", record(folder), "--port", "0", "--json")
+    try:
+        for method, target in (("GET", "/scene.json"), ("PUT", "/scene.yaml"), ("POST", "/restart")):
+            status, _, data = send(window.address(), target, method)
+            require(status == 404 and b"slewring window SCENE" in data, f"{target} of a recording: {status}, {data}")
     finally:
         window.end()
 
@@ -460,6 +479,7 @@ CASES = {"AForeignClientWatchesAndChangesALiveSession": live, "ARecordingIsSough
          "TheDoorRefusesHostileRequests": door, "MeshesFilesAndTheWorkspaceComeByHttp": files,
          "ASessionTakesOverFromARecordingWithTheSameBits": take_over,
          "ThePageShowsChangesAndDrivesASession": page_live, "ThePageFollowsTheSliderOfARecording": page_recording,
+         "ASceneIsEditedSavedAndRestartedInThePage": page_edits,
          "ThePageOperatesAndPlots": page_inputs, "TheTypesOfThePageHold": types,
          "ADesktopOpensThePageInItsBrowser": opens_browser}
 with tempfile.TemporaryDirectory(prefix="slewring_window_") as scratch:
