@@ -141,13 +141,6 @@ def page_edits(folder):
         run_page("edit", window.address(), scene, "--session", SESSION, "--domain", domain)
     finally:
         window.end()
-    window = Program(folder, "other", "window", record(folder), "--port", "0", "--json")
-    try:
-        for method, target in (("GET", "/scene.json"), ("PUT", "/scene.yaml"), ("POST", "/restart")):
-            status, _, data = send(window.address(), target, method)
-            require(status == 404 and b"slewring window SCENE" in data, f"{target} of a recording: {status}, {data}")
-    finally:
-        window.end()
 
 
 def page_inputs(folder):
@@ -411,6 +404,9 @@ def files(folder):
         require(os.listdir(f"{folder}/state/slewring/workspaces/").count("truck_crane.json") == 1, "no file")
         require(send(address, "/workspace.json", "PUT", "x" * (2 << 20))[0] == 413, "a giant workspace was read")
         require(send(address, "/session.json", body="x")[0] == 413, "a body was taken")
+        for method, target in (("GET", "/scene.json"), ("PUT", "/scene.yaml"), ("POST", "/restart")):
+            status, _, data = send(address, target, method, "")
+            require(status == 404 and b"slewring window SCENE" in data, f"{target} of a recording: {status}, {data}")
     finally:
         window.end()
 

@@ -66,7 +66,8 @@ export class EditBar {
   #toggle(what: "problems" | "text"): void {
     this.#shown = this.#shown === what ? undefined : what;
     this.#show();
-    if (this.#shown === "text") this.#view.showLine(1);
+    const { scene, selected } = this.#context;
+    if (this.#shown === "text") this.#view.showLine(scene.elements.get(selected ?? "")?.line ?? 1);
   }
 
   #show(): void {

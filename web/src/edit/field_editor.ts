@@ -22,7 +22,8 @@ export class FieldEditor {
   #given = h("span", { class: "given" });
   #names?: HTMLDataListElement;
   #timer?: ReturnType<typeof setTimeout>;
-  #sent: string; // the text that the scene has, or that was sent last
+  #shown: string; // the text that the scene has
+  #sent: string; // the text that was sent last, or that the scene has
   #refusal = "";
 
   constructor(scene: SceneFile, element: SceneElement, info: FieldInfo) {
@@ -30,7 +31,7 @@ export class FieldEditor {
     this.#info = info;
     this.key = info.key;
     this.#path = `${element.name}.${info.key}`;
-    this.#sent = element.fields[info.key]?.text ?? "";
+    this.#shown = this.#sent = element.fields[info.key]?.text ?? "";
     this.#input = this.#inputOf(this.#sent);
     this.#input.id = `scene-${this.#path}`;
     this.#input.onkeydown = (event) => this.#takeKey(event as KeyboardEvent);
@@ -57,12 +58,15 @@ export class FieldEditor {
   // The element after a change; what the person is typing stays.
   take(element: SceneElement): void {
     const text = element.fields[this.key]?.text ?? "";
-    const isTyping = document.activeElement === this.#input && this.#input.value.trim() !== this.#sent;
-    if (text !== this.#sent && !isTyping) {
-      this.#input.value = text;
-      this.#refusal = "";
+    if (text !== this.#shown) {
+      const isTyping = document.activeElement === this.#input && this.#input.value.trim() !== this.#shown;
+      this.#shown = text;
+      if (!isTyping) {
+        this.#input.value = text;
+        this.#sent = text;
+        this.#refusal = "";
+      }
     }
-    if (!isTyping && this.#refusal === "") this.#sent = text;
     const given = element.given[this.key];
     setText(this.#given, given && text === "" ? `${given.text} from ${given.place}` : "");
     const names = this.#names ? this.#scene.namesOf(this.#info.reference!) : [];
@@ -132,8 +136,8 @@ export class FieldEditor {
     if (event.key !== "Escape") return;
     clearTimeout(this.#timer);
     this.#refusal = "";
-    this.#sent = this.#scene.elements.get(this.#path.slice(0, this.#path.indexOf(".")))?.fields[this.key]?.text ?? "";
-    this.#input.value = this.#sent;
+    this.#sent = this.#shown;
+    this.#input.value = this.#shown;
     this.#showProblems();
   }
 }

@@ -28,12 +28,13 @@ export class TextView {
 
   showLine(line: number): void {
     this.#show();
-    const height = this.#input.scrollHeight / Math.max(1, this.#input.value.split("\n").length);
-    this.#input.scrollTop = Math.max(0, (line - 4) * height);
     const lines = this.#input.value.split("\n");
     const begin = lines.slice(0, line - 1).reduce((sum, one) => sum + one.length + 1, 0);
     this.#input.focus();
     this.#input.setSelectionRange(begin, begin + (lines[line - 1]?.length ?? 0));
+    // after the browser's own way to the selection
+    this.#input.scrollTop = Math.max(0, (line - 4) * (this.#input.scrollHeight / lines.length));
+    this.#input.scrollLeft = 0;
   }
 
   async #send(): Promise<void> {
