@@ -33,6 +33,8 @@ export class EditBar {
   constructor(context: Context) {
     this.#context = context;
     this.#view = new TextView(context);
+    const end = toolButton("close", "End the editing", () => this.#close());
+    end.classList.add("end-edit");
     this.root = h(
       "section",
       { class: "edit", "aria-label": "Scene", hidden: true },
@@ -48,7 +50,7 @@ export class EditBar {
         this.#text,
         this.#save,
         this.#restart,
-        toolButton("close", "End the editing", () => this.#close()),
+        end,
       ),
       this.#list,
       this.#view.root,

@@ -5,7 +5,7 @@ import type { Context } from "../context";
 import { atMostEvery, h, setText } from "../dom";
 import { EditForm } from "../edit/edit_form";
 import type { Parameter } from "../protocol";
-import { kindOf } from "../signals";
+import { kindOf, kindOfSection } from "../signals";
 import { formatNumber } from "../units";
 import { panel, toolButton } from "./panel";
 import { ParameterField } from "./parameter_field";
@@ -63,7 +63,8 @@ export class ObjectPanel {
     const parameters = [...session.parameters.values()].filter((one) => one.name.startsWith(`${selected}.`));
     const labels = [...variables.map((v) => v.label), ...parameters.map((p) => p.name.slice(selected.length + 1))];
     this.#title.textContent = selected;
-    this.#kind.textContent = kindOf(selected, new Set(labels));
+    const section = labels.length === 0 ? this.#context.scene.elements.get(selected)?.section : undefined;
+    this.#kind.textContent = section === undefined ? kindOf(selected, new Set(labels)) : kindOfSection(section);
     const sections: HTMLElement[] = [];
     if (this.#form?.element !== selected || !this.#context.scene.isOpen) this.#form = undefined;
     if (this.#context.scene.elements.has(selected)) {

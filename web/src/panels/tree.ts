@@ -40,7 +40,12 @@ export class TreePanel {
     this.#filter.oninput = () => this.#show();
     this.#list.onkeydown = (event) => this.#takeKey(event);
     context.session.changed.on(() => this.#collect());
-    context.scene.changed.on(() => this.#collect());
+    let shown = context.scene.elements; // each reading of the text makes others
+    context.scene.changed.on(() => {
+      if (shown === context.scene.elements) return;
+      shown = context.scene.elements;
+      this.#collect();
+    });
     context.selectionChanged.on(() => this.#mark());
     this.#mark();
   }
