@@ -43,7 +43,7 @@ class SceneText {
 
   // Replaces a value, or adds the key to its element or section. An empty value removes the key.
   [[nodiscard]] TextEdit set(std::string_view path, std::string_view value) const;
-  // An element with all required fields, each with a value that lies in its range, or the first element that it may
+  // An element with all required fields, each with a value that lies in its range, or an element that it may
   // name. type: empty where the section has one type, or for the type without a name.
   [[nodiscard]] TextEdit add(std::string_view section, std::string_view type, std::string_view name) const;
   // The text of an element once more, behind it, under another name.
@@ -92,7 +92,8 @@ class SceneText {
 
   // scene_text_elements.cpp
   [[nodiscard]] std::string name_problem(std::string_view name) const;
-  [[nodiscard]] std::string first_of(std::string_view kinds) const;
+  // An element of these kinds, for the reference with this number among those of the kinds.
+  [[nodiscard]] std::string some_of(std::string_view kinds, std::size_t number) const;
   [[nodiscard]] std::string with_element(std::string_view section, std::string_view name,
                                          const std::vector<std::pair<std::string, std::string>>& fields) const;
   [[nodiscard]] TextEdit prove_read(std::string result) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/dimension.h"
 #include "multibody/model/defs.h"
@@ -32,7 +33,7 @@ std::string quantity_text(double value, Dimension dimension) {
   return is_plain_number(dimension) || unit == "1" ? fmt::format("{}", value) : fmt::format("{} {}", value, unit);
 }
 
-// A value to begin with. named: the first element that a reference may name.
+// A value to begin with. named: an element that a reference may name.
 std::string first_value(const Field& field, const std::string& named) {
   const auto number = [&field](double wanted) {
     return quantity_text(number_in(field.range, wanted), field.dimension);
@@ -82,11 +83,11 @@ std::string SceneText::name_problem(std::string_view name) const {
   return {};
 }
 
-std::string SceneText::first_of(std::string_view kinds) const {
+std::string SceneText::some_of(std::string_view kinds, std::size_t number) const {
   for (const ElementTable& table : element_tables()) {
     const Node::Entry* section = root_.find(table.section);
     if (section != nullptr && is_one_of(table.kind, kinds) && !section->value.entries.empty())
-      return section->value.entries.front().key;
+      return section->value.entries[std::min(number, section->value.entries.size() - 1)].key;
   }
   return is_one_of("body", kinds) ? std::string(multibody::kGroundName) : "";
 }
@@ -141,9 +142,10 @@ TextEdit SceneText::add(std::string_view section, std::string_view type, std::st
   if (std::string problem = name_problem(name); !problem.empty()) return refuse(std::move(problem));
   std::vector<std::pair<std::string, std::string>> fields;
   if (!table->type.empty() && !table->is_default) fields.emplace_back("type", table->type);
+  std::map<std::string_view, std::size_t> references;  // number of those of the same kinds so far
   for (const Field& field : table->fields) {
     if (field.presence != Presence::required) continue;
-    std::string named = field.reference.empty() ? "" : first_of(field.reference);
+    std::string named = field.reference.empty() ? "" : some_of(field.reference, references[field.reference]++);
     if (named.empty()) named = "none";  // the loader reports it
     fields.emplace_back(field.key, first_value(field, named));
   }

@@ -438,6 +438,16 @@ def door(folder):
                 (405, request(address, method="DELETE")), (414, request(address, "/" + "a" * 4000)),
                 (401, request(address, "/session.json")), (401, request(address, "/?token=0123", **foxglove)),
                 (400, request(address, f"/{query}", **UPGRADE)),
+                # the scene of this window: never without the state that is replaced
+                (401, request(address, "/scene.json")), (401, request(address, "/scene.yaml", "PUT")),
+                (401, request(address, "/restart?token=0123", "POST")),
+                (403, request(address, f"/restart{query}", "POST", Origin="http://evil.com")),
+                (403, request(address, f"/scene.yaml{query}", "PUT", host="evil.com")),
+                (405, request(address, f"/restart{query}")), (405, request(address, f"/other.yaml{query}", "PUT")),
+                (404, request(address, f"/scenes/../scene.yaml{query}", "PUT")),
+                (428, request(address, f"/scene.yaml{query}", "PUT")),
+                (428, request(address, f"/restart{query}", "POST")),
+                (400, request(address, f"/scene.json{query}", "POST")),
                 (403, request(address, f"/{query}", Origin="null", **foxglove))):
             require(answer[0] == expected, f"expected {expected}, got {answer}")
             require(len(answer[1]) > 10, f"{expected} without a reason")

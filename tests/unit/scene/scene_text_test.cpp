@@ -244,6 +244,13 @@ TEST(SceneText, ACopyIsTheSameElementUnderAnotherName) {
             "bodies: {A: {mass: 1}, C: {mass: 1}, B: {mass: 2}}\n");
 }
 
+TEST(SceneText, TwoReferencesOfANewElementNameTwoElements) {
+  const std::string text = parsed(text_of_crane()).add("forces", "translational", "Spring").text;
+  EXPECT_NE(text.find("  Spring:\n    type: translational\n    body1: Truck_Pillar\n    body2: Truck_LiftBoom\n"),
+            std::string::npos);
+  EXPECT_NO_THROW(static_cast<void>(load_edited(kCrane, text)));
+}
+
 // Values that lie in their ranges: reading such an element finds no fault in a single value.
 TEST(SceneText, AnElementOfEveryKindIsAddedWithItsRequiredFields) {
   const std::string path = SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml";
