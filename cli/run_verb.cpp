@@ -49,7 +49,7 @@ class TerminalWatcher final : public session::RunWatcher {
     print_window();
     text_.measure(observer.view(), now_ns);
     if (status_.is_due(now_ns) && !is_ending) status_.show(text_.text(observer.view(), status_width(mode_)), now_ns);
-    return true;
+    return window_ == nullptr || !window_->wants_restart();
   }
   void end() override {
     if (window_ != nullptr) window_->finish();

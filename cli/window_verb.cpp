@@ -11,6 +11,8 @@
 #include "cli/window_process.h"
 #include "core/failure.h"
 #include "core/installation.h"
+#include "scene/edited_scene.h"
+#include "session/interrupts.h"
 
 namespace slew::cli {
 namespace {
@@ -50,13 +52,19 @@ ExitCode open_window(Options options, const options::Command& verb) {
     options.window.recording = options.source;
     become_window(options.window);
   }
-  options.run.scene.file = options.source;
+  options.run.scene.file = scene::find_scene(options.source);
   if (!verb.has("--duration")) options.run.scene.duration = "0";
   if (!verb.has("--input")) options.run.scene.input = "none";
   if (options.window.assets.empty()) options.window.assets = options.run.assets();
-  const io_node::SessionScene session = io_node::load_session_scene(options.run.scene);
-  WindowProcess window(options.window);
-  return run_session(std::move(options.run), session, &window);
+  options.window.scene = options.run.scene.file;
+  options.window.set = scene::overrides_of(options.run.scene);
+  while (true) {
+    const io_node::SessionScene session = io_node::load_session_scene(options.run.scene);
+    WindowProcess window(options.window);
+    const ExitCode code = run_session(options.run, session, &window);
+    if (!window.wants_restart() || session::interrupt_code() != 0) return code;
+    options.window = window.options_of_next();
+  }
 }
 
 }  // namespace

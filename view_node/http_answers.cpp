@@ -32,6 +32,10 @@ HttpAnswer content_of(std::shared_ptr<const std::string> content, std::string_vi
 
 }  // namespace
 
+bool is_of_scene(Service service) noexcept {
+  return service == Service::scene || service == Service::saving || service == Service::restart;
+}
+
 HttpAnswer sentence(unsigned status, std::string text) {
   HttpAnswer answer;
   answer.status = status;
@@ -64,7 +68,8 @@ bool has_hash_in_name(std::string_view path) noexcept {
 }
 
 HttpAnswer HttpAnswers::answer(const gateway::Verdict& verdict, const HttpRequest& request) const {
-  if (verdict.service != Service::workspace && !request.body.empty())
+  const bool takes_body = verdict.service == Service::workspace || is_of_scene(verdict.service);
+  if (!takes_body && !request.body.empty())
     return sentence(413, "a request has no body here; nothing was changed; use GET");
   switch (verdict.service) {
     case Service::error:
@@ -77,6 +82,14 @@ HttpAnswer HttpAnswers::answer(const gateway::Verdict& verdict, const HttpReques
       return sentence(404, "the session has no such mesh; /session.json lists them as 'graphics'");
     case Service::workspace:
       return workspace(request);
+    case Service::scene:
+    case Service::saving:
+    case Service::restart:
+      if (def_.is_looking_only) return sentence(403, "this window is for onlookers (--view-only); nothing was changed");
+      return sentence(
+          404,
+          "this window has not started its session from a scene, whose file it therefore does not edit, nor "
+          "does it restart the session; nothing was changed; open one with 'slewring window SCENE'");
     case Service::file:
       return file(verdict.path, request);
   }

@@ -40,7 +40,7 @@ class HttpAnswers {
   HttpAnswers(const ServerDef& def, const gateway::Gateway& gateway)
       : def_(def), gateway_(gateway), workspace_(def.workspace) {}
 
-  // verdict: not of a WebSocket.
+  // verdict: not of a WebSocket. Those of a scene are refused: see scene_editing.h.
   [[nodiscard]] HttpAnswer answer(const gateway::Verdict& verdict, const HttpRequest& request) const;
 
  private:
@@ -51,6 +51,8 @@ class HttpAnswers {
   const gateway::Gateway& gateway_;
   WorkspaceFile workspace_;
 };
+
+[[nodiscard]] bool is_of_scene(gateway::Service service) noexcept;
 
 // A refusal, or what was done, as a sentence.
 [[nodiscard]] HttpAnswer sentence(unsigned status, std::string text);

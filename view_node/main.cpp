@@ -25,6 +25,15 @@ int main(int argc, char** argv) {
       .show_default()
       .group("Session");
   view_node::add_window_options(program, options);
+  program
+      .option("--scene", options.scene,
+              "file of the session's scene, which the page may edit and restart: of the command that started both")
+      .value_name("SCENE")
+      .group("Window");
+  program.option("--set", options.set, "with --scene: a setting over it")
+      .value_name("PATH=VALUE")
+      .one_value_each()
+      .group("Window");
   program.flag("--json", options.is_json, "print the addresses as JSON");
   program.action([&] {
     node::install_signal_handlers();

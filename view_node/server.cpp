@@ -24,6 +24,7 @@
 
 #include "core/failure.h"
 #include "view_node/http_answers.h"
+#include "view_node/scene_editing.h"
 
 namespace slew::view_node {
 namespace {
@@ -115,6 +116,16 @@ class Connection : public std::enable_shared_from_this<Connection> {
                                  .is_upgrade = websocket::is_upgrade(request)};
     const gateway::Verdict verdict = gateway::judge(def_.door, asked);
     if (verdict.service == Service::websocket) return accept(verdict.subprotocol);
+    if (is_of_scene(verdict.service) && def_.editing != nullptr && !def_.is_looking_only) {
+      deadline_ns_ = INT64_MAX;  // a scene's check takes its time
+      return def_.editing->take({.service = verdict.service,
+                                 .is_change = asked.method != "GET" && asked.method != "HEAD",
+                                 .if_match = std::string(view(request[http::field::if_match])),
+                                 .body = std::move(request.body())},
+                                [connection = weak_from_this()](const HttpAnswer& given) {
+                                  if (const auto self = connection.lock()) self->answer(given);
+                                });
+    }
     answer(answers_.answer(
         verdict, {.method = asked.method,
                   .accept_encoding = view(request[http::field::accept_encoding]),
@@ -123,6 +134,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   void answer(const HttpAnswer& given) {
+    if (is_over_) return;
     const auto beast = [](std::string_view text) { return boost::beast::string_view(text.data(), text.size()); };
     response_.result(given.status);
     response_.set(http::field::server, "slewring");

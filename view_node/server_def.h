@@ -12,6 +12,8 @@
 
 namespace slew::view_node {
 
+class SceneEditing;
+
 struct ServerDef {
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;  // 0: any free one
@@ -20,6 +22,7 @@ struct ServerDef {
   std::filesystem::path workspace;    // file of the page's workspace; empty: none
   bool is_looking_only = false;       // nothing is written
   std::function<Json()> description;  // /session.json
+  SceneEditing* editing = nullptr;    // outlives the server; null: the window has no scene of its own
 };
 
 }  // namespace slew::view_node

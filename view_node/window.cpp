@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -23,6 +24,7 @@
 #include "view_node/page_files.h"
 #include "view_node/recorded_source.h"
 #include "view_node/saved_files.h"
+#include "view_node/scene_editing.h"
 #include "view_node/server.h"
 #include "view_node/taken_session.h"
 #include "view_node/workspace_file.h"
@@ -230,7 +232,15 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
   gateway_def.assets = std::move(meshes.assets);
   gateway::Gateway gateway(std::move(gateway_def), std::move(scene));
   receiver.set_gateway(&gateway);
-  def.description = [&] { return gateway.description(view); };
+  def.description = [&] {
+    Json description = gateway.description(view);
+    // the page offers to edit it
+    if (!options.scene.empty() && !options.is_looking_only)
+      description["scene_file"] = std::filesystem::path(options.scene).filename().string();
+    return description;
+  };
+  std::optional<SceneEditing> editing;
+  if (!options.scene.empty()) def.editing = &editing.emplace(options.scene, options.set);
   const std::string token = def.door.token;
   Server server(std::move(def), gateway);
   show_address(options, server, "session '" + observer->session_name() + "'", token, report);
@@ -242,6 +252,8 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
     const std::int64_t now_ns = monotonic_ns();
     if (!is_over()) gateway.poll(view, now_ns);
     saved.poll();
+    if (editing) editing->poll();
+    if (editing && editing->takes_restart()) report(std::string(kRestartLine));
     if (const auto text = silence.look(view, now_ns)) {
       report(*text);
       gateway.add_event(gateway::LogLevel::warning, "window", *text);

@@ -57,6 +57,8 @@ std::vector<std::string> window_arguments(const WindowOptions& options) {
   add("--web", options.web);
   add("--saves", options.saves);
   add("--assets", options.assets);
+  add("--scene", options.scene);
+  for (const std::string& setting : options.set) add("--set", setting);
   if (!options.opens_browser) arguments.emplace_back("--no-browser");
   if (options.is_looking_only) arguments.emplace_back("--view-only");
   if (options.is_json) arguments.emplace_back("--json");

@@ -4,12 +4,16 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "node/session_options.h"
 #include "options/options.h"
 
 namespace slew::view_node {
+
+// The line by which a window requests another session with its scene from the command that started both.
+inline constexpr std::string_view kRestartLine = "the page requests a restart with the saved scene";
 
 inline constexpr std::uint32_t kDefaultPort = 8765;  // the one that Foxglove and Lichtblick propose
 
@@ -25,15 +29,17 @@ struct WindowOptions {
   std::string web;                   // folder of the page; empty: the built one
   std::string saves = "saved";       // folder of saved states
   std::string assets;                // folder of the scene's files; empty: the scene's or recording's own, or this one
+  std::string scene;                 // file of the session's scene, which the page may edit; empty: none
+  std::vector<std::string> set;      // settings over it
   bool opens_browser = true;         // where there is a desktop
   bool is_looking_only = false;
   bool is_json = false;
 };
 
-// All but the session's and the recording.
+// All but those of the session, the recording and the scene.
 void add_window_options(options::Command& verb, WindowOptions& options);
 
-// The same as command-line arguments, for a child process: with those of the session or the recording.
+// The same as command-line arguments, for a child process: with those of the session, the recording and the scene.
 [[nodiscard]] std::vector<std::string> window_arguments(const WindowOptions& options);
 
 }  // namespace slew::view_node

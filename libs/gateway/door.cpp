@@ -4,14 +4,27 @@
 #include <arpa/inet.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace slew::gateway {
 namespace {
 
 constexpr std::size_t kMaxTarget = 2048;
 constexpr std::string_view kTokenKey = "token=";
-constexpr std::string_view kSessionPath = "session.json", kWorkspacePath = "workspace.json";
 constexpr std::string_view kAssetFolder = "assets/", kAssetEnding = ".glb";
+
+// Paths that are no files of the page, and what they take beside GET and HEAD; those with a method alone take no other.
+struct OwnPath {
+  std::string_view path;
+  Service service;
+  std::string_view method;
+  bool is_read = true;
+};
+constexpr OwnPath kOwnPaths[] = {{"session.json", Service::session, ""},
+                                 {"workspace.json", Service::workspace, "PUT"},
+                                 {"scene.json", Service::scene, "POST"},
+                                 {"scene.yaml", Service::saving, "PUT", false},
+                                 {"restart", Service::restart, "POST", false}};
 
 Verdict error(unsigned status, std::string text) {
   Verdict verdict;
@@ -134,22 +147,24 @@ Verdict judge(const DoorDef& door, const Request& request) {
   if (!path) {
     return error(404, "there is no such file; paths have letters, digits, '-', '_', '.' and '/', and no hidden names");
   }
-  const bool is_workspace = *path == kWorkspacePath;
-  if (request.method != "GET" && request.method != "HEAD" && !(is_workspace && request.method == "PUT"))
-    return error(405, "the method is not supported; nothing was changed; use GET, or PUT for /workspace.json");
+  const auto own = std::ranges::find(kOwnPaths, std::string_view(*path), &OwnPath::path);
+  const bool is_own = own != std::end(kOwnPaths);
+  const bool is_read = request.method == "GET" || request.method == "HEAD";
+  if (is_read ? is_own && !own->is_read : !is_own || request.method != own->method) {
+    return error(405,
+                 "the method is not supported; nothing was changed; use GET, or PUT for /workspace.json and "
+                 "/scene.yaml, or POST for /scene.json and /restart");
+  }
   const std::string_view query = mark == std::string_view::npos ? std::string_view() : request.target.substr(mark + 1);
   const bool is_asset = path->starts_with(kAssetFolder) && path->ends_with(kAssetEnding);
-  const bool needs_token = request.is_upgrade || is_asset || is_workspace || *path == kSessionPath;
+  const bool needs_token = request.is_upgrade || is_asset || is_own;
   if (needs_token && !door.token.empty() && !is_same(token_of(query), door.token)) {
     return error(401, "the token is missing or wrong; nothing was sent; add ?token=... to the address");
   }
   if (request.is_upgrade) return judge_upgrade(request);
   Verdict verdict;
   verdict.status = 200;
-  verdict.service = *path == kSessionPath ? Service::session
-                    : is_workspace        ? Service::workspace
-                    : is_asset            ? Service::asset
-                                          : Service::file;
+  verdict.service = is_own ? own->service : is_asset ? Service::asset : Service::file;
   verdict.path = is_asset ? path->substr(kAssetFolder.size()) : *path;
   return verdict;
 }

@@ -39,6 +39,9 @@ enum class Service : std::uint8_t {
   session,    // /session.json
   asset,      // /assets/NAME.glb: of the session, as the protocol has it
   workspace,  // /workspace.json: of the page, also with PUT
+  scene,      // /scene.json: the scene that can be edited; POST: with a change of a text
+  saving,     // /scene.yaml, PUT: the text into the scene's file
+  restart,    // /restart, POST: the session begins again with the file
   file
 };
 

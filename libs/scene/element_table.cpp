@@ -2,6 +2,7 @@
 #include "scene/element_table.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace slew::scene {
 
@@ -19,6 +20,17 @@ const ElementTable* find_element_table(std::string_view section, const Node& ele
     if (table.type.empty() || is_named || (type == nullptr && table.is_default)) return &table;
   }
   return nullptr;
+}
+
+bool names_elements(std::string_view key, std::span<const Field> fields) {
+  // keys whose texts begin with the name of a variable, "Cyl_Lift.force", or a pattern
+  constexpr std::string_view kVariableKeys[] = {"variable", "variables", "condition", "conditions"};
+  if (key.starts_with(kFrameKey) ||
+      std::find(std::begin(kVariableKeys), std::end(kVariableKeys), key) != std::end(kVariableKeys))
+    return true;
+  const auto field = std::find_if(fields.begin(), fields.end(), [key](const Field& one) { return one.key == key; });
+  if (field == fields.end()) return false;
+  return !field->reference.empty() || field->type == FieldType::triple || field->type == FieldType::triples;
 }
 
 bool is_element_section(std::string_view name) {

@@ -2,6 +2,7 @@
 // Keys of a scene that the loader resolves before the sections are read, and the table of an element by its type.
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +27,10 @@ inline constexpr std::string_view kFrameKey = "frame";    // frame1, frame2: a n
 
 // The table of an element's type; null: the type is missing or unknown.
 [[nodiscard]] const ElementTable* find_element_table(std::string_view section, const Node& element);
+
+// The texts of this key name elements: a field with a reference, a named point ("Boom.tip"), a variable or condition
+// ("Cyl.force"). fields: those of the element's type.
+[[nodiscard]] bool names_elements(std::string_view key, std::span<const Field> fields);
 
 [[nodiscard]] bool is_element_section(std::string_view name);
 

@@ -24,8 +24,10 @@
 namespace slew::scene {
 namespace {
 
-std::optional<Node> read_tree(const std::string& path, int source, Report& report) {
-  const std::optional<SourceText> text = read_source(path, source, report);
+// given: the content of the file; null: it is read.
+std::optional<Node> read_tree(const std::string& path, const std::string* given, int source, Report& report) {
+  const std::optional<SourceText> text =
+      given != nullptr ? check_source(*given, source, report) : read_source(path, source, report);
   return text ? parse_yaml(*text, report) : std::nullopt;
 }
 
@@ -39,15 +41,15 @@ class IncludeReader {
       : load_context_(std::move(load_context)), includes_(includes), report_(report) {}
 
   // The scene with what it includes; empty after a problem. file: its name in its folder.
-  std::optional<Node> read(const std::string& path, const std::string& file) {
+  std::optional<Node> read(const std::string& path, const std::string& file, const std::string* text) {
     open_.push_back(file);
-    return read(path);
+    return read(path, text);
   }
 
  private:
-  std::optional<Node> read(const std::string& path) {
+  std::optional<Node> read(const std::string& path, const std::string* text) {
     const int source = report_.add_source(path);
-    std::optional<Node> tree = read_tree(path, source, report_);
+    std::optional<Node> tree = read_tree(path, text, source, report_);
     if (!tree) return std::nullopt;
     const auto include = take(*tree, kIncludeKey);
     if (include && !add_included(include->value, *tree)) return std::nullopt;
@@ -148,7 +150,7 @@ class IncludeReader {
     }
     ++files_;
     open_.push_back(file);
-    std::optional<Node> tree = read(load_context_.path_of(name.text));
+    std::optional<Node> tree = read(load_context_.path_of(name.text), nullptr);
     open_.pop_back();
     if (!tree) report_.add(name.mark, "include", {describe(name) + " cannot be included", "", ""});
     return tree;
@@ -253,10 +255,11 @@ std::optional<ValueProblem> LoadContext::refusal_of(const std::string& file) con
                       "a file in that folder or below", ""};
 }
 
-std::optional<Node> read_with_includes(const std::string& path, Report& report, Includes includes) {
+std::optional<Node> read_with_includes(const std::string& path, Report& report, Includes includes,
+                                       const std::string* text) {
   const std::filesystem::path file(path);
   IncludeReader reader(LoadContext{true, file.parent_path().string()}, includes, report);
-  return reader.read(path, file.filename().string());
+  return reader.read(path, file.filename().string(), text);
 }
 
 bool expand(Node& root, const Overrides& overrides, Report& report, std::vector<std::string>* warnings,

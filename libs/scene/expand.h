@@ -38,9 +38,10 @@ inline constexpr std::size_t kMaxIncludedFiles = 256;
 enum class Includes : std::uint8_t { plain, with_prefix };
 
 // Reads the file and lays it over the files its `include` names, and those that they include; all names are relative to
-// the folder of the file. Problems go to the report.
+// the folder of the file. text: stands for the content of the file, which is then not read. Problems go to the report.
 [[nodiscard]] std::optional<Node> read_with_includes(const std::string& path, Report& report,
-                                                     Includes includes = Includes::plain);
+                                                     Includes includes = Includes::plain,
+                                                     const std::string* text = nullptr);
 
 // The scene's tree without parameters, expressions, templates, groups and named points. overrides: "PARAMETER=VALUE" is
 // set before, "PATH=VALUE" after instances are made; their problems have the label "--set PATH=VALUE". warnings: those

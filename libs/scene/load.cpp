@@ -12,6 +12,7 @@
 #include "multibody/model/model.h"
 #include "scene/assets.h"
 #include "scene/canonical.h"
+#include "scene/edited_scene.h"
 #include "scene/element_table.h"
 #include "scene/expand.h"
 #include "scene/field_reader.h"
@@ -548,10 +549,13 @@ void read_back(const Scene& scene) {
 
 }  // namespace
 
-Scene load_file(const std::string& path, const Overrides& overrides) {
+namespace {
+
+// text: null: that of the file.
+Scene load_from(const std::string& path, const std::string* text, const Overrides& overrides) {
   return guarded(path, [&] {
     Report report;
-    std::optional<Node> root = read_with_includes(path, report, Includes::with_prefix);
+    std::optional<Node> root = read_with_includes(path, report, Includes::with_prefix, text);
     if (!root) report.fail(kMaxReportedProblems);
     const std::filesystem::path file(path);
     LoadContext load_context{true, file.parent_path().string()};
@@ -560,6 +564,16 @@ Scene load_file(const std::string& path, const Overrides& overrides) {
     read_back(scene);
     return scene;
   });
+}
+
+}  // namespace
+
+Scene load_file(const std::string& path, const Overrides& overrides) {
+  return load_from(path, nullptr, overrides);
+}
+
+Scene load_edited(const std::string& path, const std::string& text, const Overrides& overrides) {
+  return load_from(path, &text, overrides);
 }
 
 Scene load_text(std::string text, const std::string& name, const Overrides& overrides,

@@ -25,16 +25,6 @@ std::string_view kind_of_section(std::string_view section) {
   return {};
 }
 
-// kinds: one, or several as in "component or force"
-bool is_one_of(std::string_view kind, std::string_view kinds) {
-  constexpr std::string_view kOr = " or ";
-  for (std::size_t end = kinds.find(kOr); end != std::string_view::npos; end = kinds.find(kOr)) {
-    if (kinds.substr(0, end) == kind) return true;
-    kinds.remove_prefix(end + kOr.size());
-  }
-  return kinds == kind;
-}
-
 bool is_flexible(const Node& body) {
   const Node::Entry* type = body.find("type");
   return type != nullptr && type->value.kind == Node::Kind::scalar &&
@@ -48,6 +38,15 @@ std::string with_article(std::string_view kind) {
 }
 
 }  // namespace
+
+bool is_one_of(std::string_view kind, std::string_view kinds) {
+  constexpr std::string_view kOr = " or ";
+  for (std::size_t end = kinds.find(kOr); end != std::string_view::npos; end = kinds.find(kOr)) {
+    if (kinds.substr(0, end) == kind) return true;
+    kinds.remove_prefix(end + kOr.size());
+  }
+  return kinds == kind;
+}
 
 bool is_word(std::string_view name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };

@@ -37,6 +37,9 @@ class NameTable {
   std::set<std::string, std::less<>> flexible_;  // bodies whose nodes are bodies as well: "Boom.Node20"
 };
 
+// kinds: one, or several as in "component or force".
+[[nodiscard]] bool is_one_of(std::string_view kind, std::string_view kinds);
+
 // True for letters, digits and _ that begin with a letter or _.
 [[nodiscard]] bool is_word(std::string_view name);
 

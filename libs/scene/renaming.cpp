@@ -2,7 +2,6 @@
 #include "scene/renaming.h"
 
 #include <algorithm>
-#include <iterator>
 #include <set>
 #include <string_view>
 
@@ -13,9 +12,6 @@
 
 namespace slew::scene {
 namespace {
-
-// keys whose texts begin with the name of a variable, "Cyl_Lift.force", or a pattern
-constexpr std::string_view kVariableKeys[] = {"variable", "variables", "condition", "conditions"};
 
 class Renaming {
  public:
@@ -57,14 +53,7 @@ class Renaming {
 
   void rename_fields(std::span<const Field> fields, Node& map) {
     for (Node::Entry& entry : map.entries) {
-      const auto field =
-          std::find_if(fields.begin(), fields.end(), [&](const Field& one) { return one.key == entry.key; });
-      const bool is_point =
-          field != fields.end() && (field->type == FieldType::triple || field->type == FieldType::triples);
-      const bool is_reference = field != fields.end() && !field->reference.empty();
-      const bool is_variable =
-          std::find(std::begin(kVariableKeys), std::end(kVariableKeys), entry.key) != std::end(kVariableKeys);
-      if (is_reference || is_point || is_variable || entry.key.starts_with(kFrameKey)) rename_texts(entry.value);
+      if (names_elements(entry.key, fields)) rename_texts(entry.value);
     }
   }
 

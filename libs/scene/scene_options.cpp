@@ -10,6 +10,7 @@
 #include "core/failure.h"
 #include "core/installation.h"
 #include "scene/canonical.h"
+#include "scene/edited_scene.h"
 #include "scene/script_reader.h"
 
 namespace slew::scene {
@@ -136,11 +137,15 @@ scene::Scene with_input(scene::Scene scene, const SceneOptions& options) {
 
 }  // namespace
 
-scene::Scene load_scene(const SceneOptions& options) {
-  scene::Overrides overrides = options.overrides;
-  const scene::Overrides more = of_session(options);
+Overrides overrides_of(const SceneOptions& options) {
+  Overrides overrides = options.overrides;
+  const Overrides more = of_session(options);
   overrides.insert(overrides.end(), more.begin(), more.end());
-  return with_input(scene::load_file(options.file, overrides), options);
+  return overrides;
+}
+
+scene::Scene load_scene(const SceneOptions& options) {
+  return with_input(scene::load_file(options.file, overrides_of(options)), options);
 }
 
 namespace {

@@ -43,6 +43,17 @@ Mark SourceText::mark_at(std::size_t byte) const {
   return {source, static_cast<int>(line), 1 + characters(std::string_view(text).substr(start, byte - start))};
 }
 
+std::size_t SourceText::byte_of(const Mark& mark) const {
+  const auto line = static_cast<std::size_t>(mark.line);
+  if (line == 0 || line > line_start.size()) return text.size();
+  std::size_t at = line_start[line - 1];
+  for (int passed = 1; at < text.size(); ++at) {
+    const bool begins_character = (static_cast<std::uint8_t>(text[at]) & 0xC0) != 0x80;
+    if (begins_character && passed++ == mark.column) break;
+  }
+  return at;
+}
+
 std::string text_problem(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); i += sequence_length(text, i)) {
     std::string problem = character_problem(text, i);

@@ -22,6 +22,8 @@ struct SourceText {
 
   // Mark of a byte: line and column from 1, column counted in characters.
   [[nodiscard]] Mark mark_at(std::size_t byte) const;
+  // Byte of a mark's line and column; at most the size of the text.
+  [[nodiscard]] std::size_t byte_of(const Mark& mark) const;
 };
 
 // Reads a regular file of at most `most` bytes; a problem goes to the report and the result is empty.

@@ -64,7 +64,7 @@ class TreeBuilder {
         return open(Node::Kind::map, mark, event.data.mapping_start.style == YAML_FLOW_MAPPING_STYLE);
       case YAML_SEQUENCE_END_EVENT:
       case YAML_MAPPING_END_EVENT:
-        close();
+        close(place(event.end_mark));
         return true;
       default:
         return true;
@@ -108,15 +108,7 @@ class TreeBuilder {
     return {source_.source, static_cast<int>(mark.line) + 1, static_cast<int>(mark.column) + 1};
   }
   // text at a mark, which counts characters
-  [[nodiscard]] std::size_t byte_of(const yaml_mark_t& mark) const {
-    if (mark.line >= source_.line_start.size()) return source_.text.size();
-    std::size_t at = source_.line_start[mark.line];
-    for (std::size_t passed = 0; at < source_.text.size(); ++at) {
-      const bool begins_character = (static_cast<unsigned char>(source_.text[at]) & 0xC0) != 0x80;
-      if (begins_character && passed++ == mark.column) break;
-    }
-    return at;
-  }
+  [[nodiscard]] std::size_t byte_of(const yaml_mark_t& mark) const { return source_.byte_of(place(mark)); }
   // the parser's messages in terms of the scene's author
 
   // an unclosed item is reported at its opening
@@ -181,6 +173,7 @@ class TreeBuilder {
     refuse_decoration(event.start_mark, scalar.anchor, scalar.tag);
     Node node;
     node.mark = place(event.start_mark);
+    node.end = place(event.end_mark);
     node.text.assign(reinterpret_cast<const char*>(scalar.value), scalar.length);
     if (has_expressions_) restore_signs(node.text);
     node.is_quoted = scalar.style != YAML_PLAIN_SCALAR_STYLE;
@@ -213,11 +206,21 @@ class TreeBuilder {
     open_.push_back(std::move(level));
     return true;
   }
-  void close() {
+  void close(const Mark& end) {
     Node node = std::move(open_.back().node);
+    // without brackets the parser reports the next token
+    const bool is_in_brackets = open_.back().is_in_brackets;
+    node.end = is_in_brackets ? end : node.kind == Node::Kind::map ? last_end(node.entries) : last_end(node.items);
     open_.pop_back();
     if (node.kind == Node::Kind::map) drop_duplicates(node);
     accept(std::move(node));
+  }
+
+  [[nodiscard]] static Mark last_end(const std::vector<Node::Entry>& entries) {
+    return entries.empty() ? Mark{} : entries.back().value.end;
+  }
+  [[nodiscard]] static Mark last_end(const std::vector<Node>& items) {
+    return items.empty() ? Mark{} : items.back().end;
   }
 
   // Moves a finished node to its place: the root, a list, a key or a key's value.

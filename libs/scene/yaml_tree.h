@@ -40,6 +40,7 @@ struct Node {
   std::vector<Entry> entries;         // map, in file order
   std::vector<Duplicate> duplicates;  // map: repeated keys; the reader of the map reports them
   Mark mark;
+  Mark end;  // behind its last character; of a block scalar: behind the lines that may belong to it
 
   [[nodiscard]] const Entry* find(std::string_view key) const;
   [[nodiscard]] Entry* find(std::string_view key);

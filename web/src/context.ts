@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What all parts of the page share: the session, the selected element, and how things are shown.
 import { Emitter } from "./dom";
+import { SceneFile } from "./edit/scene_file";
 import type { Session } from "./session";
 import { displayUnit, type DisplayUnit, type UnitSystem } from "./units";
 
@@ -8,10 +9,12 @@ export type Theme = "auto" | "light" | "dark";
 
 export class Context {
   readonly session: Session;
+  readonly scene: SceneFile; // its text, where the window has it
   readonly selectionChanged = new Emitter<string | undefined>();
   readonly themeChanged = new Emitter();
   readonly unitsChanged = new Emitter();
   readonly workspaceChanged = new Emitter(); // something that a workspace keeps
+  readonly fieldWanted = new Emitter<{ element: string; key: string }>(); // of the scene's text, to be edited
   readonly plotWanted = new Emitter<string>(); // a variable, for the plot that was used last
 
   selected?: string;
@@ -21,6 +24,7 @@ export class Context {
 
   constructor(session: Session) {
     this.session = session;
+    this.scene = new SceneFile(session);
     this.#darkMedia.addEventListener("change", () => this.#applyTheme());
     this.#applyTheme();
   }

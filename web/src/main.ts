@@ -8,9 +8,11 @@ import "./style/view.css";
 import "./style/plots.css";
 import "./style/operate.css";
 import "./style/health.css";
+import "./style/edit.css";
 import "./style/narrow.css";
 import { Context } from "./context";
 import { download } from "./dom";
+import { EditBar } from "./edit/edit_bar";
 import { Layout } from "./layout";
 import { OperatePanel } from "./operate/operate_panel";
 import { HealthPanel } from "./panels/health";
@@ -140,6 +142,7 @@ document
   .getElementById("page")!
   .append(
     new TopBar(context, menu).root,
+    new EditBar(context).root,
     layout.root,
     new PlaybackBar(context).root,
     layout.tabBar,

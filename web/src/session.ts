@@ -34,6 +34,7 @@ interface Description {
   scene: string;
   is_recording: boolean;
   may_steer: boolean;
+  scene_file?: string; // that this page may edit
   inputs: InputInfo[];
 }
 
@@ -214,6 +215,7 @@ export class Session {
     this.info = info;
     this.lostReason = undefined;
     if (isRestart) {
+      if (isNew) this.#forgetMachine();
       this.samples.clear();
       this.log.length = isNew ? 0 : this.log.length;
       this.restarted.emit();
@@ -228,6 +230,14 @@ export class Session {
       }
     }
     this.changed.emit();
+  }
+
+  // Another session at this address may have another machine.
+  #forgetMachine(): void {
+    this.elements.clear();
+    this.variables.clear();
+    this.values.clear();
+    this.parameters.clear();
   }
 
   #takeTime(time: number): void {

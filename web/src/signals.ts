@@ -53,6 +53,7 @@ export const kinds = [
   "Volumes",
   "Hydraulics",
   "Sensors and others",
+  "Scene",
   "Session",
 ] as const;
 export type Kind = (typeof kinds)[number];
@@ -75,4 +76,20 @@ export function kindOf(element: string, labels: Set<string>): Kind {
   if ([...labels].some((label) => /friction|stiffness/.test(label))) return "Contacts";
   if ([...labels].some((label) => /flow|pressure|bulk_modulus|spool|orifice/.test(label))) return "Hydraulics";
   return "Sensors and others";
+}
+
+const kindsOfSections: Record<string, Kind> = {
+  inputs: "Inputs",
+  bodies: "Bodies",
+  joints: "Joints",
+  forces: "Forces",
+  contacts: "Contacts",
+  volumes: "Volumes",
+  components: "Hydraulics",
+  sensors: "Sensors and others",
+};
+
+// Of an element that has no variables, by its section in the scene.
+export function kindOfSection(section: string): Kind {
+  return kindsOfSections[section] ?? "Scene";
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of the window in a browser:  page.mjs CASE ADDRESS SLEWRING CHROMIUM [ARGUMENT...]
 //
-// live, inputs: ARGUMENT are those with which `slewring` finds the session. recording: ARGUMENT is the recording. Ends
-// with an error, and a sentence, at the first thing that is not as it should be.
+// live, inputs: ARGUMENT are those with which `slewring` finds the session. edit: before them the file of its scene.
+// recording: ARGUMENT is the recording. Ends with an error, and a sentence, at the first thing that is not as it should be.
 import foxglove from "@foxglove/ws-protocol";
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -345,6 +345,45 @@ async function inputs({ page, context }) {
   await isNeutralWhenSuspended(page, context);
 }
 
+// ---- the scene ----------------------------------------------------------------------------------------------------------
+
+// A field with an error and without, an element copied and taken back, the file, and the session that begins again.
+async function edit({ page }) {
+  const [file, ...ofSession] = rest;
+  const before = readFileSync(file, "utf8");
+  const field = page.locator('.scene-field[data-field="mass"]');
+  const count = page.locator(".problem-count");
+  const save = page.locator('.edit-bar button:text-is("Save")');
+  await select(page, "Bag");
+  await page.click('[aria-label="Edit the scene"]');
+  await field.locator("input").fill("-5 kg");
+  await waitFor("the problem at the field", async () =>
+    (await field.locator(".note").textContent()).includes("out of range"),
+  );
+  require((await count.textContent()) === "1 problem", `the page counts ${await count.textContent()}`);
+  require(await save.isDisabled(), "a scene with a problem can be saved");
+  await field.locator("input").fill("650 kg # heavy");
+  await waitFor("the refusal", async () => (await field.locator(".note").textContent()).includes("needs quotes"));
+  await field.locator("input").fill("650 kg");
+  await waitFor("no problem", async () => (await count.textContent()) === "No problems");
+  await page.click('[aria-label="Copy the element"]');
+  await page.locator('.dialog button:text-is("Copy")').click();
+  await page.waitForSelector('.row.is-new[data-element="Bag_2"]');
+  await page.locator(".panel-tree h2").click();
+  await page.keyboard.press("Control+z");
+  await page.waitForSelector('.row[data-element="Bag_2"]', { state: "detached" });
+  require(readFileSync(file, "utf8") === before, "the file was written before it was saved");
+  await save.click();
+  const expected = before.replace("    mass: 500 kg\n", "    mass: 650 kg\n");
+  await waitFor("the file", () => readFileSync(file, "utf8") === expected);
+  await page.click('.edit-bar button:text-is("Restart")');
+  await page.waitForSelector(".mode.is-not-connected");
+  await page.waitForSelector(".mode.is-running");
+  const mass = JSON.parse(run("param", "get", "Bag.mass", ...ofSession, "--json")).value;
+  require(mass === 650, `Bag.mass is ${mass} kg after the restart`);
+  console.log("the scene was edited, saved and restarted at the same address");
+}
+
 // ---- a recording --------------------------------------------------------------------------------------------------------
 
 async function recording({ page }) {
@@ -380,7 +419,7 @@ async function recording({ page }) {
 
 const opened = await openPage();
 try {
-  await { live, inputs, recording }[name](opened);
+  await { live, inputs, edit, recording }[name](opened);
   require(opened.errors.length === 0, `errors in the page: ${opened.errors.join("\n")}`);
 } catch (error) {
   console.error(`FAILED: ${error.message}`);

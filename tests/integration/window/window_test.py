@@ -91,9 +91,9 @@ class Program:
             sys.exit("FAILED: a program does not end at SIGINT")
 
 
-def start_scene(folder, domain, *more):
+def start_scene(folder, domain, *more, scene=f"{SOURCES}/scenes/truck_crane.yaml"):
     """The crane with its window, from one command. A machine that is busy keeps up with 4 ms."""
-    return Program(folder, "window", "window", f"{SOURCES}/scenes/truck_crane.yaml", "--port", "0", "--json",
+    return Program(folder, "window", "window", scene, "--port", "0", "--json",
                    "--session", SESSION, "--domain", domain, "--step", "4 ms", "--no-record", "--quiet",
                    "--set", "session.give_up_after=60 s", "--set", "session.controller_timeout=60 s", *more)
 
@@ -127,6 +127,18 @@ def page_live(folder, case="live"):
     window = start_scene(folder, domain)
     try:
         run_page(case, window.address(), "--session", SESSION, "--domain", domain)
+    finally:
+        window.end()
+
+
+def page_edits(folder):
+    need_page()
+    domain = take_domain()
+    shutil.copytree(f"{SOURCES}/scenes/meshes", f"{folder}/meshes")
+    scene = shutil.copy(f"{SOURCES}/scenes/truck_crane.yaml", folder)
+    window = start_scene(folder, domain, scene=scene)
+    try:
+        run_page("edit", window.address(), scene, "--session", SESSION, "--domain", domain)
     finally:
         window.end()
 
@@ -392,6 +404,9 @@ def files(folder):
         require(os.listdir(f"{folder}/state/slewring/workspaces/").count("truck_crane.json") == 1, "no file")
         require(send(address, "/workspace.json", "PUT", "x" * (2 << 20))[0] == 413, "a giant workspace was read")
         require(send(address, "/session.json", body="x")[0] == 413, "a body was taken")
+        for method, target in (("GET", "/scene.json"), ("PUT", "/scene.yaml"), ("POST", "/restart")):
+            status, _, data = send(address, target, method, "")
+            require(status == 404 and b"slewring window SCENE" in data, f"{target} of a recording: {status}, {data}")
     finally:
         window.end()
 
@@ -423,6 +438,16 @@ def door(folder):
                 (405, request(address, method="DELETE")), (414, request(address, "/" + "a" * 4000)),
                 (401, request(address, "/session.json")), (401, request(address, "/?token=0123", **foxglove)),
                 (400, request(address, f"/{query}", **UPGRADE)),
+                # the scene of this window: never without the state that is replaced
+                (401, request(address, "/scene.json")), (401, request(address, "/scene.yaml", "PUT")),
+                (401, request(address, "/restart?token=0123", "POST")),
+                (403, request(address, f"/restart{query}", "POST", Origin="http://evil.com")),
+                (403, request(address, f"/scene.yaml{query}", "PUT", host="evil.com")),
+                (405, request(address, f"/restart{query}")), (405, request(address, f"/other.yaml{query}", "PUT")),
+                (404, request(address, f"/scenes/../scene.yaml{query}", "PUT")),
+                (428, request(address, f"/scene.yaml{query}", "PUT")),
+                (428, request(address, f"/restart{query}", "POST")),
+                (400, request(address, f"/scene.json{query}", "POST")),
                 (403, request(address, f"/{query}", Origin="null", **foxglove))):
             require(answer[0] == expected, f"expected {expected}, got {answer}")
             require(len(answer[1]) > 10, f"{expected} without a reason")
@@ -460,6 +485,7 @@ CASES = {"AForeignClientWatchesAndChangesALiveSession": live, "ARecordingIsSough
          "TheDoorRefusesHostileRequests": door, "MeshesFilesAndTheWorkspaceComeByHttp": files,
          "ASessionTakesOverFromARecordingWithTheSameBits": take_over,
          "ThePageShowsChangesAndDrivesASession": page_live, "ThePageFollowsTheSliderOfARecording": page_recording,
+         "ASceneIsEditedSavedAndRestartedInThePage": page_edits,
          "ThePageOperatesAndPlots": page_inputs, "TheTypesOfThePageHold": types,
          "ADesktopOpensThePageInItsBrowser": opens_browser}
 with tempfile.TemporaryDirectory(prefix="slewring_window_") as scratch:

@@ -143,4 +143,15 @@ TEST_F(HttpAnswersTest, AWorkspaceLiesInTheStateFolderUnderThePlainNameOfItsScen
   EXPECT_EQ(workspace_path("crane"), "/home/x/.local/state/slewring/workspaces/crane.json");
 }
 
+TEST_F(HttpAnswersTest, AWindowWithoutASceneOfItsOwnNeitherEditsNorRestarts) {
+  for (const Service service : {Service::scene, Service::saving, Service::restart}) {
+    const HttpAnswer other = answers.answer(verdict(service), {"POST", "", {}, "{}"});
+    EXPECT_EQ(other.status, 404u);
+    EXPECT_NE(other.content->find("slewring window SCENE"), std::string::npos);
+  }
+  def.is_looking_only = true;
+  for (const Service service : {Service::scene, Service::saving, Service::restart})
+    EXPECT_EQ(answers.answer(verdict(service), {"POST", "", {}, "{}"}).status, 403u);
+}
+
 }  // namespace http_answers_test

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The selected element: its variables with their present values, and its live parameters as fields.
+// The selected element: its variables with their present values, its live parameters as fields, and, while the scene is
+// edited, its fields in the scene's text.
 import type { Context } from "../context";
 import { atMostEvery, h, setText } from "../dom";
+import { EditForm } from "../edit/edit_form";
 import type { Parameter } from "../protocol";
-import { kindOf } from "../signals";
+import { kindOf, kindOfSection } from "../signals";
 import { formatNumber } from "../units";
 import { panel, toolButton } from "./panel";
 import { ParameterField } from "./parameter_field";
@@ -20,15 +22,22 @@ export class ObjectPanel {
   #values: { name: string; value: Element; unit: Element }[] = [];
   #fields = new Map<string, ParameterField>();
   #stopWatching?: () => void;
+  #edit = toolButton("edit", "Edit the scene", () => void this.#toggleEdit(), "Edit");
+  #form?: EditForm;
 
   constructor(context: Context) {
     this.#context = context;
-    this.root = panel("object", this.#title, [this.#kind], this.#body);
+    this.root = panel("object", this.#title, [this.#kind, this.#edit], this.#body);
     const show = atMostEvery(kShowEveryMs, () => this.#showValues());
     context.session.valuesChanged.on(show);
     context.unitsChanged.on(show);
     context.selectionChanged.on(() => this.#build());
     context.session.changed.on(() => this.#build());
+    context.scene.changed.on(() => this.#showScene());
+    context.fieldWanted.on(({ element, key }) => {
+      context.select(element);
+      this.#form?.focus(key);
+    });
     context.session.parametersChanged.on((names) => {
       for (const name of names) this.#fields.get(name)?.take(context.session.parameters.get(name)!);
     });
@@ -37,11 +46,13 @@ export class ObjectPanel {
 
   #build(): void {
     const { session, selected } = this.#context;
+    this.#showEdit();
     this.#stopWatching?.();
     this.#stopWatching = undefined;
     this.#values = [];
     if (selected === undefined) {
       this.#fields.clear();
+      this.#form = undefined;
       this.#title.textContent = "Nothing selected";
       this.#kind.textContent = "";
       const text = "Select an element in the list, or click a part in the view.";
@@ -52,8 +63,14 @@ export class ObjectPanel {
     const parameters = [...session.parameters.values()].filter((one) => one.name.startsWith(`${selected}.`));
     const labels = [...variables.map((v) => v.label), ...parameters.map((p) => p.name.slice(selected.length + 1))];
     this.#title.textContent = selected;
-    this.#kind.textContent = kindOf(selected, new Set(labels));
+    const section = labels.length === 0 ? this.#context.scene.elements.get(selected)?.section : undefined;
+    this.#kind.textContent = section === undefined ? kindOf(selected, new Set(labels)) : kindOfSection(section);
     const sections: HTMLElement[] = [];
+    if (this.#form?.element !== selected || !this.#context.scene.isOpen) this.#form = undefined;
+    if (this.#context.scene.elements.has(selected)) {
+      this.#form ??= new EditForm(this.#context, selected);
+      sections.push(this.#form.root);
+    }
     if (parameters.length > 0) sections.push(this.#parameterSection(parameters));
     else this.#fields.clear();
     if (variables.length > 0) {
@@ -64,6 +81,32 @@ export class ObjectPanel {
     if (sections.length === 0) sections.push(h("p", { class: "empty" }, "This element has no variables."));
     this.#body.replaceChildren(...sections);
     this.#showValues();
+  }
+
+  // The form follows the text; it comes and goes with the editing and with the element.
+  #showScene(): void {
+    const { scene, selected } = this.#context;
+    const hasForm = selected !== undefined && scene.elements.has(selected);
+    if (hasForm !== (this.#form !== undefined)) this.#build();
+    else this.#form?.update();
+    this.#showEdit();
+  }
+
+  #showEdit(): void {
+    const { session, scene } = this.#context;
+    this.#edit.hidden = session.isRecording || !session.maySteer;
+    const mayEdit = session.description?.scene_file !== undefined;
+    this.#edit.disabled = !mayEdit && !scene.isOpen;
+    this.#edit.title = mayEdit
+      ? `Edit ${session.description!.scene_file}`
+      : "This window has not started the session: 'slewring window SCENE' does, and its page edits the scene";
+    this.#edit.setAttribute("aria-pressed", String(scene.isOpen));
+  }
+
+  async #toggleEdit(): Promise<void> {
+    const { scene } = this.#context;
+    if (!scene.isOpen) await scene.open();
+    else if (!scene.isChanged || confirm("Changes that are not saved are lost.")) scene.close();
   }
 
   // A field that the person is editing stays as it is.
