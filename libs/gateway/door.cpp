@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kMaxTarget = 2048;
 constexpr std::string_view kTokenKey = "token=";
-constexpr std::string_view kSessionPath = "session.json", kWorkspacePath = "workspace.json";
+constexpr std::string_view kSessionPath = "session.json", kWorkspacePath = "workspace.json",
+                           kCircuitPath = "circuit.svg";
 constexpr std::string_view kAssetFolder = "assets/", kAssetEnding = ".glb";
 
 Verdict error(unsigned status, std::string text) {
@@ -139,17 +140,19 @@ Verdict judge(const DoorDef& door, const Request& request) {
     return error(405, "the method is not supported; nothing was changed; use GET, or PUT for /workspace.json");
   const std::string_view query = mark == std::string_view::npos ? std::string_view() : request.target.substr(mark + 1);
   const bool is_asset = path->starts_with(kAssetFolder) && path->ends_with(kAssetEnding);
-  const bool needs_token = request.is_upgrade || is_asset || is_workspace || *path == kSessionPath;
+  const bool needs_token =
+      request.is_upgrade || is_asset || is_workspace || *path == kSessionPath || *path == kCircuitPath;
   if (needs_token && !door.token.empty() && !is_same(token_of(query), door.token)) {
     return error(401, "the token is missing or wrong; nothing was sent; add ?token=... to the address");
   }
   if (request.is_upgrade) return judge_upgrade(request);
   Verdict verdict;
   verdict.status = 200;
-  verdict.service = *path == kSessionPath ? Service::session
-                    : is_workspace        ? Service::workspace
-                    : is_asset            ? Service::asset
-                                          : Service::file;
+  verdict.service = *path == kSessionPath   ? Service::session
+                    : *path == kCircuitPath ? Service::circuit
+                    : is_workspace          ? Service::workspace
+                    : is_asset              ? Service::asset
+                                            : Service::file;
   verdict.path = is_asset ? path->substr(kAssetFolder.size()) : *path;
   return verdict;
 }
