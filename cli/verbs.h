@@ -21,6 +21,7 @@ void add_window(options::Command& program);
 void add_device(options::Command& program);
 void add_check(options::Command& program);
 void add_describe(options::Command& program);
+void add_draw(options::Command& program);
 void add_import(options::Command& program);
 void add_flex(options::Command& program);
 void add_variables(options::Command& program);

@@ -13,7 +13,7 @@ namespace {
 using gateway::Service;
 
 constexpr std::string_view kRevalidated = "no-cache", kKept = "public, max-age=31536000, immutable";
-constexpr std::string_view kJson = "application/json", kGlb = "model/gltf-binary";
+constexpr std::string_view kJson = "application/json", kGlb = "model/gltf-binary", kSvg = "image/svg+xml";
 constexpr std::size_t kHashLength = 8;  // esbuild's
 
 // The content, or 304 for a client that has it.
@@ -80,6 +80,9 @@ HttpAnswer HttpAnswers::answer(const gateway::Verdict& verdict, const HttpReques
     case Service::asset:
       if (const auto asset = gateway_.asset(verdict.path)) return content_of(asset, kGlb, request);
       return sentence(404, "the session has no such mesh; /session.json lists them as 'graphics'");
+    case Service::circuit:
+      if (def_.circuit != nullptr) return content_of(def_.circuit, kSvg, request);
+      return sentence(404, "the scene has no hydraulic components, so there is no diagram of a circuit");
     case Service::workspace:
       return workspace(request);
     case Service::scene:

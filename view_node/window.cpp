@@ -15,6 +15,7 @@
 
 #include "core/failure.h"
 #include "core/json.h"
+#include "diagram/circuit_svg.h"
 #include "gateway/gateway.h"
 #include "node/driver.h"
 #include "node/identity.h"
@@ -218,6 +219,14 @@ class Silence {
   bool was_silent_ = false;
 };
 
+// The diagram of the scene's circuit for the page.
+std::shared_ptr<const std::string> draw_circuit(const scene::Scene& scene) {
+  if (scene.hydraulics.components.empty()) return nullptr;
+  std::vector<diagram::ControlledBy> inputs;
+  for (const scene::InputDef& input : scene.inputs) inputs.push_back({input.primitive, input.name});
+  return std::make_shared<const std::string>(diagram::circuit_svg(diagram::lay_out(scene.hydraulics, inputs)));
+}
+
 ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& report) {
   LateReceiver receiver;
   const auto observer = wait_for_session(options, receiver);
@@ -228,6 +237,7 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
   scene::Scene scene = scene::load_text(view.session().scene_text, view.session().scene_name);
   MachineMeshes meshes = read_machine_meshes(scene, options.assets.empty() ? "." : options.assets);
   def.workspace = workspace_path(scene.name);
+  def.circuit = draw_circuit(scene);
   gateway::GatewayDef gateway_def = live_def(options, *observer, saved);
   gateway_def.assets = std::move(meshes.assets);
   gateway::Gateway gateway(std::move(gateway_def), std::move(scene));
@@ -289,6 +299,7 @@ ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report&
   MachineMeshes meshes =
       read_machine_meshes(scene, options.assets.empty() ? session::recorded_assets(options.recording) : options.assets);
   def.workspace = workspace_path(scene.name);
+  def.circuit = draw_circuit(scene);
   gateway_def.assets = std::move(meshes.assets);
   TakenSession taken(options, identity.session_name);
   if (!options.is_looking_only) gateway_def.continuation = &taken;

@@ -20,11 +20,10 @@ struct OwnPath {
   std::string_view method;
   bool is_read = true;
 };
-constexpr OwnPath kOwnPaths[] = {{"session.json", Service::session, ""},
-                                 {"workspace.json", Service::workspace, "PUT"},
-                                 {"scene.json", Service::scene, "POST"},
-                                 {"scene.yaml", Service::saving, "PUT", false},
-                                 {"restart", Service::restart, "POST", false}};
+constexpr OwnPath kOwnPaths[] = {
+    {"session.json", Service::session, ""},        {"workspace.json", Service::workspace, "PUT"},
+    {"circuit.svg", Service::circuit, ""},         {"scene.json", Service::scene, "POST"},
+    {"scene.yaml", Service::saving, "PUT", false}, {"restart", Service::restart, "POST", false}};
 
 Verdict error(unsigned status, std::string text) {
   Verdict verdict;

@@ -38,6 +38,7 @@ enum class Service : std::uint8_t {
   websocket,
   session,    // /session.json
   asset,      // /assets/NAME.glb: of the session, as the protocol has it
+  circuit,    // /circuit.svg: diagram of the hydraulic circuit
   workspace,  // /workspace.json: of the page, also with PUT
   scene,      // /scene.json: the scene that can be edited; POST: with a change of a text
   saving,     // /scene.yaml, PUT: the text into the scene's file

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The places of the panels: three columns with borders that can be moved; on a narrow screen one tab at a time.
-import { followPointer, h } from "./dom";
+import { Emitter, followPointer, h } from "./dom";
 import { icon, type IconName } from "./icons";
 
 export interface Panels {
   tree: HTMLElement;
   object: HTMLElement;
   view: HTMLElement;
+  circuit: HTMLElement; // in the place of the view
   plots: HTMLElement;
   operate: HTMLElement;
   health: HTMLElement;
@@ -37,8 +38,11 @@ const tabs: [string, string, IconName][] = [
   ["session", "Session", "target"],
 ];
 
+export type Center = "view" | "circuit";
+
 export class Layout {
   readonly root: HTMLElement;
+  readonly centerChanged = new Emitter<Center>();
   readonly tabBar: HTMLElement;
   #sizes = new Map<string, number>();
   #changed: () => void;
@@ -51,7 +55,7 @@ export class Layout {
       { class: "columns" },
       h("div", { class: "column left" }, panels.tree, border("object"), panels.object),
       border("left"),
-      h("div", { class: "column center" }, panels.view, border("plots"), panels.plots),
+      h("div", { class: "column center" }, panels.view, panels.circuit, border("plots"), panels.plots),
       border("right"),
       h("div", { class: "column right" }, panels.operate, panels.health, border("log"), panels.log),
     );
@@ -64,8 +68,10 @@ export class Layout {
       ),
     );
     this.tabBar = h("nav", { class: "tabs", role: "tablist" }, ...buttons);
+    for (const one of [panels.view, panels.circuit]) one.querySelector(".tools")!.prepend(this.#centerSwitch());
     this.sizes = {};
     this.showTab("view");
+    this.showCenter("view");
   }
 
   get sizes(): Record<string, number> {
@@ -79,6 +85,26 @@ export class Layout {
     document.documentElement.dataset["tab"] = name;
     for (const button of this.tabBar.children)
       button.setAttribute("aria-selected", String((button as HTMLElement).dataset["tab"] === name));
+  }
+
+  // What stands above the plots.
+  showCenter(name: Center): void {
+    document.documentElement.dataset["center"] = name;
+    this.centerChanged.emit(name);
+  }
+
+  #centerSwitch(): HTMLElement {
+    const names: [Center, string][] = [
+      ["view", "View"],
+      ["circuit", "Circuit"],
+    ];
+    const button = ([name, text]: [Center, string]) =>
+      h(
+        "button",
+        { type: "button", "data-center": name, title: `Show: ${text}`, onclick: () => this.showCenter(name) },
+        text,
+      );
+    return h("div", { class: "segments center-switch", role: "group", "aria-label": "Picture" }, ...names.map(button));
   }
 
   #border(border: Border): HTMLElement {

@@ -5,6 +5,7 @@ import "./style/base.css";
 import "./style/frame.css";
 import "./style/machine.css";
 import "./style/view.css";
+import "./style/circuit.css";
 import "./style/plots.css";
 import "./style/operate.css";
 import "./style/health.css";
@@ -15,6 +16,7 @@ import { download } from "./dom";
 import { EditBar } from "./edit/edit_bar";
 import { Layout } from "./layout";
 import { OperatePanel } from "./operate/operate_panel";
+import { CircuitPanel } from "./panels/circuit";
 import { HealthPanel } from "./panels/health";
 import { LogPanel, noticesOf } from "./panels/log";
 import { menuOf } from "./panels/menu";
@@ -34,6 +36,7 @@ const session = new Session();
 const context = new Context(session);
 const tree = new TreePanel(context);
 const view = new ViewPanel(context);
+const circuit = new CircuitPanel(context);
 const plots = new PlotsPanel(context);
 const operate = new OperatePanel(context);
 const layout = new Layout(
@@ -41,6 +44,7 @@ const layout = new Layout(
     tree: tree.root,
     object: new ObjectPanel(context).root,
     view: view.root,
+    circuit: circuit.root,
     plots: plots.root,
     operate: operate.root,
     health: new HealthPanel(context).root,
@@ -48,6 +52,8 @@ const layout = new Layout(
   },
   () => context.workspaceChanged.emit(),
 );
+
+layout.centerChanged.on((center) => circuit.setShown(center === "circuit"));
 
 // ---- workspace
 

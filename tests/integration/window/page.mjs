@@ -205,8 +205,29 @@ async function keepsTheWorkspace(page) {
   console.log("the workspace is there after a reload");
 }
 
+// The diagram, with the pressures of the session; a click on a symbol selects.
+async function showsTheCircuit(page, pressureOf) {
+  await page.click('.panel-view .center-switch [data-center="circuit"]');
+  const volume = page.locator('.panel-circuit .volume[data-volume="Vol_LiftCyl_A"]');
+  await waitFor("the pressure in the diagram", async () =>
+    /^[\d.]+ bar$/.test((await volume.locator(".value").textContent()) ?? ""),
+  );
+  await pressureOf?.(Number.parseFloat(await volume.locator(".value").textContent()));
+  const symbols = page.locator(".panel-circuit .symbol[data-element]");
+  require((await symbols.count()) > 15, `the diagram has ${await symbols.count()} symbols`);
+  await waitFor("a value at the pump", async () =>
+    /%/.test((await page.locator('.panel-circuit [data-element="MainPump"] .value').textContent()) ?? ""),
+  );
+  await page.click('.panel-circuit [data-element="Cyl_Jib"]');
+  await page.waitForSelector('.tree .row[data-element="Cyl_Jib"][aria-selected="true"]');
+  await page.click('.panel-circuit .center-switch [data-center="view"]');
+  await page.waitForSelector(".view canvas", { state: "visible" });
+  console.log("the circuit shows pressures, a click on a symbol selects");
+}
+
 async function live({ page }) {
   await showsTheMachine(page);
+  await showsTheCircuit(page);
   await changesAParameter(page);
   await plotsWhatTheChannelHas(page);
   await drivesTheCrane(page);
@@ -409,6 +430,12 @@ async function recording({ page }) {
     pictures.push((await page.locator(".view canvas").screenshot()).toString("base64"));
   }
   require(pictures[0] !== pictures[1], "the view has the same pose at 0.1 s and at 1.9 s");
+  // the slider stands at 1 s
+  const pressures = run("export", rest[0], "--csv", "Vol_LiftCyl_A.pressure").trim().split("\n").slice(1);
+  const [, pascals] = pressures.map((line) => line.split(",").map(Number)).findLast(([t]) => t <= 1 + 1e-9);
+  await showsTheCircuit(page, (bars) =>
+    require(Math.abs(bars - pascals * 1e-5) <= 0.5, `the diagram has ${bars} bar, the recording ${pascals} Pa`),
+  );
   await page.selectOption('[aria-label="Speed"]', "4");
   await page.click('.playback [aria-label="Play"]');
   await waitFor("the end", async () => Number.parseFloat(await page.locator(".top .time").textContent()) >= 1.99);

@@ -19,6 +19,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../support"))
@@ -388,6 +389,10 @@ def files(folder):
                     int.from_bytes(data[8:12], "little") == len(data), f"{one}: {status}, {headers}")
             total += len(data)
         print(f"{len(graphics)} meshes, {total} bytes")
+        status, headers, data = send(address, "/circuit.svg")
+        require(status == 200 and headers["Content-Type"] == "image/svg+xml", f"{status}: {headers}")
+        drawn = {one.get("data-element") for one in xml.etree.ElementTree.fromstring(data).iter()}
+        require({"MainPump", "L90Lift", "Cyl_Lift", "PRV_MainPump"} <= drawn, f"the diagram has {drawn}")
         status, headers, data = send(address, "/", Accept_Encoding="gzip")
         require(headers["Content-Encoding"] == "gzip" and gzip.decompress(data) == b"plain" * 50, f"{headers}")
         require(send(address, "/", If_None_Match=headers["ETag"], Accept_Encoding="gzip")[0] == 304, "not revalidated")
@@ -436,7 +441,7 @@ def door(folder):
                 (404, request(address, "/../../etc/passwd")), (404, request(address, "/%2e%2e/etc/passwd")),
                 (404, request(address, "/.git/config")), (404, request(address, "/no_such_file")),
                 (405, request(address, method="DELETE")), (414, request(address, "/" + "a" * 4000)),
-                (401, request(address, "/session.json")), (401, request(address, "/?token=0123", **foxglove)),
+                (401, request(address, "/session.json")), (401, request(address, "/circuit.svg")), (401, request(address, "/?token=0123", **foxglove)),
                 (400, request(address, f"/{query}", **UPGRADE)),
                 # the scene of this window: never without the state that is replaced
                 (401, request(address, "/scene.json")), (401, request(address, "/scene.yaml", "PUT")),

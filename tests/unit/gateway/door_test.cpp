@@ -72,6 +72,7 @@ TEST(Door, LetsPlainPathsOfThePageIn) {
   EXPECT_EQ(judge({}, plain("/assets/page-1.js?v=2")).path, "assets/page-1.js");
   EXPECT_EQ(judge({}, plain("/docs/")).path, "docs/index.html");
   EXPECT_EQ(judge({}, plain("/session.json")).service, Service::session);
+  EXPECT_EQ(judge({}, plain("/circuit.svg")).service, Service::circuit);
   for (const char* const target : {"", "x", "/../etc/passwd", "/a/../b", "//etc/passwd", "/.git/config", "/a/.hidden",
                                    "/%2e%2e/x", "/a\\b", "/a b", "http://127.0.0.1/x", "/a//b", "*"}) {
     EXPECT_EQ(judge({}, plain(target)).status, 404u) << target;
@@ -113,6 +114,7 @@ TEST(Door, WithATokenValuesAreForThoseThatHaveIt) {
     EXPECT_EQ(judge(door, upgrade("foxglove.sdk.v1", target)).status, 401u) << target;
   }
   EXPECT_EQ(judge(door, plain("/session.json")).status, 401u);
+  EXPECT_EQ(judge(door, plain("/circuit.svg")).status, 401u);
   // the page itself has no values
   EXPECT_EQ(judge(door, plain("/index.html")).status, 200u);
 }

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Check valves, restrictions, filters: what stands in a line.
+#include "diagram/symbol_parts.h"
+
+namespace slew::diagram {
+namespace {
+
+using hydraulics::ComponentDef;
+
+constexpr double kLineHeight = 44;
+
+// port 1 below, port 2 above, both at x
+void add_line_ports(Symbol& symbol, const ComponentDef& def, double x) {
+  symbol.ports.insert(symbol.ports.begin(), {straight(def, "port_1", Role::inlet, Side::bottom, x, symbol.height),
+                                             straight(def, "port_2", Role::outlet, Side::top, x, 0)});
+}
+
+Symbol check_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 28, .height = kLineHeight};
+  Pen pen;
+  pen.check({14, 26});
+  pen.spring({14, 19}, {14, 6}, 3);
+  pen.line({14, 6}, {14, 0});
+  pen.line({14, 33}, {14, kLineHeight});
+  add_line_ports(symbol, def, 14);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+Symbol throttle_check_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 64, .height = 54};
+  Pen pen;
+  pen.envelope({2, 4}, 60, 46);
+  pen.check({16, 30});
+  pen.path("M16 23V10H46V46H16V37M31 0V10M31 46V54");
+  pen.throttle({46, 28});
+  pen.adjustable({35, 38}, {57, 18});
+  add_line_ports(symbol, def, 31);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+Symbol pilot_check_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 48, .height = 54};
+  Pen pen;
+  pen.envelope({8, 5}, 32, 44);
+  pen.check({24, 28});
+  pen.spring({24, 21}, {24, 9}, 3);
+  pen.line({24, 9}, {24, 0});
+  pen.line({24, 35}, {24, 54});
+  pen.dashed("M8 42H18V32");
+  add_pilot(symbol, def, "port_3", 3, {8, 42});
+  if (!text_of(def, "port_4").empty()) pen.dashed("M40 42H30V32");
+  add_pilot(symbol, def, "port_4", 45, {40, 42});
+  add_line_ports(symbol, def, 24);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+Symbol double_pilot_check_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 92, .height = 60};
+  Pen pen;
+  pen.envelope({4, 5}, 84, 50);
+  for (const double x : {24.0, 68.0}) {
+    pen.check({x, 26});
+    pen.line({x, 0}, {x, 19});
+    pen.line({x, 33}, {x, 60});
+  }
+  // each is opened by the other line's valve side
+  pen.dashed("M24 48H50V32H60");
+  pen.dashed("M68 42H42V32H32");
+  symbol.ports = {straight(def, "port_a1", Role::inlet, Side::bottom, 24, 60),
+                  straight(def, "port_a2", Role::outlet, Side::top, 24, 0),
+                  straight(def, "port_b1", Role::inlet, Side::bottom, 68, 60),
+                  straight(def, "port_b2", Role::outlet, Side::top, 68, 0)};
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+// plate that a spring holds open, its port 2 at the load
+Symbol hose_burst_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 44, .height = 54};
+  Pen pen;
+  pen.envelope({4, 5}, 36, 44);
+  pen.circle({22, 20}, 5.5);
+  pen.path("M13 33L22 42L31 33M22 14.5V0M22 42V54M12 13V27M32 13V27");
+  pen.spring({22, 25.5}, {22, 40}, 3);
+  add_line_ports(symbol, def, 22);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+Symbol compensated_orifice_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 66, .height = 56};
+  Pen pen;
+  pen.box({12, 10}, 40, 36);
+  pen.line({32, 0}, {32, 56});
+  pen.throttle({32, 30});
+  pen.arrow({44, 44}, {44, 12}, 5);  // compensated for the load
+  pen.adjustable({20, 42}, {43, 17});
+  symbol.ports = {straight(def, "port_p", Role::inlet, Side::bottom, 32, 56),
+                  straight(def, "port_a", Role::outlet, Side::top, 32, 0)};
+  symbol.ports.push_back({.key = "port_t",
+                          .net = text_of(def, "port_t"),
+                          .role = Role::pilot,
+                          .side = Side::bottom,
+                          .lane = 14,
+                          .from_x = 14,
+                          .from_y = 46});
+  symbol.ports.push_back(
+      {.key = "", .net = def.name, .role = Role::sensed, .side = Side::either, .lane = 60, .from_x = 52, .from_y = 28});
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+Symbol bleed_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 28, .height = kLineHeight};
+  Pen pen;
+  pen.line({14, 0}, {14, kLineHeight});
+  pen.throttle({14, 22});
+  add_line_ports(symbol, def, 14);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+// sharp-edged: independent of the viscosity
+Symbol orifice_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 36, .height = kLineHeight};
+  Pen pen;
+  pen.line({18, 0}, {18, kLineHeight});
+  pen.path("M9 14L15 22L9 30M27 14L21 22L27 30");
+  pen.adjustable({6, 36}, {31, 9});
+  add_line_ports(symbol, def, 18);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+Symbol laminar_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 28, .height = kLineHeight};
+  Pen pen;
+  pen.line({14, 0}, {14, kLineHeight});
+  pen.path("M6 10Q11 12 11 16V28Q11 32 6 34M22 10Q17 12 17 16V28Q17 32 22 34");
+  add_line_ports(symbol, def, 14);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+Symbol filter_symbol(const ComponentDef& def) {
+  const bool has_bypass = is_set(def, "bypass_flow");
+  Symbol symbol{.width = has_bypass ? 72.0 : 44.0, .height = 56};
+  Pen pen;
+  pen.path("M22 10L40 28L22 46L4 28Z");
+  pen.line({22, 0}, {22, 10});
+  pen.line({22, 46}, {22, 56});
+  pen.dashed("M4 28H40");
+  if (has_bypass) {
+    pen.check({58, 30});
+    pen.path("M22 6H58V23M58 37V50H22");
+  }
+  add_line_ports(symbol, def, 22);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+constexpr SymbolRow kFlowRows[] = {{"check_valve", check_symbol},
+                                   {"throttle_check_valve", throttle_check_symbol},
+                                   {"pilot_check_valve", pilot_check_symbol},
+                                   {"double_pilot_check_valve", double_pilot_check_symbol},
+                                   {"hose_burst_valve", hose_burst_symbol},
+                                   {"compensated_orifice", compensated_orifice_symbol},
+                                   {"bleed", bleed_symbol},
+                                   {"orifice", orifice_symbol},
+                                   {"laminar_restriction", laminar_symbol},
+                                   {"filter", filter_symbol}};
+
+}  // namespace
+
+std::span<const SymbolRow> flow_symbols() noexcept {
+  return kFlowRows;
+}
+
+}  // namespace slew::diagram
