@@ -164,7 +164,8 @@ void check_volumes(const HydraulicsDef& def, Problems& errors) {
     check_fields(volume.name, kVolumeFields, &volume, errors);
     check_quasi_static(def, volume, errors);
     if (!has_content(def, volume)) {
-      errors.push_back({volume.name + ".rigid_volume", "the volume has no content: no hose, line or chamber is connected",
+      errors.push_back({volume.name + ".rigid_volume",
+                        "the volume has no content: no hose, line or chamber is connected",
                         "a hose, a cylinder, a rigid_volume, or fixed: true", ""});
     }
   }
