@@ -11,6 +11,8 @@
 #include "coupling/saved_model.h"
 #include "coupling/static_forces.h"
 #include "hydraulics_node/start_checks.h"
+#include "measurement/measuring_subsystem.h"
+#include "scene/instruments.h"
 #include "scene/ports.h"
 
 namespace slew::hydraulics_node {
@@ -291,7 +293,9 @@ std::string_view HydraulicsSubsystem::offender_name(std::int32_t index) const no
 
 std::unique_ptr<coupling::Subsystem> make_hydraulics_subsystem(const scene::Scene& scene) {
   require(scene::check_is_split(scene));
-  return std::make_unique<HydraulicsSubsystem>(scene);
+  return measurement::with_instruments(std::make_unique<HydraulicsSubsystem>(scene),
+                                       scene::instruments_of(scene, scene::Computes::hydraulics),
+                                       scene.session.step_duration(), {});
 }
 
 }  // namespace slew::hydraulics_node

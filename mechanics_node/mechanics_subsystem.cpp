@@ -5,8 +5,10 @@
 
 #include "core/failure.h"
 #include "coupling/saved_model.h"
+#include "measurement/measuring_subsystem.h"
 #include "multibody/joints/joint_law.h"
 #include "multibody/model/parameters.h"
+#include "scene/instruments.h"
 #include "scene/ports.h"
 #include "scene/sensors.h"
 
@@ -302,7 +304,10 @@ void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept
 
 std::unique_ptr<coupling::Subsystem> make_mechanics_subsystem(const scene::Scene& scene) {
   require(scene::check_is_split(scene));
-  return std::make_unique<MechanicsSubsystem>(scene);
+  auto mechanics = std::make_unique<MechanicsSubsystem>(scene);
+  const multibody::Model& model = mechanics->model();
+  return measurement::with_instruments(std::move(mechanics), scene::instruments_of(scene, scene::Computes::mechanics),
+                                       scene.session.step_duration(), [&model] { return model.gravity; });
 }
 
 }  // namespace slew::mechanics_node

@@ -101,6 +101,9 @@ class Subsystem {
   // Name of the state or volume of a StepReport's offender index.
   [[nodiscard]] virtual std::string_view offender_name(std::int32_t index) const noexcept = 0;
 
+  // The subsystem that computes the physics: this one, or the one that this one adds variables to.
+  [[nodiscard]] virtual const Subsystem& physics() const noexcept { return *this; }
+
   // Reason of a failed step, beyond the name of the state that is not finite; may be empty.
   [[nodiscard]] virtual std::string_view failure_text() const noexcept { return {}; }
 };

@@ -11,11 +11,13 @@
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/engine.h"
 #include "hydraulics/components/filter.h"
+#include "hydraulics/components/flow_divider.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose.h"
 #include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
 #include "hydraulics/components/l90ls_valve.h"
+#include "hydraulics/components/line.h"
 #include "hydraulics/components/ls_pump.h"
 #include "hydraulics/components/ls_shuttle.h"
 #include "hydraulics/components/post_compensator.h"
@@ -24,16 +26,19 @@
 #include "hydraulics/components/reducing_valve.h"
 #include "hydraulics/components/relief_valve.h"
 #include "hydraulics/components/restrictions.h"
+#include "hydraulics/components/shuttle_valve.h"
 #include "hydraulics/components/single_acting_cylinder.h"
 #include "hydraulics/components/slew_cylinder.h"
 #include "hydraulics/components/sources.h"
 #include "hydraulics/components/spool_valve.h"
+#include "hydraulics/components/unloading_valve.h"
 
 namespace slew::hydraulics {
 
 std::span<const ComponentType> component_types() {
   static const std::array types = {
       hose_type(),
+      line_type(),
       double_acting_cylinder_type(),
       double_rod_cylinder_type(),
       single_acting_cylinder_type(),
@@ -56,6 +61,10 @@ std::span<const ComponentType> component_types() {
       compensated_orifice_type(),
       post_compensator_type(),
       priority_valve_type(),
+      flow_divider_type(),
+      gear_flow_divider_type(),
+      shuttle_valve_type(),
+      unloading_valve_type(),
       ls_pump_type(),
       pump_type(),
       engine_type(),

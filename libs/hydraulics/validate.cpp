@@ -118,14 +118,14 @@ bool is_at_port(const ComponentDef& component, const VolumeDef& volume) {
   return actuator && (actuator->port_a == volume.name || actuator->port_b == volume.name);
 }
 
-// Volumes filled by a hose or chamber.
+// Volumes filled by a hose, line or chamber.
 bool has_content(const HydraulicsDef& def, const VolumeDef& volume) {
   if (volume.fixed || volume.rigid_volume > 0) return true;
   for (const auto& component : def.components) {
     const ComponentType* type = find_component_type(component->type_name());
     if (type == nullptr) continue;
     if (is_at_port(*component, volume)) return true;
-    if (type->name != "hose") continue;
+    if (type->name != "hose" && type->name != "line") continue;
     for (const Field& row : type->fields) {
       if (row.reference == "volume" && member<std::string>(row, component->address()) == volume.name) return true;
     }
@@ -164,7 +164,8 @@ void check_volumes(const HydraulicsDef& def, Problems& errors) {
     check_fields(volume.name, kVolumeFields, &volume, errors);
     check_quasi_static(def, volume, errors);
     if (!has_content(def, volume)) {
-      errors.push_back({volume.name + ".rigid_volume", "the volume has no content: no hose or chamber is connected",
+      errors.push_back({volume.name + ".rigid_volume",
+                        "the volume has no content: no hose, line or chamber is connected",
                         "a hose, a cylinder, a rigid_volume, or fixed: true", ""});
     }
   }

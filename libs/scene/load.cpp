@@ -18,6 +18,7 @@
 #include "scene/field_reader.h"
 #include "scene/flexible_bodies.h"
 #include "scene/graphics.h"
+#include "scene/instruments.h"
 #include "scene/mesh_assets.h"
 #include "scene/mesh_inertia.h"
 #include "scene/names.h"
@@ -335,7 +336,13 @@ class SceneReader {
     const std::size_t problems = report_.size();
     read_section("sensors");
     resolve_references();
-    if (report_.size() > problems || !mechanics_is_sound) return;
+    if (report_.size() > problems) return;
+    for (const measurement::InstrumentDef& def : scene_.instruments) {
+      if (!def.variable.empty()) check_variables(def.name + ".variable", {def.variable});
+    }
+    if (report_.size() > problems) return;
+    check_problems([&](Problems& errors, Problems&) { check_instruments(scene_, errors); });
+    if (!mechanics_is_sound) return;
     check_problems([&](Problems& errors, Problems&) { check_sensors(scene_, errors); });
   }
 

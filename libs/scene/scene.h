@@ -19,6 +19,7 @@
 #include "coupling/line_force.h"
 #include "coupling/port_unit.h"
 #include "hydraulics/hydraulics_def.h"
+#include "measurement/instruments.h"
 #include "multibody/model/defs.h"
 #include "scene/defs.h"
 #include "scene/devices.h"
@@ -86,7 +87,8 @@ struct Scene {
   multibody::MechanicsDef mechanics;
   hydraulics::HydraulicsDef hydraulics;
   std::vector<sensors::SensorDef> sensors;
-  std::vector<InputDef> inputs;  // the position is the channel's index
+  std::vector<measurement::InstrumentDef> instruments;  // the types of `sensors:` that measure a variable
+  std::vector<InputDef> inputs;                         // the position is the channel's index
   OutputsDef outputs;
   DevicesDef devices;
   ScriptDef script;

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "measurement/instruments.h"
 #include "multibody/constraints/gear_fields.h"
 #include "multibody/joints/joint_fields.h"
 #include "multibody/model/field_tables.h"
@@ -89,6 +90,20 @@ void add_sensors(std::vector<ElementTable>& tables) {
                       .fields = types[i].fields,
                       .append = [type = static_cast<sensors::SensorType>(i)](Scene& scene, const std::string& name) {
                         return append_sensor(scene, name, type);
+                      }});
+  }
+  const std::span<const measurement::InstrumentTypeRow> instruments = measurement::instrument_types();
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    tables.push_back({.section = "sensors",
+                      .type = instruments[i].name,
+                      .kind = "sensor",
+                      .doc = instruments[i].doc,
+                      .fields = instruments[i].fields,
+                      .append = [type = static_cast<measurement::InstrumentType>(i)](Scene& scene,
+                                                                                     const std::string& name) -> void* {
+                        auto& def = *static_cast<measurement::InstrumentDef*>(append_named(scene.instruments, name));
+                        def.type = type;
+                        return &def;
                       }});
   }
 }
@@ -346,6 +361,10 @@ std::vector<ElementRef> elements(Scene& scene) {
   for (sensors::SensorDef& sensor : scene.sensors) {
     refs.push_back(ref(table_of("sensors", sensors::sensor_types()[static_cast<std::size_t>(sensor.type)].name),
                        sensor.name, &sensor));
+  }
+  for (measurement::InstrumentDef& def : scene.instruments) {
+    refs.push_back(ref(table_of("sensors", measurement::instrument_types()[static_cast<std::size_t>(def.type)].name),
+                       def.name, &def));
   }
   for (InputDef& input : scene.inputs) {
     refs.push_back(ref(table_of("inputs", kInputTypeChoices[static_cast<int>(input.type)]), input.name, &input));

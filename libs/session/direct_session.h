@@ -45,6 +45,12 @@ class DirectSession {
   void step(StepIndex n, std::span<const wire::Command> commands, std::span<const double> controls) noexcept;
 
   [[nodiscard]] const coupling::Subsystem* subsystem(wire::Role role) const noexcept;
+  // The role's physics without instruments, of the type of its program; null: no such role, or a monolithic scene.
+  template <typename Physics>
+  [[nodiscard]] const Physics* physics(wire::Role role) const noexcept {
+    const coupling::Subsystem* const part = subsystem(role);
+    return part == nullptr ? nullptr : dynamic_cast<const Physics*>(&part->physics());
+  }
   // Variables of mechanics and hydraulics, each in its order.
   [[nodiscard]] std::vector<ElementVariable> variables() const;
   // Hash of the role's state now, 0 when the scene has no such role.

@@ -9,8 +9,10 @@
 #include "coupling/parameter_ramps.h"
 #include "flex_node/flex_subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
+#include "measurement/measuring_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "monolith/monolith.h"
+#include "scene/instruments.h"
 #include "sensor_node/sensor_subsystem.h"
 
 namespace slew::session {
@@ -163,6 +165,7 @@ class Part : public coupling::Subsystem {
   std::span<const ElementVariable> variables() const noexcept override { return shown_.variables(); }
   void read_variables(std::span<double> values) const noexcept override { shown_.read_variables(values); }
   std::string_view offender_name(std::int32_t index) const noexcept override { return shown_.offender_name(index); }
+  const Shown& shown() const noexcept { return shown_; }
   std::string_view failure_text() const noexcept override {
     return whole_->failure().empty() ? shown_.failure_text() : whole_->failure();
   }
@@ -212,8 +215,15 @@ std::unique_ptr<coupling::Subsystem> SubsystemFamily::make(Role role, const scen
                         : hydraulics_node::make_hydraulics_subsystem(scene);
   }
   if (monolithic_ == nullptr) monolithic_ = std::make_shared<Monolithic>(scene);
-  if (is_mechanics) return std::make_unique<MechanicsPart>(monolithic_, scene, mechanics_node::Motion::followed);
-  return std::make_unique<HydraulicsPart>(monolithic_, scene);
+  const SimDuration step = scene.session.step_duration();
+  if (is_mechanics) {
+    auto mechanics = std::make_unique<MechanicsPart>(monolithic_, scene, mechanics_node::Motion::followed);
+    const multibody::Model& model = mechanics->shown().model();
+    return measurement::with_instruments(std::move(mechanics), scene::instruments_of(scene, scene::Computes::mechanics),
+                                         step, [&model] { return model.gravity; });
+  }
+  return measurement::with_instruments(std::make_unique<HydraulicsPart>(monolithic_, scene),
+                                       scene::instruments_of(scene, scene::Computes::hydraulics), step, {});
 }
 
 }  // namespace slew::session

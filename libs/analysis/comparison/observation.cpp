@@ -70,7 +70,7 @@ class SampleReader {
 class Mechanism {
  public:
   explicit Mechanism(const session::DirectSession& session)
-      : mechanics_(dynamic_cast<const mechanics_node::MechanicsSubsystem*>(session.subsystem(Role::mechanics))) {
+      : mechanics_(session.physics<mechanics_node::MechanicsSubsystem>(Role::mechanics)) {
     if (mechanics_ == nullptr) return;
     gauge_.emplace(mechanics_->model());
     ws_.emplace(mechanics_->model());

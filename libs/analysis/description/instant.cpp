@@ -29,11 +29,11 @@ void play_to(PlayedScene& played, double at) {
 }
 
 const mechanics_node::MechanicsSubsystem* mechanics_of(const PlayedScene& played) {
-  return dynamic_cast<const mechanics_node::MechanicsSubsystem*>(played.session().subsystem(Role::mechanics));
+  return played.session().physics<mechanics_node::MechanicsSubsystem>(Role::mechanics);
 }
 
 const hydraulics_node::HydraulicsSubsystem* hydraulics_of(const PlayedScene& played) {
-  return dynamic_cast<const hydraulics_node::HydraulicsSubsystem*>(played.session().subsystem(Role::hydraulics));
+  return played.session().physics<hydraulics_node::HydraulicsSubsystem>(Role::hydraulics);
 }
 
 }  // namespace slew::analysis

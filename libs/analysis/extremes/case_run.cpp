@@ -153,13 +153,12 @@ class Stepper {
         session_(scene, is_whole_ ? ages_of(one) : session::SampleAges{}),
         ceiling_(scene),
         H_(scene.session.step_duration()) {
-    if (const auto* mechanics =
-            dynamic_cast<const mechanics_node::MechanicsSubsystem*>(session_.subsystem(Role::mechanics))) {
+    if (const auto* mechanics = session_.physics<mechanics_node::MechanicsSubsystem>(Role::mechanics)) {
       mechanics_ = mechanics;
       gauge_.emplace(mechanics->model());
       ws_.emplace(mechanics->model());
     }
-    hydraulics_ = dynamic_cast<const hydraulics_node::HydraulicsSubsystem*>(session_.subsystem(Role::hydraulics));
+    hydraulics_ = session_.physics<hydraulics_node::HydraulicsSubsystem>(Role::hydraulics);
     if (hydraulics_ == nullptr) return;
     ceiling_.set_circuit(hydraulics_->circuit());
     values_.resize(hydraulics_->variables().size());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/components/ls_tap.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -43,7 +44,7 @@ class CompensatedOrifice final : public HydraulicComponent {
         p_(builder.volume(def.port_p)),
         a_(builder.volume(def.port_a)),
         t_(builder.volume(def.port_t)),
-        ls_(builder.ls_index(def.name)),
+        ls_{.ls = builder.ls_index(def.name), .volume = a_, .tank = t_},
         transition_(builder.def().orifice_transition),
         root_2_rho_(std::sqrt(2 / builder.def().oil_density)) {
     apply_parameters();
@@ -57,15 +58,9 @@ class CompensatedOrifice final : public HydraulicComponent {
     jacobian.move(p_, a_, p_, slope);
     jacobian.move(p_, a_, a_, -slope);
   }
-  [[nodiscard]] double ls_pressure(const CircuitView& view) const noexcept override { return view[a_] - view[t_]; }
-  void declare_ls_dependencies(DependencyList& dependencies) const override {
-    dependencies.add(dependencies.ls_row(ls_), a_);
-    dependencies.add(dependencies.ls_row(ls_), t_);
-  }
-  void add_ls_jacobian(const CircuitView&, JacobianStamp& jacobian) const noexcept override {
-    jacobian.add(jacobian.ls_row(ls_), a_, 1);
-    jacobian.add(jacobian.ls_row(ls_), t_, -1);
-  }
+  [[nodiscard]] double ls_pressure(const CircuitView& view) const noexcept override { return ls_.pressure(view); }
+  void declare_ls_dependencies(DependencyList& dependencies) const override { ls_.declare_dependencies(dependencies); }
+  void add_ls_jacobian(const CircuitView&, JacobianStamp& jacobian) const noexcept override { ls_.stamp(jacobian); }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("flow", Dimension::volume_flow));
     variables.push_back(variable("ls_pressure", Dimension::pressure));
@@ -90,7 +85,7 @@ class CompensatedOrifice final : public HydraulicComponent {
 
   CompensatedOrificeDef def_;
   StateIndex p_, a_, t_;
-  LsIndex ls_;
+  LsTap ls_;
   double transition_, root_2_rho_;
   double K_ = 0;
 };

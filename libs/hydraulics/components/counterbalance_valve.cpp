@@ -5,6 +5,7 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/spring_spool.h"
 #include "hydraulics/oil.h"
 #include "hydraulics/pump_lines.h"
 
@@ -12,13 +13,9 @@ namespace slew::hydraulics {
 namespace {
 
 constexpr Field kCounterbalanceValveFields[] = {
-    field<&CounterbalanceValveDef::port_1>(
-        "port_1",
-        {.presence = Presence::required, .reference = "volume", .doc = "volume on the side of the directional valve"}),
-    field<&CounterbalanceValveDef::port_2>(
-        "port_2", {.presence = Presence::required, .reference = "volume", .doc = "volume on the side of the load"}),
-    field<&CounterbalanceValveDef::port_3>(
-        "port_3", {.presence = Presence::required, .reference = "volume", .doc = "volume that pilots the valve"}),
+    field<&CounterbalanceValveDef::port_1>("port_1", port_options("volume on the side of the directional valve")),
+    field<&CounterbalanceValveDef::port_2>("port_2", port_options("volume on the side of the load")),
+    field<&CounterbalanceValveDef::port_3>("port_3", port_options("volume that pilots the valve")),
     field<&CounterbalanceValveDef::port_4>(
         "port_4",
         {.reference = "volume", .doc = "volume of the spring's chamber of a vented valve; port_1 when absent"}),
@@ -31,23 +28,16 @@ constexpr Field kCounterbalanceValveFields[] = {
                                                              "opens the valve without a pilot pressure"}),
     field<&CounterbalanceValveDef::pilot_ratio>(
         "pilot_ratio", {.range = kNotNegative, .doc = "area of the pilot over that of the relief; 0: no pilot"}),
-    field<&CounterbalanceValveDef::nominal_flow>("nominal_flow", {.dimension = Dimension::volume_flow,
-                                                                  .range = kPositive,
-                                                                  .presence = Presence::required,
-                                                                  .change = Change::live,
-                                                                  .doc = "flow of the open valve from port 2 to 1 at "
-                                                                         "nominal_pressure_drop"}),
-    field<&CounterbalanceValveDef::nominal_pressure_drop>(
-        "nominal_pressure_drop",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of nominal_flow"}),
+    field<&CounterbalanceValveDef::nominal_flow>("nominal_flow",
+                                                 nominal_flow_options("flow of the open valve from port 2 to 1 at "
+                                                                      "nominal_pressure_drop")),
+    field<&CounterbalanceValveDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
     field<&CounterbalanceValveDef::opening_pressure_rise>("opening_pressure_rise",
                                                           {.dimension = Dimension::pressure,
                                                            .range = kPositive,
                                                            .doc = "rise above the setting that opens the valve fully"}),
-    field<&CounterbalanceValveDef::step_response>("step_response", {.dimension = Dimension::time,
-                                                                    .range = kPositive,
-                                                                    .change = Change::live,
-                                                                    .doc = "three time constants of the spool"}),
+    field<&CounterbalanceValveDef::step_response>("step_response",
+                                                  step_response_options("three time constants of the spool")),
     field<&CounterbalanceValveDef::check, &CheckParameters::nominal_flow>(
         "check_flow", {.dimension = Dimension::volume_flow,
                        .range = kPositive,
@@ -65,9 +55,6 @@ constexpr Field kCounterbalanceValveFields[] = {
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "rise that opens the check valve fully"}),
 };
 
-constexpr double kSpoolClipWidth = 0.02;   // share of the opening, smoothing of its limits
-constexpr double kSpoolTimeConstants = 3;  // in a step response, to 95 % of the change
-
 class CounterbalanceValve final : public HydraulicComponent {
  public:
   CounterbalanceValve(const CounterbalanceValveDef& def, CircuitBuilder& builder)
@@ -78,8 +65,8 @@ class CounterbalanceValve final : public HydraulicComponent {
         pilot_(builder.volume(def.port_3)),
         spring_(builder.volume(def.port_4.empty() ? def.port_1 : def.port_4)),
         u_(builder.add_state({.initial = 0, .scale = 1})),
-        transition_(builder.def().orifice_transition),
-        check_({.inlet = p_1_, .outlet = p_2_}, 0, transition_) {
+        spool_(u_, builder.def().orifice_transition),
+        check_({.inlet = p_1_, .outlet = p_2_}, 0, builder.def().orifice_transition) {
     apply_parameters();
     builder.add_relief({.valve = def.name,
                         .volume = p_2_,
@@ -93,21 +80,17 @@ class CounterbalanceValve final : public HydraulicComponent {
     dependencies.add(u_, p_2_), dependencies.add(u_, pilot_), dependencies.add(u_, spring_);
   }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
-    rates.set_rate(u_, rate_ * (command(view.y).value - view[u_]));
-    rates.move(p_2_, p_1_, lowering_flow(view));
+    spool_.add_rate(view, command(view.y).value, rates);
+    rates.move(p_2_, p_1_, lowering_flow(view).value);
     check_.move(check_.flow(view), rates);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    const double d_command = rate_ * command(view.y).slope / def_.opening_pressure_rise;
-    jacobian.add(u_, u_, -rate_);
+    const double d_command = spool_.rate() * command(view.y).slope / def_.opening_pressure_rise;
+    jacobian.add(u_, u_, -spool_.rate());
     jacobian.add(u_, p_2_, d_command);
     jacobian.add(u_, pilot_, def_.pilot_ratio * d_command);
     jacobian.add(u_, spring_, -(1 + def_.pilot_ratio) * d_command);
-    const double u = opening(view);
-    const ValueSlope r = root(view[p_2_] - view[p_1_], transition_);
-    if (view[u_] > 0) jacobian.move(p_2_, p_1_, u_, K_ * r.value);
-    jacobian.move(p_2_, p_1_, p_2_, u * K_ * r.slope);
-    jacobian.move(p_2_, p_1_, p_1_, -u * K_ * r.slope);
+    spool_.stamp_edge(p_2_, p_1_, lowering_flow(view), jacobian);
     check_.stamp(check_.flow(view), jacobian);
   }
   void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept override {
@@ -119,13 +102,12 @@ class CounterbalanceValve final : public HydraulicComponent {
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
     *values++ = view[u_];
-    *values++ = check_.flow(view).value - lowering_flow(view);
+    *values++ = check_.flow(view).value - lowering_flow(view).value;
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
-    K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop);
-    rate_ = kSpoolTimeConstants / def_.step_response;
+    spool_.set(def_.nominal_flow, def_.nominal_pressure_drop, def_.step_response);
     check_.set(def_.check, 0);
   }
 
@@ -134,22 +116,18 @@ class CounterbalanceValve final : public HydraulicComponent {
   [[nodiscard]] ValueSlope command(const double* y) const noexcept {
     const double p_s = y[spring_];
     const double p_e = y[p_2_] - p_s + def_.pilot_ratio * (y[pilot_] - p_s) - def_.setting_pressure;
-    return unit_clip(p_e / def_.opening_pressure_rise, kSpoolClipWidth);
+    return unit_clip(p_e / def_.opening_pressure_rise, SpringSpool::kEndWidth);
   }
-  // an opening below zero, from the solver's error, is closed
-  [[nodiscard]] double opening(const CircuitView& view) const noexcept { return std::fmax(view[u_], 0); }
   // (3)
-  [[nodiscard]] double lowering_flow(const CircuitView& view) const noexcept {
-    const double u = opening(view);
-    return u > 0 ? u * K_ * root(view[p_2_] - view[p_1_], transition_).value : 0;
+  [[nodiscard]] EdgeFlow lowering_flow(const CircuitView& view) const noexcept {
+    return spool_.edge(spool_.opening(view), view[p_2_] - view[p_1_]);
   }
 
   CounterbalanceValveDef def_;
   StateIndex p_1_, p_2_, pilot_, spring_;
   StateIndex u_;  // opening 0..1
-  double transition_;
+  SpringSpool spool_;
   CheckPoppet check_;
-  double K_ = 0, rate_ = 0;
 };
 
 void validate_counterbalance_valve(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {

@@ -6,6 +6,7 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/spring_spool.h"
 #include "hydraulics/oil.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
@@ -14,17 +15,13 @@ namespace slew::hydraulics {
 namespace {
 
 constexpr Field kHoseBurstValveFields[] = {
-    field<&HoseBurstValveDef::port_1>(
-        "port_1", {.presence = Presence::required, .reference = "volume", .doc = "volume on the side of the hose"}),
-    field<&HoseBurstValveDef::port_2>(
-        "port_2", {.presence = Presence::required, .reference = "volume", .doc = "volume on the side of the load"}),
+    field<&HoseBurstValveDef::port_1>("port_1", port_options("volume on the side of the hose")),
+    field<&HoseBurstValveDef::port_2>("port_2", port_options("volume on the side of the load")),
     field<&HoseBurstValveDef::nominal_flow>("nominal_flow", {.dimension = Dimension::volume_flow,
                                                              .range = kPositive,
                                                              .presence = Presence::required,
                                                              .doc = "flow of the open valve at nominal_pressure_drop"}),
-    field<&HoseBurstValveDef::nominal_pressure_drop>(
-        "nominal_pressure_drop",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of nominal_flow"}),
+    field<&HoseBurstValveDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
     field<&HoseBurstValveDef::closing_flow>("closing_flow", {.dimension = Dimension::volume_flow,
                                                              .range = kPositive,
                                                              .presence = Presence::required,
@@ -33,10 +30,8 @@ constexpr Field kHoseBurstValveFields[] = {
     field<&HoseBurstValveDef::closing_pressure_rise>(
         "closing_pressure_rise",
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "rise above the drop of closing_flow to shut"}),
-    field<&HoseBurstValveDef::step_response>("step_response", {.dimension = Dimension::time,
-                                                               .range = kPositive,
-                                                               .change = Change::live,
-                                                               .doc = "three time constants of the plate"}),
+    field<&HoseBurstValveDef::step_response>("step_response",
+                                             step_response_options("three time constants of the plate")),
     field<&HoseBurstValveDef::leak_flow>("leak_flow", {.dimension = Dimension::volume_flow,
                                                        .range = kNotNegative,
                                                        .change = Change::live,
@@ -46,9 +41,6 @@ constexpr Field kHoseBurstValveFields[] = {
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of leak_flow"}),
 };
 
-constexpr double kPlateClipWidth = 0.02;   // share of the opening, smoothing of its limits
-constexpr double kPlateTimeConstants = 3;  // in a step response, to 95 % of the change
-
 class HoseBurstValve final : public HydraulicComponent {
  public:
   HoseBurstValve(const HoseBurstValveDef& def, CircuitBuilder& builder)
@@ -57,7 +49,7 @@ class HoseBurstValve final : public HydraulicComponent {
         p_1_(builder.volume(def.port_1)),
         p_2_(builder.volume(def.port_2)),
         u_(builder.add_state({.initial = 1, .scale = 1})),
-        transition_(builder.def().orifice_transition) {
+        plate_(u_, builder.def().orifice_transition) {
     apply_parameters();
   }
   // at rest, shut where the load's pressure is higher already
@@ -68,18 +60,12 @@ class HoseBurstValve final : public HydraulicComponent {
     dependencies.add(u_, u_);
   }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
-    rates.set_rate(u_, rate_ * (target(drop(view)).value - view[u_]));
-    rates.move(p_2_, p_1_, flow(view));
+    plate_.add_rate(view, target(drop(view)).value, rates);
+    rates.move(p_2_, p_1_, flow(view).value);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    const double d_drop = rate_ * target(drop(view)).slope, u = opening(view);
-    jacobian.add(u_, u_, -rate_);
-    jacobian.add(u_, p_2_, d_drop);
-    jacobian.add(u_, p_1_, -d_drop);
-    const ValueSlope r = root(drop(view), transition_);
-    if (view[u_] > 0) jacobian.move(p_2_, p_1_, u_, K_ * r.value);
-    jacobian.move(p_2_, p_1_, p_2_, u * K_ * r.slope + G_);
-    jacobian.move(p_2_, p_1_, p_1_, -(u * K_ * r.slope + G_));
+    plate_.stamp_rate(p_2_, p_1_, target(drop(view)).slope, jacobian);
+    plate_.stamp_edge(p_2_, p_1_, flow(view), jacobian);
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("opening", Dimension::none));
@@ -87,15 +73,14 @@ class HoseBurstValve final : public HydraulicComponent {
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
     *values++ = view[u_];
-    *values++ = -flow(view);
+    *values++ = -flow(view).value;
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
-    K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop);
-    const double root_drop = def_.closing_flow / K_;
+    plate_.set(def_.nominal_flow, def_.nominal_pressure_drop, def_.step_response);
+    const double root_drop = def_.closing_flow / plate_.K();
     closing_drop_ = root_drop * root_drop;
-    rate_ = kPlateTimeConstants / def_.step_response;
     G_ = def_.leak_flow / def_.leak_pressure;
   }
 
@@ -103,21 +88,22 @@ class HoseBurstValve final : public HydraulicComponent {
   [[nodiscard]] double drop(const CircuitView& view) const noexcept { return view[p_2_] - view[p_1_]; }
   // (2), with its slope over d
   [[nodiscard]] ValueSlope target(double d) const noexcept {
-    const ValueSlope shut = unit_clip((d - closing_drop_) / def_.closing_pressure_rise, kPlateClipWidth);
+    const ValueSlope shut = unit_clip((d - closing_drop_) / def_.closing_pressure_rise, SpringSpool::kEndWidth);
     return {1 - shut.value, -shut.slope / def_.closing_pressure_rise};
   }
-  // an opening below zero, from the solver's error, is shut
-  [[nodiscard]] double opening(const CircuitView& view) const noexcept { return std::fmax(view[u_], 0); }
   // (3)
-  [[nodiscard]] double flow(const CircuitView& view) const noexcept {
-    return opening(view) * K_ * root(drop(view), transition_).value + G_ * drop(view);
+  [[nodiscard]] EdgeFlow flow(const CircuitView& view) const noexcept {
+    EdgeFlow Q = plate_.edge(plate_.opening(view), drop(view));
+    Q.value += G_ * drop(view);
+    Q.over_drop += G_;
+    return Q;
   }
 
   HoseBurstValveDef def_;
   StateIndex p_1_, p_2_;
   StateIndex u_;  // opening 0..1
-  double transition_;
-  double K_ = 0, closing_drop_ = 0, rate_ = 0, G_ = 0;
+  SpringSpool plate_;
+  double closing_drop_ = 0, G_ = 0;
 };
 
 void validate_hose_burst_valve(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {

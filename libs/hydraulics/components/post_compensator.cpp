@@ -1,24 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/post_compensator.h"
 
-#include <cmath>
-
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/ls_tap.h"
+#include "hydraulics/components/spring_spool.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
 namespace {
 
 constexpr Field kPostCompensatorFields[] = {
-    field<&PostCompensatorDef::port_1>(
-        "port_1", {.presence = Presence::required, .reference = "volume", .doc = "volume behind the metering edge"}),
-    field<&PostCompensatorDef::port_2>(
-        "port_2", {.presence = Presence::required, .reference = "volume", .doc = "volume before the load"}),
-    field<&PostCompensatorDef::port_t>("port_t", {.presence = Presence::required,
-                                                  .reference = "volume",
-                                                  .doc = "tank, which load-sensing pressures are relative to"}),
+    field<&PostCompensatorDef::port_1>("port_1", port_options("volume behind the metering edge")),
+    field<&PostCompensatorDef::port_2>("port_2", port_options("volume before the load")),
+    field<&PostCompensatorDef::port_t>("port_t", port_options("tank, which load-sensing pressures are relative to")),
     field<&PostCompensatorDef::shared_ls>("shared_ls",
                                           {.presence = Presence::required,
                                            .reference = "component",
@@ -31,24 +27,14 @@ constexpr Field kPostCompensatorFields[] = {
     field<&PostCompensatorDef::regulation_pressure>(
         "regulation_pressure",
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "rise that opens the compensator fully"}),
-    field<&PostCompensatorDef::nominal_flow>("nominal_flow",
-                                             {.dimension = Dimension::volume_flow,
-                                              .range = kPositive,
-                                              .presence = Presence::required,
-                                              .change = Change::live,
-                                              .doc = "flow of the open compensator at nominal_pressure_drop"}),
-    field<&PostCompensatorDef::nominal_pressure_drop>(
-        "nominal_pressure_drop",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of nominal_flow"}),
-    field<&PostCompensatorDef::step_response>("step_response", {.dimension = Dimension::time,
-                                                                .range = kPositive,
-                                                                .change = Change::live,
-                                                                .doc = "three time constants of the opening"}),
+    field<&PostCompensatorDef::nominal_flow>(
+        "nominal_flow", nominal_flow_options("flow of the open compensator at nominal_pressure_drop")),
+    field<&PostCompensatorDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
+    field<&PostCompensatorDef::step_response>("step_response",
+                                              step_response_options("three time constants of the opening")),
 };
 
-constexpr double kCompensatorEndWidth = 0.02;    // share of the opening, smoothing of its limits
-constexpr double kCompensatorTimeConstants = 3;  // in a step response, to 95 % of the change
-constexpr double kLoadCheckWidth = 2e4;          // Pa, smoothing of the load check
+constexpr double kLoadCheckWidth = 2e4;  // Pa, smoothing of the load check
 
 class PostCompensator final : public HydraulicComponent {
  public:
@@ -58,10 +44,11 @@ class PostCompensator final : public HydraulicComponent {
         p_1_(builder.volume(def.port_1)),
         p_2_(builder.volume(def.port_2)),
         t_(builder.volume(def.port_t)),
-        own_ls_(builder.ls_index(def.name)),
+        own_ls_{.ls = builder.ls_index(def.name), .volume = p_2_, .tank = t_},
         shared_ls_(builder.ls_index(def.shared_ls)),
         u_(builder.add_state({.initial = 0, .scale = 1})),
-        transition_(builder.def().orifice_transition) {
+        transition_(builder.def().orifice_transition),
+        spool_(u_, transition_) {
     apply_parameters();
   }
   void declare_dependencies(DependencyList& dependencies) const override {
@@ -71,30 +58,22 @@ class PostCompensator final : public HydraulicComponent {
     dependencies.add_ls(u_, shared_ls_);
   }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
-    rates.set_rate(u_, rate_ * (command(view).value - view[u_]));
-    rates.move(p_1_, p_2_, opening(view) * through(view).value);
+    spool_.add_rate(view, command(view).value, rates);
+    rates.move(p_1_, p_2_, spool_.opening(view).value * through(view).value);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    const double d_inlet = rate_ * command(view).slope;
-    const ValueSlope Q = through(view);
-    jacobian.add(u_, u_, -rate_);
-    jacobian.add(u_, p_1_, d_inlet);
-    jacobian.add(u_, t_, -d_inlet);
-    jacobian.add_ls(u_, shared_ls_, -d_inlet);
-    if (view[u_] > 0) jacobian.move(p_1_, p_2_, u_, Q.value);
-    jacobian.move(p_1_, p_2_, p_1_, opening(view) * Q.slope);
-    jacobian.move(p_1_, p_2_, p_2_, -opening(view) * Q.slope);
+    const double slope = command(view).slope;
+    spool_.stamp_rate(p_1_, t_, slope, jacobian);
+    jacobian.add_ls(u_, shared_ls_, -(spool_.rate() * slope));
+    const ValueSlope Q = through(view), u = spool_.opening(view);
+    spool_.stamp_edge(p_1_, p_2_, {u.value * Q.value, u.value * Q.slope, u.slope * Q.value}, jacobian);
   }
   // (3)
-  [[nodiscard]] double ls_pressure(const CircuitView& view) const noexcept override { return view[p_2_] - view[t_]; }
+  [[nodiscard]] double ls_pressure(const CircuitView& view) const noexcept override { return own_ls_.pressure(view); }
   void declare_ls_dependencies(DependencyList& dependencies) const override {
-    dependencies.add(dependencies.ls_row(own_ls_), p_2_);
-    dependencies.add(dependencies.ls_row(own_ls_), t_);
+    own_ls_.declare_dependencies(dependencies);
   }
-  void add_ls_jacobian(const CircuitView&, JacobianStamp& jacobian) const noexcept override {
-    jacobian.add(jacobian.ls_row(own_ls_), p_2_, 1);
-    jacobian.add(jacobian.ls_row(own_ls_), t_, -1);
-  }
+  void add_ls_jacobian(const CircuitView&, JacobianStamp& jacobian) const noexcept override { own_ls_.stamp(jacobian); }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("opening", Dimension::none));
     variables.push_back(variable("flow", Dimension::volume_flow));
@@ -102,36 +81,35 @@ class PostCompensator final : public HydraulicComponent {
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
     *values++ = view[u_];
-    *values++ = opening(view) * through(view).value;
+    *values++ = spool_.opening(view).value * through(view).value;
     *values++ = ls_pressure(view);
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
-    K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop);
-    rate_ = kCompensatorTimeConstants / def_.step_response;
+    spool_.set(def_.nominal_flow, def_.nominal_pressure_drop, def_.step_response);
   }
 
  private:
-  [[nodiscard]] double opening(const CircuitView& view) const noexcept { return std::fmax(view[u_], 0); }
   // command of (1), with its slope over p_1
   [[nodiscard]] ValueSlope command(const CircuitView& view) const noexcept {
     const double over = view[p_1_] - view[t_] - view.ls[shared_ls_] - def_.spring_pressure;
-    const ValueSlope u = unit_clip(over / def_.regulation_pressure, kCompensatorEndWidth);
+    const ValueSlope u = unit_clip(over / def_.regulation_pressure, SpringSpool::kEndWidth);
     return {u.value, u.slope / def_.regulation_pressure};
   }
   // flow of (2) at full opening, with its slope over the drop
   [[nodiscard]] ValueSlope through(const CircuitView& view) const noexcept {
     const ValueSlope drop = ramp(view[p_1_] - view[p_2_], kLoadCheckWidth), r = root(drop.value, transition_);
-    return {K_ * r.value, K_ * r.slope * drop.slope};
+    return {spool_.K() * r.value, spool_.K() * r.slope * drop.slope};
   }
 
   PostCompensatorDef def_;
   StateIndex p_1_, p_2_, t_;
-  LsIndex own_ls_, shared_ls_;
+  LsTap own_ls_;
+  LsIndex shared_ls_;
   StateIndex u_;  // 0..1
   double transition_;
-  double K_ = 0, rate_ = 0;
+  SpringSpool spool_;
 };
 
 void validate_post_compensator(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/priority_valve.h"
 
-#include <cmath>
-
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/spring_spool.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -13,15 +12,10 @@ namespace slew::hydraulics {
 namespace {
 
 constexpr Field kPriorityValveFields[] = {
-    field<&PriorityValveDef::port_1>(
-        "port_1", {.presence = Presence::required, .reference = "volume", .doc = "volume at the pump"}),
-    field<&PriorityValveDef::port_2>(
-        "port_2", {.presence = Presence::required, .reference = "volume", .doc = "volume of the priority line"}),
-    field<&PriorityValveDef::port_3>(
-        "port_3", {.presence = Presence::required, .reference = "volume", .doc = "volume of the other line"}),
-    field<&PriorityValveDef::port_t>("port_t", {.presence = Presence::required,
-                                                .reference = "volume",
-                                                .doc = "tank, which the pressures of the valve are relative to"}),
+    field<&PriorityValveDef::port_1>("port_1", port_options("volume at the pump")),
+    field<&PriorityValveDef::port_2>("port_2", port_options("volume of the priority line")),
+    field<&PriorityValveDef::port_3>("port_3", port_options("volume of the other line")),
+    field<&PriorityValveDef::port_t>("port_t", port_options("tank, which the pressures of the valve are relative to")),
     field<&PriorityValveDef::ls_port>(
         "ls_port", {.reference = "component",
                     .doc = "component with the load-sensing pressure of the priority line; absent: none"}),
@@ -35,22 +29,11 @@ constexpr Field kPriorityValveFields[] = {
                                 .range = kPositive,
                                 .doc = "rise from all oil to the priority line to all oil to the other one"}),
     field<&PriorityValveDef::nominal_flow>("nominal_flow",
-                                           {.dimension = Dimension::volume_flow,
-                                            .range = kPositive,
-                                            .presence = Presence::required,
-                                            .change = Change::live,
-                                            .doc = "flow of either open edge at nominal_pressure_drop"}),
-    field<&PriorityValveDef::nominal_pressure_drop>(
-        "nominal_pressure_drop",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of nominal_flow"}),
-    field<&PriorityValveDef::step_response>("step_response", {.dimension = Dimension::time,
-                                                              .range = kPositive,
-                                                              .change = Change::live,
-                                                              .doc = "three time constants of the spool"}),
+                                           nominal_flow_options("flow of either open edge at nominal_pressure_drop")),
+    field<&PriorityValveDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
+    field<&PriorityValveDef::step_response>("step_response",
+                                            step_response_options("three time constants of the spool")),
 };
-
-constexpr double kPriorityEndWidth = 0.02;    // share of the travel, smoothing of its ends
-constexpr double kPriorityTimeConstants = 3;  // in a step response, to 95 % of the change
 
 class PriorityValve final : public HydraulicComponent {
  public:
@@ -63,7 +46,7 @@ class PriorityValve final : public HydraulicComponent {
         t_(builder.volume(def.port_t)),
         ls_(def.ls_port.empty() ? -1 : builder.ls_index(def.ls_port)),
         u_(builder.add_state({.initial = 0, .scale = 1})),
-        transition_(builder.def().orifice_transition) {
+        spool_(u_, builder.def().orifice_transition) {
     apply_parameters();
   }
   void declare_dependencies(DependencyList& dependencies) const override {
@@ -73,22 +56,15 @@ class PriorityValve final : public HydraulicComponent {
     if (ls_ >= 0) dependencies.add_ls(u_, ls_);
   }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
-    rates.set_rate(u_, rate_ * (command(view).value - view[u_]));
+    spool_.add_rate(view, command(view).value, rates);
     rates.move(p_1_, p_2_, flow(view, p_2_).value);
     rates.move(p_1_, p_3_, flow(view, p_3_).value);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    const double d_priority = rate_ * command(view).slope;
-    jacobian.add(u_, u_, -rate_);
-    jacobian.add(u_, p_2_, d_priority);
-    jacobian.add(u_, t_, -d_priority);
-    if (ls_ >= 0) jacobian.add_ls(u_, ls_, -d_priority);
-    for (const StateIndex outlet : {p_2_, p_3_}) {
-      const EdgeFlow Q = flow(view, outlet);
-      jacobian.move(p_1_, outlet, p_1_, Q.over_drop);
-      jacobian.move(p_1_, outlet, outlet, -Q.over_drop);
-      jacobian.move(p_1_, outlet, u_, Q.over_position);
-    }
+    const double slope = command(view).slope;
+    spool_.stamp_rate(p_2_, t_, slope, jacobian);
+    if (ls_ >= 0) jacobian.add_ls(u_, ls_, -(spool_.rate() * slope));
+    for (const StateIndex outlet : {p_2_, p_3_}) spool_.stamp_edge(p_1_, outlet, flow(view, outlet), jacobian);
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("spool_position", Dimension::none));
@@ -103,34 +79,28 @@ class PriorityValve final : public HydraulicComponent {
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
-    K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop);
-    rate_ = kPriorityTimeConstants / def_.step_response;
+    spool_.set(def_.nominal_flow, def_.nominal_pressure_drop, def_.step_response);
   }
 
  private:
-  struct EdgeFlow {
-    double value, over_drop, over_position;
-  };
   // command of (1), with its slope over p_2
   [[nodiscard]] ValueSlope command(const CircuitView& view) const noexcept {
     const double demand = def_.spring_pressure + (ls_ < 0 ? 0 : view.ls[ls_]);
-    const ValueSlope u = unit_clip((view[p_2_] - view[t_] - demand) / def_.regulation_pressure, kPriorityEndWidth);
+    const ValueSlope u = unit_clip((view[p_2_] - view[t_] - demand) / def_.regulation_pressure, SpringSpool::kEndWidth);
     return {u.value, u.slope / def_.regulation_pressure};
   }
   // (2), (3)
   [[nodiscard]] EdgeFlow flow(const CircuitView& view, StateIndex outlet) const noexcept {
     const double side = outlet == p_2_ ? -1 : 1, u = side < 0 ? 1 - view[u_] : view[u_];
-    const ValueSlope r = root(view[p_1_] - view[outlet], transition_);
-    if (u <= 0) return {0, 0, 0};
-    return {u * K_ * r.value, u * K_ * r.slope, side * K_ * r.value};
+    if (u <= 0) return {};
+    return spool_.edge({u, side}, view[p_1_] - view[outlet]);
   }
 
   PriorityValveDef def_;
   StateIndex p_1_, p_2_, p_3_, t_;
   LsIndex ls_;    // -1: none
   StateIndex u_;  // 0: priority line alone, 1: other line alone
-  double transition_;
-  double K_ = 0, rate_ = 0;
+  SpringSpool spool_;
 };
 
 void validate_priority_valve(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {

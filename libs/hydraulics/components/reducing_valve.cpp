@@ -6,19 +6,16 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/spring_spool.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
 namespace {
 
 constexpr Field kReducingValveFields[] = {
-    field<&ReducingValveDef::port_1>(
-        "port_1", {.presence = Presence::required, .reference = "volume", .doc = "volume at the supply"}),
-    field<&ReducingValveDef::port_2>(
-        "port_2", {.presence = Presence::required, .reference = "volume", .doc = "volume whose pressure is reduced"}),
-    field<&ReducingValveDef::port_3>("port_3", {.presence = Presence::required,
-                                                .reference = "volume",
-                                                .doc = "volume at the drain; the setting is relative to it"}),
+    field<&ReducingValveDef::port_1>("port_1", port_options("volume at the supply")),
+    field<&ReducingValveDef::port_2>("port_2", port_options("volume whose pressure is reduced")),
+    field<&ReducingValveDef::port_3>("port_3", port_options("volume at the drain; the setting is relative to it")),
     field<&ReducingValveDef::setting_pressure>("setting_pressure",
                                                {.dimension = Dimension::pressure,
                                                 .range = kNotNegative,
@@ -31,22 +28,13 @@ constexpr Field kReducingValveFields[] = {
     field<&ReducingValveDef::regulation_pressure>(
         "regulation_pressure",
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "deviation that opens the valve fully"}),
-    field<&ReducingValveDef::nominal_flow>("nominal_flow", {.dimension = Dimension::volume_flow,
-                                                            .range = kPositive,
-                                                            .presence = Presence::required,
-                                                            .change = Change::live,
-                                                            .doc = "flow of the open valve at nominal_pressure_drop"}),
-    field<&ReducingValveDef::nominal_pressure_drop>(
-        "nominal_pressure_drop",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of nominal_flow"}),
-    field<&ReducingValveDef::step_response>("step_response", {.dimension = Dimension::time,
-                                                              .range = kPositive,
-                                                              .change = Change::live,
-                                                              .doc = "three time constants of the spool"}),
+    field<&ReducingValveDef::nominal_flow>("nominal_flow",
+                                           nominal_flow_options("flow of the open valve at nominal_pressure_drop")),
+    field<&ReducingValveDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
+    field<&ReducingValveDef::step_response>("step_response",
+                                            step_response_options("three time constants of the spool")),
 };
 
-constexpr double kSpoolEndWidth = 0.02;     // share of the travel, smoothing of its ends
-constexpr double kSpoolTimeConstants = 3;   // in a step response, to 95 % of the change
 constexpr double kSpoolCentreWidth = 1e-3;  // share of the travel, smoothing where an edge opens
 
 class ReducingValve final : public HydraulicComponent {
@@ -59,7 +47,7 @@ class ReducingValve final : public HydraulicComponent {
         p_3_(builder.volume(def.port_3)),
         y_(builder.add_state({.initial = 0, .scale = 1})),
         control_(builder.add_control(def.name, SignalMoves::a_state)),
-        transition_(builder.def().orifice_transition) {
+        spool_(y_, builder.def().orifice_transition) {
     apply_parameters();
   }
   // at the position that the start pressures command
@@ -70,17 +58,14 @@ class ReducingValve final : public HydraulicComponent {
     dependencies.add(y_, p_2_), dependencies.add(y_, p_3_);
   }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
-    rates.set_rate(y_, rate_ * (command(view).value - view[y_]));
+    spool_.add_rate(view, command(view).value, rates);
     rates.move(p_1_, p_2_, flow(view, p_1_, p_2_, 1).value);
     rates.move(p_2_, p_3_, flow(view, p_2_, p_3_, -1).value);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    const double d_outlet = rate_ * command(view).slope;
-    jacobian.add(y_, y_, -rate_);
-    jacobian.add(y_, p_2_, d_outlet);
-    jacobian.add(y_, p_3_, -d_outlet);
-    stamp(p_1_, p_2_, flow(view, p_1_, p_2_, 1), jacobian);
-    stamp(p_2_, p_3_, flow(view, p_2_, p_3_, -1), jacobian);
+    spool_.stamp_rate(p_2_, p_3_, command(view).slope, jacobian);
+    spool_.stamp_edge(p_1_, p_2_, flow(view, p_1_, p_2_, 1), jacobian);
+    spool_.stamp_edge(p_2_, p_3_, flow(view, p_2_, p_3_, -1), jacobian);
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("set_pressure", Dimension::pressure));
@@ -97,14 +82,10 @@ class ReducingValve final : public HydraulicComponent {
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
-    K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop);
-    rate_ = kSpoolTimeConstants / def_.step_response;
+    spool_.set(def_.nominal_flow, def_.nominal_pressure_drop, def_.step_response);
   }
 
  private:
-  struct EdgeFlow {
-    double value, over_drop, over_position;
-  };
   // (2)
   [[nodiscard]] double set_pressure(double signal) const noexcept {
     return std::fmax(def_.setting_pressure + def_.pressure_per_signal * signal, 0);
@@ -112,7 +93,7 @@ class ReducingValve final : public HydraulicComponent {
   // command of (1) at the outlet's pressure above the drain, with its slope over that
   [[nodiscard]] ValueSlope command(double set, double outlet) const noexcept {
     const double x = (set - outlet) / def_.regulation_pressure;
-    const ValueSlope twice = unit_clip(0.5 * (x + 1), 0.5 * kSpoolEndWidth);
+    const ValueSlope twice = unit_clip(0.5 * (x + 1), 0.5 * SpringSpool::kEndWidth);
     return {2 * twice.value - 1, -twice.slope / def_.regulation_pressure};
   }
   [[nodiscard]] ValueSlope command(const CircuitView& view) const noexcept {
@@ -120,21 +101,15 @@ class ReducingValve final : public HydraulicComponent {
   }
   // (3); side: 1 supply, -1 drain
   [[nodiscard]] EdgeFlow flow(const CircuitView& view, StateIndex from, StateIndex to, double side) const noexcept {
-    const ValueSlope u = ramp(side * view[y_], kSpoolCentreWidth), r = root(view[from] - view[to], transition_);
-    return {u.value * K_ * r.value, u.value * K_ * r.slope, side * u.slope * K_ * r.value};
-  }
-  void stamp(StateIndex from, StateIndex to, const EdgeFlow& Q, JacobianStamp& jacobian) const noexcept {
-    jacobian.move(from, to, from, Q.over_drop);
-    jacobian.move(from, to, to, -Q.over_drop);
-    jacobian.move(from, to, y_, Q.over_position);
+    const ValueSlope u = ramp(side * view[y_], kSpoolCentreWidth);
+    return spool_.edge({u.value, side * u.slope}, view[from] - view[to]);
   }
 
   ReducingValveDef def_;
   StateIndex p_1_, p_2_, p_3_;
   StateIndex y_;  // -1..1
   int control_;
-  double transition_;
-  double K_ = 0, rate_ = 0;
+  SpringSpool spool_;
 };
 
 void validate_reducing_valve(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {

@@ -10,16 +10,20 @@
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/engine.h"
 #include "hydraulics/components/filter.h"
+#include "hydraulics/components/flow_divider.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
+#include "hydraulics/components/line.h"
 #include "hydraulics/components/post_compensator.h"
 #include "hydraulics/components/priority_valve.h"
 #include "hydraulics/components/pump.h"
 #include "hydraulics/components/reducing_valve.h"
+#include "hydraulics/components/shuttle_valve.h"
 #include "hydraulics/components/single_acting_cylinder.h"
 #include "hydraulics/components/sources.h"
 #include "hydraulics/components/spool_valve.h"
+#include "hydraulics/components/unloading_valve.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
@@ -202,6 +206,33 @@ inline HydraulicsDef bench_circuit() {
   add_sources(circuit);
   add_engine_and_filters(circuit);
   add_flow_sharing(circuit);
+  return circuit;
+}
+
+// Dividers of both types, a shuttle, an unloading valve, lines of laminar and of turbulent flow: a circuit of its own,
+// since a line has many states.
+inline HydraulicsDef divider_circuit() {
+  HydraulicsDef circuit;
+  for (const char* name : {"Vol_P", "Vol_A", "Vol_B", "Vol_C"}) add_volume(circuit, name).rigid_volume = 1e-3;
+  add_tank(circuit, "Vol_T");
+  FlowDividerDef& spool = add<FlowDividerDef>(circuit, "Divider");
+  spool.port_1 = "Vol_P", spool.port_2 = "Vol_A", spool.port_3 = "Vol_C", spool.nominal_flow = 5e-4;
+  spool.share = 0.4, spool.regulation_pressure = 50 * kBar, spool.metering_pressure_drop = 100 * kBar;
+  GearFlowDividerDef& gears = add<GearFlowDividerDef>(circuit, "Gear_Divider");
+  gears.port_1 = "Vol_P", gears.port_2 = "Vol_B", gears.port_3 = "Vol_T";
+  gears.displacement_2 = 1e-6, gears.displacement_3 = 2e-6, gears.leak_flow = kLeak;
+  ShuttleValveDef& shuttle = add<ShuttleValveDef>(circuit, "Shuttle_Valve");
+  shuttle.port_1 = "Vol_A", shuttle.port_2 = "Vol_B", shuttle.port_3 = "Vol_C", shuttle.nominal_flow = 5e-4;
+  shuttle.switching_pressure = 5 * kBar;
+  UnloadingValveDef& unloading = add<UnloadingValveDef>(circuit, "Unloading");
+  unloading.port_1 = "Vol_P", unloading.port_2 = "Vol_T", unloading.port_3 = "Vol_C", unloading.nominal_flow = 1e-3;
+  unloading.cut_out_pressure = 180 * kBar, unloading.cut_in_pressure = 150 * kBar;
+  unloading.opening_pressure_rise = 50 * kBar;
+  LineDef& line = add<LineDef>(circuit, "Line");
+  line.port_1 = "Vol_A", line.port_2 = "Vol_C", line.length = 4, line.diameter = 0.008, line.modes = 2;
+  line.loss_1 = 0.5, line.loss_2 = 1, line.bulk_modulus = 8e8;
+  LineDef& wide = add<LineDef>(circuit, "Wide_Line");
+  wide.port_1 = "Vol_B", wide.port_2 = "Vol_T", wide.length = 2, wide.diameter = 0.2, wide.modes = 1;
   return circuit;
 }
 

@@ -194,13 +194,14 @@ TEST(CraneCircuit, work_and_impulse_of_a_step_are_the_integrals_of_the_force) {
 }
 
 TEST(CraneCircuit, passive_parts_never_create_power) {
-  // flows of everything but pumps, sources and the accumulators, which store energy, at random states: sum of p Q into
-  // the volumes, tank included, is not positive
+  // flows of everything but pumps, sources and what stores energy (accumulators, gears, lines) at random states: sum of
+  // p Q into the volumes, tank included, is not positive
   const auto is_active = [](const auto& component) {
-    constexpr std::string_view kActive[] = {"ls_pump", "pump", "accumulator", "flow_source", "pressure_source"};
+    constexpr std::string_view kActive[] = {"ls_pump",         "pump", "accumulator",      "flow_source",
+                                            "pressure_source", "line", "gear_flow_divider"};
     return std::find(std::begin(kActive), std::end(kActive), component->type_name()) != std::end(kActive);
   };
-  for (const auto make : {crane_circuit, bench_circuit}) {
+  for (const auto make : {crane_circuit, bench_circuit, divider_circuit}) {
     HydraulicsDef def = make();
     std::erase_if(def.components, is_active);
     Circuit circuit(def);

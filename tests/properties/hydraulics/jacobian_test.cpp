@@ -129,6 +129,10 @@ TEST(HydraulicJacobian, of_the_remaining_component_types_equals_central_differen
   expect_jacobian_matches(bench_circuit(), 2);
 }
 
+TEST(HydraulicJacobian, of_dividers_and_lines_equals_central_differences) {
+  expect_jacobian_matches(divider_circuit(), 4);
+}
+
 void expect_same_bits_at_once(const HydraulicsDef& def, std::uint64_t seed) {
   Circuit circuit(def);
   const auto n = static_cast<std::size_t>(circuit.state_count());
@@ -156,10 +160,11 @@ void expect_same_bits_at_once(const HydraulicsDef& def, std::uint64_t seed) {
 TEST(HydraulicJacobian, at_once_with_the_rates_is_the_same_to_the_bit) {
   expect_same_bits_at_once(crane_circuit(), 3);
   expect_same_bits_at_once(bench_circuit(), 4);
+  expect_same_bits_at_once(divider_circuit(), 5);
 }
 
 TEST(HydraulicJacobian, test_circuits_hold_every_component_type) {
-  const HydraulicsDef circuits[] = {crane_circuit(), bench_circuit()};
+  const HydraulicsDef circuits[] = {crane_circuit(), bench_circuit(), divider_circuit()};
   for (const ComponentType& type : component_types()) {
     bool is_present = false;
     for (const HydraulicsDef& circuit : circuits) {

@@ -3,52 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <numbers>
-#include <string>
-#include <vector>
 
-#include "hydraulics/circuit_integrator.h"
 #include "hydraulics/components/restrictions.h"
 #include "hydraulics/components/spool_valve.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
+#include "tests/support/circuit_rig.h"
 
 namespace slew::hydraulics::test {
 namespace live_faults_test {
 
-class Rig {
- public:
-  HydraulicsDef def;
-  void run(double seconds) {
-    if (!integrator_) {
-      circuit_ = std::make_unique<Circuit>(def);
-      integrator_ = std::make_unique<CircuitIntegrator>(*circuit_, def);
-      integrator_->start({}, {}, {});
-    }
-    for (int k = 0; k < std::lround(seconds / 1e-3); ++k) integrator_->step(1e-3, HeldSpeed(0));
-  }
-  double variable(const std::string& name) {
-    std::vector<double> values(circuit_->variables().size());
-    circuit_->read_variables(integrator_->state().data(), values);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (circuit_->variables()[i].name == name) return values[i];
-    }
-    ADD_FAILURE() << name;
-    return 0;
-  }
-  void set(const std::string& path, double value) {
-    ASSERT_EQ(circuit_->set_parameter(circuit_->find_parameter(path), value), ParameterResult::ok) << path;
-  }
-  void set_signal(double signal) { circuit_->set_control(0, signal); }
-
- private:
-  std::unique_ptr<Circuit> circuit_;
-  std::unique_ptr<CircuitIntegrator> integrator_;
-};
-
 // sqrt(p - p_t) falls by K t B/(2 V): 100 bar in 1 l of oil through half of a hole of 1 mm.
 TEST(LiveFaults, a_leak_that_opens_empties_its_volume_as_the_closed_form) {
-  Rig rig;
+  CircuitRig rig;
   rig.def.oil_bulk_modulus = 1.5e9, rig.def.entrained_air = 0, rig.def.orifice_transition = 10;
   rig.def.start = StartState::table13, rig.def.relative_tolerance = 1e-6;
   add_volume(rig.def, "Line", 101 * kBar).rigid_volume = 1e-3;
@@ -66,12 +33,12 @@ TEST(LiveFaults, a_leak_that_opens_empties_its_volume_as_the_closed_form) {
 
 // tau = step_response/3: 0.1 s before, 0.6 s while slow; a stuck spool stays, and moves when it is free again.
 TEST(LiveFaults, a_spool_becomes_slow_and_sticks) {
-  Rig rig;
+  CircuitRig rig;
   add_tank(rig.def, "P", 100 * kBar), add_tank(rig.def, "A"), add_tank(rig.def, "B"), add_tank(rig.def, "T");
   SpoolValveDef& valve = add<SpoolValveDef>(rig.def, "Valve");
   valve.port_p = "P", valve.port_a = "A", valve.port_b = "B", valve.port_t = "T", valve.step_response = 0.3;
   rig.run(0);
-  rig.set_signal(1);
+  rig.set_signal("Valve", 1);
   rig.run(0.1);
   const double before = 1 - std::exp(-1);
   EXPECT_NEAR(rig.variable("Valve.spool_position"), before, 1e-4);
@@ -80,7 +47,7 @@ TEST(LiveFaults, a_spool_becomes_slow_and_sticks) {
   const double slow = 1 - (1 - before) * std::exp(-0.5);
   EXPECT_NEAR(rig.variable("Valve.spool_position"), slow, 1e-4);
   rig.set("Valve.step_response", 1e6);
-  rig.set_signal(-1);
+  rig.set_signal("Valve", -1);
   rig.run(10);
   EXPECT_NEAR(rig.variable("Valve.spool_position"), slow, 1e-4);
   rig.set("Valve.step_response", 0.3);

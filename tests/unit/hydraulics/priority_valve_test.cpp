@@ -5,13 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
-#include <vector>
+#include <utility>
 
-#include "hydraulics/circuit_integrator.h"
 #include "hydraulics/components/compensated_orifice.h"
 #include "hydraulics/components/sources.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
+#include "tests/support/circuit_rig.h"
 
 namespace slew::hydraulics::test {
 namespace priority_valve_test {
@@ -25,7 +24,8 @@ struct Result {
 
 // A steering unit that demands 20 l/min at its load, an implement at another load, a pump of a given flow.
 Result run(double pump_flow, double steering_load, double implement_load, double opening = 1) {
-  HydraulicsDef def;
+  CircuitRig rig;
+  HydraulicsDef& def = rig.def;
   def.orifice_transition = 10, def.start = StartState::table13;
   add_tank(def, "Tank", 1 * kBar), add_tank(def, "Steering", 1 * kBar + steering_load);
   add_tank(def, "Implement", 1 * kBar + implement_load);
@@ -40,21 +40,9 @@ Result run(double pump_flow, double steering_load, double implement_load, double
   PriorityValveDef& valve = add<PriorityValveDef>(def, "Valve");
   valve.port_1 = "Pump", valve.port_2 = "Priority", valve.port_3 = "Implement", valve.port_t = "Tank";
   valve.ls_port = "Unit", valve.nominal_flow = 80 * kLitrePerMinute;
-  Problems errors, warnings;
-  validate(def, errors, warnings);
-  EXPECT_TRUE(errors.empty()) << errors.front().path << ": " << errors.front().what;
-  Circuit circuit(def);
-  CircuitIntegrator integrator(circuit, def);
-  integrator.start({}, {}, {});
-  for (int k = 0; k < 3000; ++k) integrator.step(1e-3, HeldSpeed(0));
-  std::vector<double> values(circuit.variables().size());
-  circuit.read_variables(integrator.state().data(), values);
-  Result result{0, 0, integrator.state()[4] - 1 * kBar - steering_load};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (circuit.variables()[i].name == "Valve.priority_flow") result.priority = values[i];
-    if (circuit.variables()[i].name == "Valve.flow") result.rest = values[i];
-  }
-  return result;
+  rig.run(3);
+  return {rig.variable("Valve.priority_flow"), rig.variable("Valve.flow"),
+          rig.variable("Priority.pressure") - 1 * kBar - steering_load};
 }
 
 // Whichever load is higher, the steering has its 20 l/min and the implement the rest.

@@ -5,19 +5,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
+#include <utility>
 
-#include "hydraulics/circuit_integrator.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
+#include "tests/support/circuit_rig.h"
 
 namespace slew::hydraulics::test {
 namespace reducing_valve_test {
 
 constexpr double kSet = 30 * kBar;
 
-class Rig {
+class Rig : public CircuitRig {
  public:
   // The outlet is held at `outlet`, or closed at that pressure.
   Rig(double outlet, bool is_closed) {
@@ -32,28 +30,11 @@ class Rig {
     valve.port_1 = "Supply", valve.port_2 = "Outlet", valve.port_3 = "Drain";
     valve.setting_pressure = kSet, valve.pressure_per_signal = 10 * kBar;
     valve.nominal_flow = 20 * kLitrePerMinute;
-    circuit_ = std::make_unique<Circuit>(def);
-    integrator_ = std::make_unique<CircuitIntegrator>(*circuit_, def);
-    integrator_->start({}, {}, {});
   }
-  HydraulicsDef def;
   void run(double signal, double seconds) {
-    circuit_->set_control(0, signal);
-    for (int k = 0; k < std::lround(seconds / 1e-3); ++k) integrator_->step(1e-3, HeldSpeed(0));
+    set_signal("Valve", signal);
+    CircuitRig::run(seconds);
   }
-  double variable(const std::string& name) {
-    std::vector<double> values(circuit_->variables().size());
-    circuit_->read_variables(integrator_->state().data(), values);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (circuit_->variables()[i].name == name) return values[i];
-    }
-    ADD_FAILURE() << name;
-    return 0;
-  }
-
- private:
-  std::unique_ptr<Circuit> circuit_;
-  std::unique_ptr<CircuitIntegrator> integrator_;
 };
 
 // Half a bar per quarter of the travel, on either side.

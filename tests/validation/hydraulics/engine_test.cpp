@@ -6,14 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "hydraulics/circuit_integrator.h"
 #include "hydraulics/components/pump.h"
 #include "hydraulics/components/sources.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
+#include "tests/support/circuit_rig.h"
 
 namespace slew::hydraulics::test {
 namespace engine_test {
@@ -22,7 +21,7 @@ constexpr double kFull = 400, kSpeed = 200, kStall = 60, kInertia = 2;  // Nm, r
 constexpr double kDisplacement = 10e-6;                                 // m3/rad: 100 Nm at 100 bar
 
 // A pump between tanks loads the engine by a torque that does not depend on the speed.
-class Rig {
+class Rig : public CircuitRig {
  public:
   explicit Rig(double load) {
     add_tank(def, "Line", 1e5 + load / kDisplacement), add_tank(def, "Tank", 1e5);
@@ -33,42 +32,8 @@ class Rig {
     def.curves.push_back({.name = "Full_Load", .points = {{0, kFull}, {300, kFull}}});
     def.relative_tolerance = 1e-6;
   }
-  HydraulicsDef def;
   EngineDef& engine() { return dynamic_cast<EngineDef&>(*def.components.back()); }
   PumpDef& pump() { return dynamic_cast<PumpDef&>(*def.components.front()); }
-
-  void run(double seconds, double H = 1e-3) {
-    if (!integrator_) {
-      Problems errors, warnings;
-      validate(def, errors, warnings);
-      ASSERT_TRUE(errors.empty()) << errors.front().path << ": " << errors.front().what;
-      circuit_ = std::make_unique<Circuit>(def);
-      integrator_ = std::make_unique<CircuitIntegrator>(*circuit_, def);
-      integrator_->start({}, {}, {});
-    }
-    for (int k = 0; k < std::lround(seconds / H); ++k) {
-      ASSERT_FALSE(integrator_->step(H, HeldSpeed(0)).has_failed());
-    }
-  }
-  double variable(const std::string& name) {
-    std::vector<double> values(circuit_->variables().size());
-    circuit_->read_variables(integrator_->state().data(), values);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (circuit_->variables()[i].name == name) return values[i];
-    }
-    ADD_FAILURE() << name;
-    return 0;
-  }
-  void set(const std::string& path, double value) {
-    ASSERT_EQ(circuit_->set_parameter(circuit_->find_parameter(path), value), ParameterResult::ok) << path;
-  }
-  void set_signal(const std::string& component, double signal) {
-    circuit_->set_control(circuit_->find_control(component), signal);
-  }
-
- private:
-  std::unique_ptr<Circuit> circuit_;
-  std::unique_ptr<CircuitIntegrator> integrator_;
 };
 
 // u = T/T_full, w = w_s (1 + droop (1 - u)); the pump turns with it.

@@ -5,14 +5,13 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <vector>
 
-#include "hydraulics/circuit_integrator.h"
 #include "hydraulics/components/ls_shuttle.h"
 #include "hydraulics/components/post_compensator.h"
 #include "hydraulics/components/restrictions.h"
 #include "hydraulics/components/sources.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
+#include "tests/support/circuit_rig.h"
 
 namespace slew::hydraulics::test {
 namespace flow_sharing_test {
@@ -36,7 +35,8 @@ void add_section(HydraulicsDef& def, int i) {
 
 // A pump of a given flow, all of which goes through the sections.
 std::array<double, 2> flows_of(double pump_flow) {
-  HydraulicsDef def;
+  CircuitRig rig;
+  HydraulicsDef& def = rig.def;
   def.orifice_transition = 10, def.start = StartState::table13;
   add_tank(def, "Tank", 1 * kBar);
   add_volume(def, "Pump", kLoads[0]).rigid_volume = 1e-3;
@@ -45,21 +45,8 @@ std::array<double, 2> flows_of(double pump_flow) {
   for (int i : {0, 1}) add_section(def, i);
   LsShuttleDef& shuttle = add<LsShuttleDef>(def, "Shuttle");
   shuttle.port_1 = "Compensator_1", shuttle.port_2 = "Compensator_2";
-  Problems errors, warnings;
-  validate(def, errors, warnings);
-  EXPECT_TRUE(errors.empty()) << errors.front().path << ": " << errors.front().what;
-  Circuit circuit(def);
-  CircuitIntegrator integrator(circuit, def);
-  integrator.start({}, {}, {});
-  for (int k = 0; k < 3000; ++k) integrator.step(1e-3, HeldSpeed(0));
-  std::vector<double> values(circuit.variables().size());
-  circuit.read_variables(integrator.state().data(), values);
-  std::array<double, 2> flows{};
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (circuit.variables()[k].name == "Compensator_1.flow") flows[0] = values[k];
-    if (circuit.variables()[k].name == "Compensator_2.flow") flows[1] = values[k];
-  }
-  return flows;
+  rig.run(3);
+  return {rig.variable("Compensator_1.flow"), rig.variable("Compensator_2.flow")};
 }
 
 // Steady flow of a section at the pressure behind the pump, from the equations by bisection of the opening u:
