@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Check valves, restrictions, filters: what stands in a line.
+// Check valves, restrictions, filters, flow dividers: what stands in a line.
 #include "diagram/symbol_parts.h"
 
 namespace slew::diagram {
@@ -162,6 +162,67 @@ Symbol filter_symbol(const ComponentDef& def) {
   return symbol;
 }
 
+// pipe whose length matters
+Symbol line_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 28, .height = kLineHeight};
+  Pen pen;
+  pen.box({8, 6}, 12, 32);
+  pen.line({14, 0}, {14, kLineHeight});
+  add_line_ports(symbol, def, 14);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+void add_branch_ports(Symbol& symbol, const ComponentDef& def, double common, double left, double right) {
+  symbol.ports = {straight(def, "port_1", Role::inlet, Side::bottom, common, symbol.height),
+                  straight(def, "port_2", Role::outlet, Side::top, left, 0),
+                  straight(def, "port_3", Role::outlet, Side::top, right, 0)};
+}
+
+Symbol flow_divider_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 84, .height = 60};
+  Pen pen;
+  pen.box({6, 8}, 72, 44);
+  for (const double x : {24.0, 60.0}) {
+    pen.throttle({x, 24});
+    pen.line({x, 0}, {x, 42});
+  }
+  pen.path("M24 42H60M42 42V60");
+  add_branch_ports(symbol, def, 42, 24, 60);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+// two gear units on one shaft
+Symbol gear_flow_divider_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 96, .height = 66};
+  Pen pen;
+  for (const double x : {24.0, 72.0}) {
+    pen.circle({x, 28}, 14);
+    pen.filled(fmt::format("M{:g} 14L{:g} 21L{:g} 21Z", x, x - 4, x + 4));
+    pen.line({x, 0}, {x, 14});
+    pen.line({x, 42}, {x, 54});
+  }
+  pen.path("M38 26H58M38 30H58M24 54H72M48 54V66");
+  add_branch_ports(symbol, def, 48, 24, 72);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+// ball between the seats of both inlets
+Symbol shuttle_valve_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 72, .height = 52};
+  Pen pen;
+  pen.box({6, 10}, 60, 28);
+  pen.circle({24, 26}, 5.5);
+  pen.path("M12 20L18 26L12 32M60 20L54 26L60 32M36 26V0M12 26V52M60 26V52M30 26H54");
+  symbol.ports = {straight(def, "port_1", Role::inlet, Side::bottom, 12, 52),
+                  straight(def, "port_2", Role::inlet, Side::bottom, 60, 52),
+                  straight(def, "port_3", Role::outlet, Side::top, 36, 0)};
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
 constexpr SymbolRow kFlowRows[] = {{"check_valve", check_symbol},
                                    {"throttle_check_valve", throttle_check_symbol},
                                    {"pilot_check_valve", pilot_check_symbol},
@@ -171,7 +232,11 @@ constexpr SymbolRow kFlowRows[] = {{"check_valve", check_symbol},
                                    {"bleed", bleed_symbol},
                                    {"orifice", orifice_symbol},
                                    {"laminar_restriction", laminar_symbol},
-                                   {"filter", filter_symbol}};
+                                   {"filter", filter_symbol},
+                                   {"line", line_symbol},
+                                   {"flow_divider", flow_divider_symbol},
+                                   {"gear_flow_divider", gear_flow_divider_symbol},
+                                   {"shuttle_valve", shuttle_valve_symbol}};
 
 }  // namespace
 

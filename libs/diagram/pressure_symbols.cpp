@@ -47,6 +47,19 @@ Symbol direct_relief_symbol(const ComponentDef& def) {
   return symbol;
 }
 
+// opened by the pressure of another line
+Symbol unloading_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 64, .height = 52, .place = Place::shunt};
+  Pen pen;
+  draw_relief(pen);
+  add_pilot(symbol, def, "port_3", 4, {16, 26});
+  pen.dashed("M10 26H16");
+  symbol.ports.push_back(straight(def, "port_1", Role::inlet, Side::top, 30, 0));
+  symbol.ports.push_back(straight(def, "port_2", Role::back, Side::bottom, 30, 52));
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
 Symbol reducing_symbol(const ComponentDef& def) {
   Symbol symbol{.width = 66, .height = 52};
   Pen pen;
@@ -171,6 +184,7 @@ Symbol shuttle_symbol(const ComponentDef& def) {
 
 constexpr SymbolRow kPressureRows[] = {{"relief_valve", relief_symbol},
                                        {"direct_relief_valve", direct_relief_symbol},
+                                       {"unloading_valve", unloading_symbol},
                                        {"reducing_valve", reducing_symbol},
                                        {"counterbalance_valve", counterbalance_symbol},
                                        {"post_compensator", post_compensator_symbol},

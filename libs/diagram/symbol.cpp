@@ -44,6 +44,14 @@ struct Figure {
   std::string_view type, key, before = {}, after = {};
 };
 constexpr Figure kFigures[] = {
+    {"line", "diameter"},
+    {"line", "length"},
+    {"flow_divider", "nominal_flow"},
+    {"shuttle_valve", "nominal_flow"},
+    {"unloading_valve", "cut_out_pressure", "out "},
+    {"unloading_valve", "cut_in_pressure", "in "},
+    {"gear_flow_divider", "displacement_2"},
+    {"gear_flow_divider", "displacement_3"},
     {"hose", "diameter"},
     {"hose", "length"},
     {"hydraulic_motor", "displacement"},

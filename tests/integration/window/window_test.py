@@ -490,7 +490,7 @@ CASES = {"AForeignClientWatchesAndChangesALiveSession": live, "ARecordingIsSough
          "TheDoorRefusesHostileRequests": door, "MeshesFilesAndTheWorkspaceComeByHttp": files,
          "ASessionTakesOverFromARecordingWithTheSameBits": take_over,
          "ThePageShowsChangesAndDrivesASession": page_live, "ThePageFollowsTheSliderOfARecording": page_recording,
-         "ASceneIsEditedSavedAndRestartedInThePage": page_edits,
+         "ASceneIsEditedSavedAndRestartedInThePageNightly": page_edits,
          "ThePageOperatesAndPlots": page_inputs, "TheTypesOfThePageHold": types,
          "ADesktopOpensThePageInItsBrowser": opens_browser}
 with tempfile.TemporaryDirectory(prefix="slewring_window_") as scratch:
