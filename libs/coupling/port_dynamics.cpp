@@ -285,7 +285,7 @@ bool PortDynamics::try_stages(const Span& span, RowLaws& laws, PortStep& report)
 // after a micro-step of delta in two stages
 void PortDynamics::note_decay(int step, double delta) noexcept {
   for (std::size_t i = 0; i < rows_; ++i) {
-    const bool decays = -law_[i].d_v * W_[i * rows_ + i] * delta > kDecay;
+    const bool decays = law_[i].stop == 0 && -law_[i].d_v * W_[i * rows_ + i] * delta > kDecay;
     decays_[i] = decays && (step == 0 || decays_[i] != 0) ? 1 : 0;
     if (step == 1) f_settled_[i] = f_[i];
   }
@@ -299,7 +299,7 @@ double PortDynamics::slope_of(std::size_t row, int micro_steps) const noexcept {
     const double delta = h_ / micro_steps, growth = (f_[row] - f_settled_[row]) / (micro_steps - 2);
     moment = displacing_[row] + kLeftOut * delta * delta * micro_steps * growth;
   }
-  return moment * 12 / (h_ * h_ * h_);
+  return moment * (12 / (h_ * h_ * h_));
 }
 
 PortStep PortDynamics::solve(double h, int micro_steps, RowLaws& laws) noexcept {
