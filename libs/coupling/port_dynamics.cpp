@@ -16,6 +16,11 @@ namespace {
 // (1 - gamma)(1 - t_1) gamma + gamma (1 - t_2) = 1/6 and (1 - gamma)(1 - t_1) + gamma (1 - t_2) = 1/2
 constexpr double kFirstOfLine = 1.0 / 3;
 constexpr double kEndOfLine = 0.90236892706218252;
+// 1/3 - 2 gamma (1 - gamma)^2: moment of a force t over a step that the instants of the displacement leave out
+constexpr double kLeftOut = 0.04044011451988;
+
+// damping over mass, times the micro-step, from which a speed decays within it
+constexpr double kDecay = 1;
 
 // A piecewise linear law needs one iteration per crossed kink. The rest is for bisections when two rows reach a jump at
 // once.
@@ -37,41 +42,12 @@ constexpr int kMostTries = 512;
 }  // namespace
 
 PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(capacity) {
-  for (std::vector<double>* values : {&x_,
-                                      &v_,
-                                      &z_,
-                                      &a_free_,
-                                      &a_free_rate_,
-                                      &weighted_a_,
-                                      &shrink_,
-                                      &drive_,
-                                      &pull_,
-                                      &x_base_,
-                                      &v_base_,
-                                      &z_base_,
-                                      &x_stage_,
-                                      &v_stage_,
-                                      &z_stage_,
-                                      &pressure_force_,
-                                      &f_,
-                                      &slope_,
-                                      &f_mean_,
-                                      &f_slope_,
-                                      &work_,
-                                      &impulse_,
-                                      &residual_,
-                                      &low_,
-                                      &high_,
-                                      &f_low_,
-                                      &f_held_,
-                                      &f_high_,
-                                      &last_step_,
-                                      &k_x_,
-                                      &k_v_,
-                                      &k_z_,
-                                      &v_first_,
-                                      &f_first_,
-                                      &pressure_first_}) {
+  for (std::vector<double>* values :
+       {&x_,        &v_,      &z_,       &a_free_,  &a_free_rate_,   &weighted_a_, &shrink_,    &drive_,
+        &pull_,     &x_base_, &v_base_,  &z_base_,  &x_stage_,       &v_stage_,    &z_stage_,   &pressure_force_,
+        &f_,        &slope_,  &f_mean_,  &f_slope_, &displacing_,    &f_settled_,  &work_,      &impulse_,
+        &residual_, &low_,    &high_,    &f_low_,   &f_held_,        &f_high_,     &last_step_, &k_x_,
+        &k_v_,      &k_z_,    &v_first_, &f_first_, &pressure_first_}) {
     values->assign(capacity, 0.0);
   }
   for (std::vector<RowForce>* laws : {&law_, &law_first_, &law_start_}) laws->assign(capacity, RowForce{});
@@ -80,6 +56,7 @@ PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(ca
   A_.assign(capacity * capacity, 0.0);
   is_at_jump_.assign(capacity, 0);
   jump_first_.assign(capacity, 0);
+  decays_.assign(capacity, 0);
   partner_.assign(capacity, RowPartner{});
 }
 
@@ -243,6 +220,7 @@ void PortDynamics::add(double share, const Instant& at, std::span<const double> 
     const double time = at.is_at_stop ? at.of_displacement : has_partner ? at.of_stage : at.of_line;
     f_mean_[i] += share * f[i];
     f_slope_[i] += share * (time - 0.5 * h_) * f[i];
+    displacing_[i] += share * (at.of_displacement - 0.5 * h_) * f[i];
     work_[i] += share * pressure_force[i] * v[i];
     impulse_[i] += share * pressure_force[i];
   }
@@ -304,6 +282,26 @@ bool PortDynamics::try_stages(const Span& span, RowLaws& laws, PortStep& report)
   return true;
 }
 
+// after a micro-step of delta in two stages
+void PortDynamics::note_decay(int step, double delta) noexcept {
+  for (std::size_t i = 0; i < rows_; ++i) {
+    const bool decays = law_[i].stop == 0 && -law_[i].d_v * W_[i * rows_ + i] * delta > kDecay;
+    decays_[i] = decays && (step == 0 || decays_[i] != 0) ? 1 : 0;
+    if (step == 1) f_settled_[i] = f_[i];
+  }
+}
+
+// Least-squares slope of a line about the middle of the sub-step: integral of f (t - h/2) over h^3 / 12. Where the
+// speed decays, the force is a blow at the start and a part that grows from the second to the last micro-step.
+double PortDynamics::slope_of(std::size_t row, int micro_steps) const noexcept {
+  double moment = f_slope_[row];
+  if (micro_steps > 2 && decays_[row] != 0 && partner_[row].K == 0 && partner_[row].F_dot == 0) {
+    const double delta = h_ / micro_steps, growth = (f_[row] - f_settled_[row]) / (micro_steps - 2);
+    moment = displacing_[row] + kLeftOut * delta * delta * micro_steps * growth;
+  }
+  return moment * (12 / (h_ * h_ * h_));
+}
+
 PortStep PortDynamics::solve(double h, int micro_steps, RowLaws& laws) noexcept {
   PortStep report;
   h_ = h;
@@ -312,7 +310,7 @@ PortStep PortDynamics::solve(double h, int micro_steps, RowLaws& laws) noexcept 
   prepare(weight);
   is_at_stop_ = false;
   for (std::size_t i = 0; i < rows_; ++i) {
-    f_mean_[i] = f_slope_[i] = work_[i] = impulse_[i] = 0;
+    f_mean_[i] = f_slope_[i] = displacing_[i] = work_[i] = impulse_[i] = 0;
     is_at_stop_ = is_at_stop_ || laws.is_at_stop(i, x_[i]);
   }
   has_memory_ = laws.begin(weight);
@@ -320,11 +318,11 @@ PortStep PortDynamics::solve(double h, int micro_steps, RowLaws& laws) noexcept 
   for (int step = 0; step < micro_steps; ++step) {
     const Span span{step * delta, delta, (step + kGamma) * delta, (step + 1) * delta};
     if (!try_stages(span, laws, report)) take_in_parts(span, laws, report);
+    note_decay(step, delta);
   }
   for (std::size_t i = 0; i < rows_; ++i) {
     f_mean_[i] /= h;
-    // least-squares slope of a line about the middle of the sub-step: integral of f (t - h/2) over h^3 / 12
-    f_slope_[i] *= 12 / (h * h * h);
+    f_slope_[i] = slope_of(i, micro_steps);
   }
   return report;
 }

@@ -103,7 +103,9 @@ class PortDynamics {
 
   // results of the last solve(): force over the sub-step is f_mean + (t - h/2) f_slope to first order; of a force that
   // is linear in time the mean is exact, the slope of rows with a partner too large by 24 % over the square of
-  // micro_steps (the quadrature's)
+  // micro_steps (the quadrature's). A row without partner whose speed decays within a micro-step gets, of three
+  // or more, the slope with which mean and slope move it as the stages did: after a jump of the load its force is a
+  // blow.
   [[nodiscard]] std::span<const double> f_mean() const noexcept { return {f_mean_.data(), rows_}; }
   [[nodiscard]] std::span<const double> f_slope() const noexcept { return {f_slope_.data(), rows_}; }
   [[nodiscard]] std::span<const double> work() const noexcept { return {work_.data(), rows_}; }  // work of z [J]
@@ -134,6 +136,8 @@ class PortDynamics {
   void add(double share, const Instant& at, std::span<const double> f, std::span<const double> pressure_force,
            std::span<const double> v) noexcept;
   void move(PortStep& report) noexcept;
+  void note_decay(int step, double delta) noexcept;
+  [[nodiscard]] double slope_of(std::size_t row, int micro_steps) const noexcept;
   bool follows_stops(const Span& span, const RowLaws& laws) noexcept;
   [[nodiscard]] double longest_in_swing(std::size_t row, double time) const noexcept;
   bool solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept;
@@ -154,6 +158,9 @@ class PortDynamics {
   std::vector<double> pressure_force_;               // z with the feed-through
   std::vector<RowForce> law_;
   std::vector<double> f_, slope_, f_mean_, f_slope_, work_, impulse_;
+  std::vector<double> displacing_;  // moment of the force about h/2 by Instant::of_displacement [N s2]
+  std::vector<double> f_settled_;   // force at the end of the second micro-step
+  std::vector<char> decays_;        // the row's speed decays within each micro-step
   std::vector<double> residual_, A_;
   std::vector<double> low_, high_;                          // speeds of the stage that bracket the iteration's solution
   std::vector<double> f_low_, f_high_;                      // forces there

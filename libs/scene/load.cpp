@@ -158,6 +158,14 @@ class SceneReader {
                   {fmt::format("the scene's name has {} characters", scene_.name.size()),
                    fmt::format("at most {}", kMaxSceneNameLength), ""});
     }
+    // a path or an option, where the name is part of one
+    const Node::Entry* name = root_.find("scene");
+    if (name != nullptr &&
+        (scene_.name.find_first_of("/\\") != std::string::npos || scene_.name.find_first_of(".-") == 0)) {
+      report_.add(name->value.mark, "scene",
+                  {"'" + scene_.name + "' looks like a path or an option",
+                   "a name that does not begin with '.' or '-', without '/' and '\\'", ""});
+    }
     if (const Node::Entry* assets = root_.find("assets")) read_assets(assets->value, load_context_, scene_, report_);
   }
 

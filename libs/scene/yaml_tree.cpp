@@ -31,6 +31,22 @@ std::string shortened(const std::string& text) {
 // Line breaks of YAML 1.1 that other programs do not treat as such.
 constexpr std::string_view kOddBreaks[] = {"\xC2\x85", "\xE2\x80\xA8", "\xE2\x80\xA9"};
 
+// What a text must not hold although its bytes are characters: what no YAML text holds unescaped, and odd breaks.
+// Empty: nothing.
+std::string unprintable(std::string_view text) {
+  for (const std::string_view odd : kOddBreaks) {
+    if (text.find(odd) != std::string_view::npos) return "line break U+0085, U+2028 or U+2029";
+  }
+  for (const std::string_view none : {std::string_view("\xEF\xBF\xBE"), std::string_view("\xEF\xBF\xBF")}) {
+    if (text.find(none) != std::string_view::npos) return "U+FFFE or U+FFFF, which are no characters";
+  }
+  for (std::size_t at = text.find('\xC2'); at != std::string_view::npos; at = text.find('\xC2', at + 1)) {
+    const auto next = static_cast<unsigned char>(at + 1 < text.size() ? text[at + 1] : 0);
+    if (next >= 0x80 && next < 0xA0) return fmt::format("control character U+{:04X}", next);
+  }
+  return {};
+}
+
 bool is_null(std::string_view plain) {
   return plain.empty() || plain == "~" || plain == "null" || plain == "Null" || plain == "NULL";
 }
@@ -184,7 +200,9 @@ class TreeBuilder {
     }
     node.kind = Node::Kind::scalar;
     // an escape may represent a character that the source must not contain
-    if (std::string problem = text_problem(node.text); !problem.empty()) {
+    std::string problem = text_problem(node.text);
+    if (problem.empty()) problem = unprintable(node.text);
+    if (!problem.empty()) {
       report_.add(node.mark, "", {std::move(problem) + " after its escapes are resolved", "UTF-8 text", ""});
     }
     accept(std::move(node));

@@ -268,7 +268,7 @@ ContactParts stiff_parts(const Model& model, double parts, double needed, StepKi
 
 }  // namespace
 
-ContactParts contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) noexcept {
+ContactParts contact_parts(const Model& model, double h, ContactStep step, Workspace& ws) noexcept {
   if (model.contact == nullptr) return {};
   const ContactElements& elements = *model.contact;
   ContactWorkspace& contacts = *ws.contact;
@@ -282,22 +282,22 @@ ContactParts contact_parts(const Model& model, double h, StepKind kind, Workspac
     contacts.is_near = true;
     parts = std::max(parts, kPartsPerThickness * meeting.travel / elements.model.pairs()[pair].half_thickness);
     const bool is_new = contacts.was_touching[pair] == 0 && meeting.kind == contact::Meeting::Kind::found;
-    if (is_new && kind != StepKind::implicit) {
+    if (is_new && step.kind != StepKind::implicit) {
       met_rate = std::max(met_rate, impact_rate(model, ws, pair, meeting, h));
     }
   }
   if (!contacts.is_near) return {};
   parts = std::clamp(parts, 1.0, kMostParts);
-  if (kind == StepKind::implicit) return {.count = static_cast<int>(std::ceil(parts))};
+  if (step.kind == StepKind::implicit) return {.count = static_cast<int>(std::ceil(parts))};
   // resolve an imminent impact
-  if (met_rate > 0 && kind == StepKind::settling) kind = StepKind::explicit_rule;
-  return stiff_parts(model, parts, h * std::max(contact_rate(model, ws), met_rate) / reach_of(kind), kind, ws);
+  if (met_rate > 0 && step.kind == StepKind::settling) step.kind = StepKind::explicit_rule;
+  return stiff_parts(model, parts, h * std::max(contact_rate(model, ws), met_rate) / step.reach, step.kind, ws);
 }
 
-ContactParts contact_parts_again(const Model& model, double h, int parts, StepKind kind, Workspace& ws) noexcept {
-  if (kind == StepKind::implicit) return {};
-  const double needed = h * contact_rate(model, ws) / reach_of(kind);
-  if (kind == StepKind::settling && needed > kWorthSettling * parts && !has_impact(model, ws)) {
+ContactParts contact_parts_again(const Model& model, double h, int parts, ContactStep step, Workspace& ws) noexcept {
+  if (step.kind == StepKind::implicit) return {};
+  const double needed = h * contact_rate(model, ws) / step.reach;
+  if (step.kind == StepKind::settling && needed > kWorthSettling * parts && !has_impact(model, ws)) {
     return {.is_settling = true};
   }
   ws.contact->is_lost = ws.contact->is_lost || !(needed <= kMostStiffParts);

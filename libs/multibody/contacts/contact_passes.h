@@ -42,10 +42,14 @@ enum class StepKind { explicit_rule, settling, corrected, implicit };
 // Limit of parts of a sub-step for fast contacts.
 inline constexpr double kMostStiffParts = 1024;
 // Longest part times fastest rate: Runge-Kutta's rule is stable to 2.7, with a stack of ten boxes on bristles to 2.1;
-// in the trapezoid of `augmented` corrections shrink by a half at 1.
-[[nodiscard]] constexpr double reach_of(StepKind kind) noexcept {
-  return kind == StepKind::corrected ? 1.0 : 1.5;
-}
+// in the trapezoid of `augmented` corrections shrink by a half at 1; the semi-implicit Euler rule is stable to 2, but
+// at 1.5 throws back with up to 1.2 times the speed of the impact.
+inline constexpr double kReach = 1.5, kReachOfCorrections = 1.0, kReachOfEuler = 0.1;
+
+struct ContactStep {
+  StepKind kind = StepKind::explicit_rule;
+  double reach = kReach;
+};
 
 // An implicit part costs as much as 1.2 to 3.3 of Runge-Kutta's, least where finding the contacts costs most.
 inline constexpr double kWorthSettling = 2;
@@ -61,10 +65,10 @@ struct ContactParts {
 // rate (contact_rate.h); contacts too fast for the shortest part set ws.contact->is_lost. `settling`: without an
 // impact, and if the explicit rule would need kWorthSettling times as many parts as contact_substep, the implicit rule
 // is used, which need not resolve the damping of a load.
-[[nodiscard]] ContactParts contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) noexcept;
+[[nodiscard]] ContactParts contact_parts(const Model& model, double h, ContactStep step, Workspace& ws) noexcept;
 
 // The same for one of `parts` of the sub-step, for contacts closed meanwhile.
-[[nodiscard]] ContactParts contact_parts_again(const Model& model, double h, int parts, StepKind kind,
+[[nodiscard]] ContactParts contact_parts_again(const Model& model, double h, int parts, ContactStep step,
                                                Workspace& ws) noexcept;
 
 // Loss of one contact point's force by a small motion of shape A against shape B, after update_contacts() at an instant

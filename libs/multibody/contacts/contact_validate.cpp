@@ -167,8 +167,11 @@ void validate_contacts(const MechanicsDef& mechanics, Problems& problems) {
 
 void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems& problems) {
   if (mechanics.contacts.empty() || is_implicit(step_rule(mechanics).integrator)) return;
-  const StepKind kind = mechanics.formulation == Formulation::augmented ? StepKind::corrected : StepKind::explicit_rule;
-  const double fastest = kMostStiffParts * reach_of(kind) / substep;
+  const bool is_euler = step_rule(mechanics).integrator == Integrator::semi_implicit_euler;
+  const double reach = mechanics.formulation == Formulation::augmented ? kReachOfCorrections
+                       : is_euler                                      ? kReachOfEuler
+                                                                       : kReach;
+  const double fastest = kMostStiffParts * reach / substep;
   const Model model = build_model(mechanics);
   if (model.contact == nullptr) return;
   const std::span<const contact::ContactPair> pairs = model.contact->model.pairs();

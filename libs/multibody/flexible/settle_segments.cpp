@@ -267,6 +267,7 @@ class Settling {
 }  // namespace
 
 void straighten_segments(const Model& model, std::span<double> q, std::span<double> u) {
+  if (model.segmented.empty()) return;
   const Chains chains(model);
   if (chains.count() == 0) return;
   Workspace ws(model);

@@ -97,6 +97,12 @@ bool is_resolved(const Workspace& ws, double h) noexcept {
   return true;
 }
 
+// has_stages: of a rule beside Runge-Kutta's and that of `augmented`
+ContactStep contact_step_of(StepKind kind, bool is_euler, bool has_stages) noexcept {
+  const bool is_first_order = is_euler || (has_stages && kind != StepKind::implicit);
+  return {kind, kind == StepKind::corrected ? kReachOfCorrections : is_first_order ? kReachOfEuler : kReach};
+}
+
 bool take_lost(Workspace& ws) noexcept {
   return ws.contact != nullptr && std::exchange(ws.contact->is_lost, false);
 }
@@ -170,7 +176,8 @@ struct Dynamics::PartOfStep {
 
 bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                        std::span<const double> slope) noexcept {
-  const ContactParts parts = multibody::contact_parts(model, h, contact_step(), ws);
+  const ContactStep step = contact_step_of(contact_step(), is_euler_, stages_ != nullptr);
+  const ContactParts parts = multibody::contact_parts(model, h, step, ws);
   contact_parts_ = 1;
   settling_parts_ = 0;
   if (parts.count == 1 && !parts.is_settling) {
@@ -180,8 +187,8 @@ bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h
   bool is_sound = true;
   for (int i = 0; i < parts.count; ++i) {
     if (i > 0) evaluate(model, state, ws);
-    const ContactParts pieces = i > 0 ? contact_parts_again(model, h, parts.count, contact_step(), ws)
-                                      : ContactParts{.is_settling = parts.is_settling};
+    const ContactParts pieces =
+        i > 0 ? contact_parts_again(model, h, parts.count, step, ws) : ContactParts{.is_settling = parts.is_settling};
     is_sound = advance_contacts(model, state, ws, {h, parts, i, pieces, mean, slope}) && is_sound;
   }
   return is_right(model, state, ws) && is_sound;
@@ -196,7 +203,8 @@ bool Dynamics::advance_contacts(const Model& model, State& state, Workspace& ws,
     ++contact_parts_;
     ++settling_parts_;
     if (settle_part(model, state, ws, length, ws.row_part, part.slope)) return true;
-    pieces = contact_parts_again(model, part.h, part.parts.count, StepKind::explicit_rule, ws);
+    const ContactStep step = contact_step_of(StepKind::explicit_rule, is_euler_, stages_ != nullptr);
+    pieces = contact_parts_again(model, part.h, part.parts.count, step, ws);
   }
   pieces.count = std::max(pieces.count, part.parts.pieces);
   bool is_sound = true;

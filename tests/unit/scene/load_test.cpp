@@ -40,15 +40,16 @@ TEST(Load, AnEscapeThatStandsForAControlCharacterOrNoTextIsRefusedAtItsPlace) {
   const auto with_title = [](const std::string& title) {
     return kPendulum + "plots:\n  Swing: {title: \"a" + title + "b\", variables: [Rod.position.x]}\n";
   };
-  for (const char* escape : {"\\0", "\\a", "\\b", "\\e", "\\f", "\\v", "\\x00", "\\x01", "\\x07", "\\x1b", "\\x7f",
-                             "\\u0000", "\\u001b", "\\U0000007f"}) {
+  for (const char* escape : {"\\0",   "\\a",   "\\b",   "\\e",     "\\f",     "\\v",         "\\x00",  "\\x01",
+                             "\\x07", "\\x1b", "\\x7f", "\\u0000", "\\u001b", "\\U0000007f", "\\N",    "\\L",
+                             "\\P",   "\\x80", "\\x9b", "\\u009f", "\\u2028", "\\ufffe",     "\\uffff"}) {
     const std::string problem = problems_of(with_title(escape));
     EXPECT_NE(problem.find("test:6:18: "), std::string::npos) << escape << ": " << problem;
     EXPECT_NE(problem.find("after its escapes are resolved; expected UTF-8 text"), std::string::npos) << escape;
   }
   EXPECT_NE(problems_of("scene: \"a\\0b\"\n" + kPendulum).find("NUL byte"), std::string::npos);
-  for (const char* escape :
-       {"\\t", "\\n", "\\r", "\\\\", "\\\"", "\\/", "\\ ", "\\_", "\\u00e4", "\\U0001F69C", "\\x41"}) {
+  for (const char* escape : {"\\t", "\\n", "\\r", "\\\\", "\\\"", "\\/", "\\ ", "\\_", "\\u00e4", "\\U0001F69C",
+                             "\\x41", "\\xa0", "\\xc2", "\\u202e"}) {
     const std::string text = with_title(escape);
     ASSERT_EQ(problems_of(text), "") << escape;
     const Scene once = load_text(text, "test");
