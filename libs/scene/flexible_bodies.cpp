@@ -59,18 +59,17 @@ class FlexibleReader {
 
   void read(const BodyDef& body) {
     FlexibleBodyDef flexible{.body = body.name};
-    if (const auto damping = number_list(body.relative_damping)) {
-      flexible.relative_damping = *damping;
-    } else {
-      report_problem(body, "relative_damping", "'" + body.relative_damping + "' is no list of numbers",
-                     "numbers between semicolons, such as '0.005;0.005'");
-    }
+    flexible.relative_damping = numbers_of(body, "relative_damping", body.relative_damping);
+    flexible.start = numbers_of(body, "modal_coordinates", body.modal_coordinates);
+    flexible.start_rates = numbers_of(body, "modal_rates", body.modal_rates);
     const std::optional<Wanted> modes = modes_of(body);
     if (load_context_.has_assets) {
       const flex::FlexibleFileSet files = files_of(body);
       const flex::Reduction* reduction = reduction_of(body, files);
       if (reduction != nullptr && modes) take(body, files, *reduction, *modes, flexible);
     }
+    const bool is_undeformed = body.start_shape == multibody::StartShape::undeformed;
+    if (is_undeformed && flexible.modes != nullptr) flexible.start.assign(flexible.modes->modes(), 0.0);
     scene_.mechanics.flexible_bodies.push_back(std::move(flexible));
   }
 
@@ -84,6 +83,7 @@ class FlexibleReader {
                      "'" + body.relative_damping + "' is not one number: the beams between segments are damped alike",
                      "one number, of the files' first mode");
     }
+    if (body.start_shape == multibody::StartShape::undeformed) segmented.start = multibody::SegmentStart::straight;
     if (load_context_.has_assets) {
       const flex::FlexibleFileSet files = files_of(body);
       const flex::Reduction* reduction = reduction_of(body, files);
@@ -93,6 +93,13 @@ class FlexibleReader {
   }
 
  private:
+  std::vector<double> numbers_of(const BodyDef& body, const char* key, const std::string& text) {
+    if (auto numbers = number_list(text)) return *std::move(numbers);
+    report_problem(body, key, "'" + text + "' is no list of numbers",
+                   "numbers between semicolons, such as '0.005;0.005'");
+    return {};
+  }
+
   [[nodiscard]] flex::FlexibleFileSet files_of(const BodyDef& body) const {
     return {load_context_.asset_folder, body.flex_model.empty() ? scene_.name : body.flex_model, body.flex_file_prefix};
   }

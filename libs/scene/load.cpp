@@ -276,7 +276,8 @@ class SceneReader {
                                     "no such key, or type flexible", ""}
                      : ValueProblem{"a flexible body has no segments: it bends by the modes of its files",
                                     "no such key, or type segmented", ""};
-    for (const std::string_view key : {"flex_modes", "flex_frequency_limit", "segments"}) {
+    for (const std::string_view key :
+         {"flex_modes", "flex_frequency_limit", "modal_coordinates", "modal_rates", "segments"}) {
       const Node::Entry* found = element.value.find(key);
       if (found == nullptr || is_segmented == (key == "segments")) continue;
       passed_over.push_back(key);

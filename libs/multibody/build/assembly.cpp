@@ -151,7 +151,9 @@ class Assembler {
       if (model_.start_is_given[j] != 0 && !is_prescribed(j)) given.push_back(j);
     }
     for_each_mode(model_, [&](std::size_t, std::size_t u) { modal.push_back(u); });
-    if (given.empty() && model_.given_speeds.empty() && model_.drives.empty()) return {};
+    const bool has_modal_rates =
+        std::any_of(modal.begin(), modal.end(), [&](std::size_t u) { return state_.u[u] != 0; });
+    if (given.empty() && model_.given_speeds.empty() && model_.drives.empty() && !has_modal_rates) return {};
     const std::vector<double> wanted = state_.u;
     renew(state_);
     const std::size_t cuts = ws_.loops.rows.size(), first_cut_speed = cuts + given.size();

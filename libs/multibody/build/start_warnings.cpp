@@ -44,11 +44,39 @@ void find_start_deflections(const Model& model, Problems& warnings) {
   }
 }
 
+// values of modes that the scene gives and loops do not leave
+void find_moved_modes(const MechanicsDef& mechanics, const Model& model, Problems& warnings) {
+  constexpr double kMoved = 1e-9;  // of the largest value of the body
+  const auto compare = [&](const FlexiblePart& part, const char* key, const std::vector<double>& wanted,
+                           const double* found) {
+    double largest = 0, moved = 0;
+    std::size_t place = 0;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      largest = std::max({largest, std::fabs(wanted[k]), std::fabs(found[k])});
+      if (std::fabs(found[k] - wanted[k]) <= moved) continue;
+      moved = std::fabs(found[k] - wanted[k]);
+      place = k;
+    }
+    if (!(moved > kMoved * largest)) return;
+    warnings.push_back({part.name + "." + key,
+                        fmt::format("the loops leave no such start: the value of mode {} is {:.6g} instead of {:.6g}",
+                                    place + 1, found[place], wanted[place]),
+                        "values that the joints of the loops allow", ""});
+  };
+  for (const FlexibleBodyDef& def : mechanics.flexible_bodies) {
+    for (const FlexiblePart& part : model.parts) {
+      if (part.name != def.body || part.modes == 0) continue;
+      compare(part, "modal_coordinates", def.start, &model.start_q[static_cast<std::size_t>(part.q)]);
+      compare(part, "modal_rates", def.start_rates, &model.start_u[static_cast<std::size_t>(part.u)]);
+    }
+  }
+}
+
 void find_start_bends(const Model& model, Problems& warnings) {
   Workspace ws(model);
   observe(model, start_state(model), ws);
   for (const SegmentedPart& part : model.segmented) {
-    if (!part.is_free || (model.has_closing_rows() && part.start == SegmentStart::at_rest)) {
+    if (part.start == SegmentStart::at_rest && (!part.is_free || model.has_closing_rows())) {
       warnings.push_back({part.name + ".segments",
                           part.is_free
                               ? "the body starts undeformed, moves as a rigid one that the joints allow, and "
@@ -91,6 +119,7 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
          "poses that fit the joints", ""});
   }
   find_start_deflections(model, warnings);
+  find_moved_modes(mechanics, model, warnings);
   find_start_bends(model, warnings);
   const Description description = describe(model);
   for (const CutDescription& cut : description.cuts) {

@@ -91,7 +91,7 @@ void add_parts(const MechanicsDef& mechanics, Model& model) {
     part.u = model.speed_count();
     for (std::size_t mode = 0; mode < part.modes; ++mode) {
       model.start_q.push_back(def.start.empty() ? 0 : def.start[mode]);
-      model.start_u.push_back(0);
+      model.start_u.push_back(def.start_rates.empty() ? 0 : def.start_rates[mode]);
       model.start_is_given.push_back(0);
     }
     Link& link = model.links[at(part.link)];

@@ -20,6 +20,7 @@ struct FlexibleBodyDef {
       relative_damping{};       // zeta by mode: 2 zeta omega on the normalised mode; one for all, or empty: 0
   std::vector<double> start{};  // q by mode; empty: static equilibrium in the start's pose, zero in a mechanism with
                                 // loops
+  std::vector<double> start_rates{};  // q' by mode; empty: 0
 };
 
 struct BodyDef;

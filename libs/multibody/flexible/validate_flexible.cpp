@@ -38,7 +38,8 @@ void check_count(const FlexibleBodyDef& def, const char* key, std::size_t count,
 
 void check(const FlexibleBodyDef& def, Problems& problems) {
   check_count(def, "relative_damping", def.relative_damping.size(), true, problems);
-  check_count(def, "start", def.start.size(), false, problems);
+  check_count(def, "modal_coordinates", def.start.size(), false, problems);
+  check_count(def, "modal_rates", def.start_rates.size(), false, problems);
   for (const double zeta : def.relative_damping) {
     if (zeta >= 0 && std::isfinite(zeta)) continue;
     problems.push_back({def.body + ".relative_damping", fmt::format("{} is out of range", zeta), "numbers >= 0", ""});

@@ -35,6 +35,9 @@ enum class InertiaPoint : int { center_of_mass, body_origin };
 // In the order of the body types of field_tables.h.
 enum class BodyType : int { rigid, flexible, segmented };
 
+// Shape of a flexible or segmented body at the start. equilibrium: under its load, where no loop or joint prevents it.
+enum class StartShape : int { equilibrium, undeformed };
+
 // One struct for all types; each type's field table lists the members that it has.
 struct BodyDef {
   std::string name{};
@@ -54,7 +57,10 @@ struct BodyDef {
   std::string flex_modes{};                  // ordinals, "1;2", or "none"; empty: all
   double flex_frequency_limit = kUnlimited;  // Hz
   std::string relative_damping{};            // zeta by mode, "0.005;0.005", or one for all; empty: 0
-  std::int64_t segments = 20;                // connectors of a segmented body
+  StartShape start_shape = StartShape::equilibrium;
+  std::string modal_coordinates{};  // q at the start by mode, "0.01;0"; empty: by start_shape
+  std::string modal_rates{};        // q' at the start by mode; empty: 0
+  std::int64_t segments = 20;       // connectors of a segmented body
 };
 
 // Types from in_plane on have no coordinates of their own (topology.h): their rows are in constraint.h.

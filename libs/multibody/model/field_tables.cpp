@@ -37,6 +37,7 @@ constexpr Range kIterationRange{.min = 1e-13, .max = 1e-3, .min_is_open = false,
 constexpr double kMassRamp = 1.0;  // s
 
 constexpr std::array<std::string_view, 2> kInertiaPoints = {"center_of_mass", "body_origin"};
+constexpr std::array<std::string_view, 2> kStartShapes = {"equilibrium", "undeformed"};
 constexpr std::array<std::string_view, 4> kFormulations = {"recursive", "lagrange", "augmented", "penalty"};
 constexpr std::array<std::string_view, 7> kIntegrators = {
     "rk4", "semi_implicit_euler", "trapezoidal", "generalised_alpha", "sdirk2", "index3_trapezoidal", "own"};
@@ -136,6 +137,10 @@ constexpr Field kBodyFields[] = {
                                    {.choices = kInertiaPoints, .doc = "point that inertia and products refer to"}),
 };
 
+constexpr ReadBy kReadWithoutCoordinates[] = {
+    {"modal_coordinates", "no modal_coordinates",
+     [](const void* def) noexcept { return static_cast<const BodyDef*>(def)->modal_coordinates.empty(); }}};
+
 constexpr Field kFlexibleBodyFields[] = {
     kRelativeTo,
     kPosition,
@@ -154,6 +159,17 @@ constexpr Field kFlexibleBodyFields[] = {
         {.dimension = Dimension::frequency, .range = kPositive, .doc = "modes above it are omitted"}),
     field<&BodyDef::relative_damping>(
         "relative_damping", {.doc = "damping over critical damping by mode, as '0.005;0.005', or one for all; 0"}),
+    field<&BodyDef::start_shape>("start_shape",
+                                 {.choices = kStartShapes,
+                                  .read_by = kReadWithoutCoordinates,
+                                  .doc = "equilibrium: the body rests under its load at the start, in a mechanism with "
+                                         "loops it is undeformed"}),
+    field<&BodyDef::modal_coordinates>(
+        "modal_coordinates",
+        {.doc = "modal coordinates at the start by mode, as '0.01;0', in SI units of the files' modes, instead of "
+                "start_shape"}),
+    field<&BodyDef::modal_rates>("modal_rates",
+                                 {.doc = "their rates at the start, as '0.1;0'; 0. Loops close by the other speeds"}),
 };
 
 constexpr Field kSegmentedBodyFields[] = {
@@ -170,6 +186,10 @@ constexpr Field kSegmentedBodyFields[] = {
                                            .doc = "elastic connectors of equal length, between one more rigid lumps"}),
     field<&BodyDef::relative_damping>("relative_damping",
                                       {.doc = "damping over critical damping of the files' first mode, one number; 0"}),
+    field<&BodyDef::start_shape>("start_shape",
+                                 {.choices = kStartShapes,
+                                  .doc = "equilibrium: the body rests under its load at the start, in a mechanism with "
+                                         "loops it is undeformed; undeformed: all segmented bodies of the scene are"}),
 };
 
 template <typename Def>

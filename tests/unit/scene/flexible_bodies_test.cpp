@@ -142,6 +142,26 @@ TEST_F(FlexibleScene, RigidKeysMayStayAndAreComparedWithTheFiles) {
   expect_part(other[1], "Boom.center_of_mass: it has no effect: the flexible files give [-3.25");
 }
 
+TEST_F(FlexibleScene, StartsByModeOrUndeformed) {
+  const auto scene_with = [&](const std::string& keys) {
+    return with(kBoom, "    flex_modes", keys + "    flex_modes");
+  };
+  const auto boom = [&](const std::string& keys) { return load(scene_with(keys)).mechanics.flexible_bodies[0]; };
+  EXPECT_TRUE(boom("").start.empty());
+  EXPECT_TRUE(boom("").start_rates.empty());
+  const std::string given = "    modal_coordinates: \"0.01;-2e-3\"\n    modal_rates: \"0;0.5\"\n";
+  EXPECT_EQ(boom(given).start, (std::vector<double>{0.01, -2e-3}));
+  EXPECT_EQ(boom(given).start_rates, (std::vector<double>{0, 0.5}));
+  EXPECT_EQ(boom("    start_shape: undeformed\n").start, (std::vector<double>{0, 0}));
+  const Scene scene = load(scene_with(given));
+  EXPECT_EQ(load_text(scene.expanded_text, "again", {}, folder_.path()).expanded_text, scene.expanded_text);
+  expect_part(problems(scene_with(given + "    start_shape: undeformed\n")),
+              "Boom.start_shape: nothing reads this key with modal_coordinates");
+  expect_part(problems(scene_with("    modal_coordinates: 0.01\n")),
+              "Boom.modal_coordinates: holds 1 numbers for 2 modes");
+  expect_part(problems(scene_with("    modal_rates: \"0;x\"\n")), "Boom.modal_rates: '0;x' is no list of numbers");
+}
+
 TEST_F(FlexibleScene, RigidIsTheDefaultType) {
   const std::string named = with(kPendulum, "{mass", "{type: rigid, mass");
   EXPECT_EQ(load_text(named, "test").expanded_text, load_text(kPendulum, "test").expanded_text);
@@ -200,6 +220,9 @@ TEST_F(FlexibleScene, NodesOfSegmentsAreNamedAsThoseOfModes) {
 TEST_F(FlexibleScene, KeysOfTheOtherWayAreRefused) {
   expect_part(problems(in_segments("    flex_modes: 1\n")), "Boom.flex_modes: a segmented body has no modes");
   expect_part(problems(in_segments("    flex_frequency_limit: 9 Hz\n")), "a segmented body has no modes");
+  expect_part(problems(in_segments("    modal_rates: 1\n")), "Boom.modal_rates: a segmented body has no modes");
+  EXPECT_EQ(load(in_segments("    start_shape: undeformed\n")).mechanics.segmented_bodies[0].start,
+            multibody::SegmentStart::straight);
   expect_part(problems(with(kBoom, "    flex_modes", "    segments: 3\n    flex_modes")),
               "Boom.segments: a flexible body has no segments");
   expect_part(problems(in_segments("    relative_damping: \"0.005;0.005\"\n")), "is not one number");

@@ -79,6 +79,29 @@ TEST_P(FlexibleStarts, StandStill) {
   EXPECT_NEAR(boom.value("Boom.deflection.y"), before, 1e-7 * std::fabs(before));
 }
 
+// Two modes on a fixed root, without gravity: q_1 = q cos(omega_1 t), q_2 = q'/omega_2 sin(omega_2 t).
+TEST_P(FlexibleStarts, SwingFromGivenCoordinatesAndRates) {
+  MechanicsDef def = level_boom(500, 2e11, {1, 2});
+  def.bodies.resize(1);
+  def.joints.resize(1);
+  def.gravity = {};
+  def.flexible_bodies[0].start = {0.02, 0};
+  def.flexible_bodies[0].start_rates = {0, 0.3};
+  Formulated boom = start(def);
+  const ModalBody& modes = *def.flexible_bodies[0].modes;
+  std::vector<std::size_t> places;
+  for_each_mode(boom.model, [&](std::size_t q, std::size_t) { places.push_back(q); });
+  ASSERT_EQ(places.size(), 2U);
+  const double first = std::sqrt(modes.stiffness[0] / modes.mass_matrix[0]),
+               second = std::sqrt(modes.stiffness[3] / modes.mass_matrix[3]);
+  for (int i = 1; i <= 4; ++i) {
+    boom.run(0.05, 1e-4);
+    const double t = 0.05 * i;
+    EXPECT_NEAR(boom.state.q[places[0]], 0.02 * std::cos(first * t), 1e-5 * 0.02);
+    EXPECT_NEAR(boom.state.q[places[1]], 0.3 / second * std::sin(second * t), 1e-5 * 0.3 / second);
+  }
+}
+
 // A body without modes is the rigid body of the beam's mass; so is one whose nodes carry others.
 TEST_P(FlexibleStarts, BodiesWithoutModesAreRigid) {
   MechanicsDef flexible = level_boom(300, 2e11, {1, 2});
