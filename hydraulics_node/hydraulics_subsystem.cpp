@@ -43,6 +43,7 @@ HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
       reduced_(laws_of(scene)),
       late_samples_(m_, is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
       alarm_(scene),
+      convergence_(scene.hydraulics.solver),
       ramps_(circuit_->parameters().size()) {
   coupling::resize(published_, m_);
   stiffness_.resize(m_);
@@ -57,6 +58,7 @@ void HydraulicsSubsystem::reset() {
   integrator_ = std::make_unique<hydraulics::CircuitIntegrator>(*circuit_, scene_.hydraulics);
   signals_ = ControlSignals(scene_, *circuit_);
   alarm_.reset();
+  convergence_.reset();
   ramps_ = coupling::ParameterRamps(circuit_->parameters().size());
   levels_.reset();
   failure_ = StepReport{};
@@ -165,6 +167,7 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   StepReport report = integrator_->step(H_.seconds(), reduced_);
   report.flags |= taken.flags;
   alarm_.raise_flags(levels_, report);
+  if (convergence_.ends_run(report, *integrator_, offender_name(report.offender))) report.raise(StepFlag::ended);
   if (report.has_failed()) {
     failure_ = report;
     sample.actuators = published_;
@@ -246,6 +249,7 @@ std::uint64_t HydraulicsSubsystem::state_hash() const noexcept {
   if (exchange_every_ > 1) reduced_.add_to(hash);  // otherwise every step replaces it
   levels_.add_to(hash);
   signals_.add_to(*circuit_, hash);
+  convergence_.add_to(hash);
   hash.add(failure_.has_failed());
   return hash.digest();
 }
@@ -288,7 +292,9 @@ std::string_view HydraulicsSubsystem::offender_name(std::int32_t index) const no
   if (actuator >= 0 && actuator < 2 * circuit_->actuator_count()) {
     return scene_.ports[static_cast<std::size_t>(actuator % circuit_->actuator_count())].name;
   }
-  return "a state of a hydraulic component";
+  const std::int32_t state = index - circuit_->first_component_state();
+  if (index >= 0 && index < circuit_->state_count()) return circuit_->state_owner(state);
+  return "a state of the circuit";
 }
 
 std::unique_ptr<coupling::Subsystem> make_hydraulics_subsystem(const scene::Scene& scene) {

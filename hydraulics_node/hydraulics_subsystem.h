@@ -8,7 +8,7 @@
 // tlm F is the force of the lines on the piston (hydraulics/line_chambers.h), as in the mechanics.
 //
 // Also computes the coupling error per port (coupling/indicator.h), since it has both samples of a step, and ends a
-// session whose coupling diverges (session.coupling_alarm).
+// session whose coupling diverges (session.coupling_alarm) or whose circuit is no longer solved (convergence_watch.h).
 #pragma once
 
 #include <memory>
@@ -21,6 +21,7 @@
 #include "hydraulics/circuit.h"
 #include "hydraulics/circuit_integrator.h"
 #include "hydraulics_node/control_signals.h"
+#include "hydraulics_node/convergence_watch.h"
 #include "hydraulics_node/coupling_alarm.h"
 #include "hydraulics_node/late_samples.h"
 #include "hydraulics_node/reduced_mechanics.h"
@@ -57,7 +58,9 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
   void read_variables(std::span<double> values) const noexcept override;
   [[nodiscard]] std::string_view offender_name(std::int32_t index) const noexcept override;
-  [[nodiscard]] std::string_view failure_text() const noexcept override { return alarm_.text(); }
+  [[nodiscard]] std::string_view failure_text() const noexcept override {
+    return alarm_.text().empty() ? convergence_.text() : alarm_.text();
+  }
 
   [[nodiscard]] const coupling::Indicator& indicator() const noexcept { return alarm_.indicator(); }
   [[nodiscard]] const hydraulics::Circuit& circuit() const noexcept { return *circuit_; }
@@ -87,6 +90,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   ReducedMechanics reduced_;
   LateSamples late_samples_;
   CouplingAlarm alarm_;
+  ConvergenceWatch convergence_;
   coupling::ParameterRamps ramps_;
   StepIndex used_step_ = -1;   // step of the mechanics' sample in use
   StepIndex partner_age_ = 0;  // age of this sample in the last step

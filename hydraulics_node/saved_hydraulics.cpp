@@ -5,7 +5,7 @@
 namespace slew::hydraulics_node {
 namespace {
 
-constexpr std::uint32_t kLayout = 1;
+constexpr std::uint32_t kLayout = 2;
 
 }  // namespace
 
@@ -34,6 +34,7 @@ void HydraulicsSubsystem::visit(Self& self, Bytes& bytes) {
   visit_sized(bytes, self.stiffness_, self.m_);
   visit_report(bytes, self.failure_);
   CouplingAlarm::visit_text(self.alarm_, bytes);
+  ConvergenceWatch::visit(self.convergence_, bytes);
 }
 
 Status HydraulicsSubsystem::can_save() const {

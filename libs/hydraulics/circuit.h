@@ -138,6 +138,14 @@ class Circuit {
   // Remembers the capacities at the floor of the volumes that are not below it, (3) of vapour.h; at the end of every
   // sub-step.
   void follow_vapour(const double* y) noexcept;
+  // Balance of a sub-step of h seconds from y_before to y, (4) of vapour.h: the first volume that enters the vapour
+  // further than the flow at its end can have taken it, -1: none.
+  [[nodiscard]] int emptied_without_outflow(double h, const double* y_before, const double* y) noexcept;
+  // Oil of an Euler sub-step, (6) of vapour.h: the first volume where it is off by more than `share` of the size of its
+  // pressure; -1: none.
+  [[nodiscard]] int unbalanced_volume(double share, const double* y_before, const double* y) const noexcept;
+  // The first volume whose room without oil is larger than the volume itself, -1: none.
+  [[nodiscard]] int first_overdrawn(const double* y) const noexcept;
   [[nodiscard]] std::span<const double> vapour_capacities() const noexcept { return vapour_.capacity; }
   void set_vapour_capacities(std::span<const double> C) noexcept;
   void save_vapour(StateWriter& bytes, const double* y) const;

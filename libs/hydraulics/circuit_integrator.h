@@ -78,9 +78,10 @@ class CircuitIntegrator final : private math::StiffSystem {
   // Takes the pistons' true position and speed: pressures follow with the oil enclosed (study, section 8).
   void align(std::span<const double> x, std::span<const double> v) noexcept;
 
-  // Advances by H seconds. A non-finite state is latched: the last finite one stays, and every further report has the
-  // flag. offender: StateIndex of the state that failed, ran out of budget or of stability (not_converged), of the
-  // volume farthest beyond the oil's law, or of the first volume that cavitates.
+  // Advances by H seconds. A failure is latched: the state before the step stays, and every further report has its
+  // flag: non_finite, or ended when no sub-step balances the oil of a volume. A volume with more room without oil than
+  // it has room is not_converged. offender: StateIndex of the state that failed, ran out of budget or of stability
+  // (not_converged), of the volume farthest beyond the oil's law, or of the first volume that cavitates.
   StepReport step(double H, const PistonMotion& motion) noexcept;
 
   [[nodiscard]] std::span<const ActuatorLinearisation> actuators() const noexcept { return published_; }
@@ -96,6 +97,8 @@ class CircuitIntegrator final : private math::StiffSystem {
   void set_step_size(double h) noexcept { solver_->set_step_size(h); }
   [[nodiscard]] std::span<const StateIndex> quasi_static() const noexcept { return quasi_static_; }  // volumes
   [[nodiscard]] const math::StiffReport& last_report() const noexcept { return report_; }
+  // The volume with more room without oil than it has room after the last step, -1: none.
+  [[nodiscard]] int overdrawn() const noexcept { return circuit_.first_overdrawn(y_.data()); }
 
   // Adds the raw bits of all state that influences later results: y, the solver's memory, failure latch, live
   // parameters.
@@ -113,6 +116,8 @@ class CircuitIntegrator final : private math::StiffSystem {
   const double* jacobian(const double* y, const double* f) noexcept override;
   const double* linearise(const double* y, double* f) noexcept override;
   [[nodiscard]] double time_to_bend(const double* y, const double* f, const double* J) noexcept override;
+  [[nodiscard]] std::int32_t impossible_state(double h, const double* y_before, const double* y) noexcept override;
+  [[nodiscard]] std::int32_t unbalanced_state(const double* y_before, const double* y) noexcept override;
   void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept override;
   struct PressureForce {
     double F = 0, rate = 0;  // N, N/s
@@ -129,6 +134,9 @@ class CircuitIntegrator final : private math::StiffSystem {
   void list_quasi_static();
   void note_inputs() noexcept;
   [[nodiscard]] bool make_consistent() noexcept;
+  [[nodiscard]] StepFlag failure_flag() const noexcept {
+    return report_.is_impossible ? StepFlag::ended : StepFlag::non_finite;
+  }
   void report_flags(StepReport& report) noexcept;
   void publish_line(int actuator) noexcept;
   void integrate_pressures(double h, const double* y_before, const double* f_before, const double* y) noexcept;

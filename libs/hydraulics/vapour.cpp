@@ -15,6 +15,9 @@ constexpr int kLiquidParts = 4;          // Runge-Kutta parts, for the liquid pa
 constexpr double kClosed = 1e-12;        // share of the flow swept by the pistons: rounding of a sum of flows
 constexpr double kLargestChange = 0.02;  // share of a pressure, per part of a piston's displacement
 constexpr int kMostParts = 64;
+constexpr double kFallingFlow = 2;  // (4) of vapour.h: mean flow of a sub-step over that at its end
+constexpr double kAtFloor = 1e-3;   // share of the floor: rounding of a state that ends there
+constexpr double kFull = 1 + 1e-6;  // (5) of vapour.h, with its rounding
 
 }  // namespace
 
@@ -58,6 +61,37 @@ void Circuit::follow_vapour(const double* y) noexcept {
   for (const std::size_t i : with_chambers_) {
     if (!vapour_.is_in(i, y)) vapour_.capacity[i] = capacity_at_floor(i, y);
   }
+}
+
+int Circuit::emptied_without_outflow(double h, const double* y_before, const double* y) noexcept {
+  bool is_evaluated = false;
+  for (std::size_t i = 0; i < volumes_.size(); ++i) {
+    if (!vapour_.is_in(i, y) || vapour_.is_in(i, y_before)) continue;
+    if (!is_evaluated) rates(y, kept_rates_.data());
+    is_evaluated = true;
+    // both sides of (4) over C_f
+    const double fall = vapour_.begins_below[i] - y[i];
+    if (fall > kAtFloor * floor_ - kFallingFlow * h * kept_rates_[i]) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+int Circuit::unbalanced_volume(double share, const double* y_before, const double* y) const noexcept {
+  for (std::size_t i = 0; i < volumes_.size(); ++i) {
+    // fixed and quasi-static volumes store nothing
+    if (!(vapour_.begins_below[i] > 0) || y[i] == y_before[i]) continue;
+    const double before = capacity_at(i, y_before), after = capacity_at(i, y);
+    const double off = 0.5 * std::fabs((after - before) * (y[i] - y_before[i]));
+    if (off > share * after * (scale_[i] + std::max(y[i], 0.0))) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+int Circuit::first_overdrawn(const double* y) const noexcept {
+  for (std::size_t i = 0; i < volumes_.size(); ++i) {
+    if (vapour_.is_in(i, y) && vapour_.void_volume(i, y) > kFull * capacity(i, y).content) return static_cast<int>(i);
+  }
+  return -1;
 }
 
 // Growth of a volume by its chambers over the whole displacement [m3]; a line's oil follows in move_lines().

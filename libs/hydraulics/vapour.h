@@ -9,7 +9,16 @@
 // C_f is the volume's capacity on reaching the floor, constant until the oil has filled the room again: (3) is linear
 // in u and in the strokes, so that every integration method keeps the oil of a closed volume to rounding at any
 // tolerance, and u passes the floor without a bend. The pressure alone cannot serve as the state: between p_f and zero
-// it has one value for any amount of vapour. Not covered: dissolved air, inertia of collapsing bubbles.
+// it has one value for any amount of vapour.
+//
+// C jumps at the floor, by 1e4 in oil with air. The error estimate of a method measures flows over C and does not see a
+// stage that ends far below the floor. Two balances hold whatever the laws of the pressure are:
+//   V_void <= 2 h sum Q_out(end of the sub-step)     for a sub-step h in which u passes the floor             (4)
+//   V_void <= V                                      no oil is taken from an empty volume                     (5)
+// 2 allows for a flow that falls during the sub-step. An Euler sub-step takes h sum Q = C(u_1) (u_1 - u_0) of oil where
+// the content changes by int C du:
+//   abs(C(u_1) - C(u_0)) abs(u_1 - u_0) / 2 <= share C(u_1) (scale + p)                                       (6)
+// Not covered: dissolved air, inertia of collapsing bubbles.
 #pragma once
 
 #include <cmath>

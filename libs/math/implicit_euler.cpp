@@ -71,28 +71,35 @@ StiffReport ImplicitEuler::advance(StiffSystem& system, std::span<double> y, dou
   StiffReport report;
   const double parts = std::max(1.0, std::ceil(duration / options_.maximum_step * (1 - 1e-12)));
   const double nominal = duration / parts;
+  const double deepest = kShortestShare * options_.minimum_step;
   for (double part = 0; part < parts; ++part) {
     double rest = nominal, h = nominal;
     while (rest > 0) {
       h = std::min(h, rest);
       system.derivative(y.data(), f_.data());
       const Newton newton = try_step(system, y.data(), h, report);
-      const bool is_shortest = h <= options_.minimum_step;
-      if (!newton.has_converged && !is_shortest) {
+      const std::int32_t impossible = newton.is_finite ? system.impossible_state(h, y.data(), new_.data()) : -1;
+      // the budget bounds the cost of sub-steps below minimum_step
+      const double shortest = report.rejected < options_.substep_budget ? deepest : options_.minimum_step;
+      const std::int32_t unbalanced = newton.is_finite ? system.unbalanced_state(y.data(), new_.data()) : -1;
+      const bool is_sound = newton.has_converged && impossible < 0 && unbalanced < 0;
+      if (!is_sound && h > shortest) {
         ++report.rejected;
-        h = std::max(0.5 * h, options_.minimum_step);
+        h = std::max(0.5 * h, shortest);
         continue;
       }
-      if (!newton.is_finite) {
-        report.is_finite = false;
-        report.worst_state = newton.worst;
+      if (!newton.is_finite || impossible >= 0) {
+        report.is_impossible = impossible >= 0;
+        report.is_finite = newton.is_finite;
+        report.worst_state = report.is_impossible ? impossible : newton.worst;
         return report;
       }
       if (newton.last >= report.largest_error) {
         report.largest_error = newton.last;
         report.worst_state = newton.worst;
       }
-      report.is_at_minimum_step = report.is_at_minimum_step || !newton.has_converged;
+      if (unbalanced >= 0) report.worst_state = unbalanced;
+      report.is_at_minimum_step = report.is_at_minimum_step || !is_sound;
       ++report.accepted;
       report.is_over_budget = report.rejected > options_.substep_budget;
       system.accepted(h, y.data(), f_.data(), new_.data());

@@ -16,9 +16,10 @@ constexpr double kC21 = 4, kC31 = 1, kC32 = -1, kC41 = 1, kC42 = -1, kC43 = -8.0
 constexpr double kSafety = 0.9;  // factor on the size that the error estimate just allows
 constexpr double kShrink = 0.2;  // bounds on the change of the step size from one step to the next
 constexpr double kGrow = 6;
-constexpr double kFirstFraction = 0.1;  // share of the interval, for the first step
-constexpr double kStretch = 1e-9;       // relative: a rest this small is taken with the step before it
-constexpr int kUncheckedSteps = 10;     // steps for the rest of an interval after the budget is used up
+constexpr double kFirstFraction = 0.1;     // share of the interval, for the first step
+constexpr double kStretch = 1e-9;          // relative: a rest this small is taken with the step before it
+constexpr int kUncheckedSteps = 10;        // steps for the rest of an interval after the budget is used up
+constexpr std::uint32_t kMostBudgets = 4;  // tries of an interval, over the budget: some for steps of gross error
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLowestOrder = 0.1;  // lower bound of the order estimated from two rejections
 
@@ -115,24 +116,25 @@ std::int32_t Rodas3::first_non_finite() const noexcept {
   return -1;
 }
 
-// A step cut short by the end of the interval does not shorten the next one.
+// A step cut short by the end of the interval does not shorten the next one. Below minimum_step the size only grows.
 double Rodas3::next_step(double wanted_before, double used, double factor, double longest) const noexcept {
   const double wanted = factor >= 1 ? std::max(wanted_before, used * factor) : used * factor;
-  return std::min(std::max(wanted, options_.minimum_step), longest);
+  return std::min(std::max(wanted, std::min(options_.minimum_step, wanted_before)), longest);
 }
 
 StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double duration) noexcept {
   SLEW_ASSERT(y.size() == size_);
   StiffReport report;
   double h = step_size_ > 0 ? step_size_ : kFirstFraction * duration;
-  double rest = duration;
+  double rest = duration, unchecked = 0;
+  const double shortest = kShortestShare * options_.minimum_step;
   const double* J = nullptr;
   Rejected rejected;
   while (rest > 0) {
     // budget used up: a few more steps, with any error
     if (!report.is_over_budget && report.accepted + report.rejected >= options_.substep_budget) {
       report.is_over_budget = true;
-      h = std::max(options_.minimum_step, rest / kUncheckedSteps);
+      h = unchecked = std::max(options_.minimum_step, rest / kUncheckedSteps);
     }
     // two equal steps rather than a long and a short one
     const bool reaches_end = h >= rest * (1 - kStretch);
@@ -143,19 +145,26 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
     if (ends_at_bend) used = bend;
     const bool is_solvable = matrix_.factorise(J, 1 / (used * kGamma));
     if (matrix_.is_dense()) ++report.dense_factorisations;
-    const double error = is_solvable ? try_step(system, y.data(), used) : kInfinity;
+    double error = is_solvable ? try_step(system, y.data(), used) : kInfinity;
+    // where a law turns from stiff to soft the estimate takes a stage far beyond the end of the motion for the end
+    const std::int32_t impossible = error < kInfinity ? system.impossible_state(used, y.data(), new_.data()) : -1;
+    if (impossible >= 0) error = kInfinity;
     const double factor = std::clamp(kSafety / std::cbrt(std::max(error, 1e-12)), kShrink, kGrow);
 
-    const bool is_shortest = used <= options_.minimum_step;
-    const bool is_accepted = error <= 1 || (error < kInfinity && (is_shortest || report.is_over_budget));
+    const bool is_shortest = used <= shortest;
+    // the pressure of an algebraic row may jump
+    const bool is_gross = error * options_.relative_tolerance > kGrossShare && worst_ >= 0 &&
+                          matrix_.mass()[static_cast<std::size_t>(worst_)] != 0;
+    const bool is_accepted = error <= 1 || (error < kInfinity && !is_gross && (is_shortest || report.is_over_budget));
     if (!is_accepted) {
-      if (is_shortest || report.is_over_budget) {
-        report.is_finite = false;
-        report.worst_state = first_non_finite();
+      if (is_shortest || report.accepted + report.rejected >= kMostBudgets * options_.substep_budget) {
+        report.is_finite = impossible >= 0 || error < kInfinity;
+        report.is_impossible = report.is_finite;
+        report.worst_state = impossible >= 0 ? impossible : report.is_finite ? worst_ : first_non_finite();
         return report;
       }
       ++report.rejected;
-      h = std::max(options_.minimum_step, used * std::min(shorter(rejected, {used, error}, factor), 0.9));
+      h = std::max(shortest, used * std::min(shorter(rejected, {used, error}, factor), 0.9));
       rejected = {used, error};
       continue;
     }
@@ -171,7 +180,11 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
     rejected = {};
     rest = reaches_end && !ends_at_bend ? 0 : rest - used;
     // after a bend the step size before it is tried again
-    if (!report.is_over_budget && !ends_at_bend) h = next_step(h, used, factor, duration);
+    if (report.is_over_budget) {
+      h = std::min(kGrow * used, unchecked);
+    } else if (!ends_at_bend) {
+      h = next_step(h, used, factor, duration);
+    }
   }
   step_size_ = report.is_over_budget ? options_.minimum_step : h;
   return report;

@@ -6,7 +6,10 @@
 //   c_21 = 4;  c_31 = 1, c_32 = -1;  c_41 = 1, c_42 = -1, c_43 = -8/3                                        (3)
 //   y_new = y + 2 K_1 + K_3 + K_4,   error = K_4                                                             (4)
 // A step needs three f, one J, one LU and four solves. A step is accepted when max |K_4,i| / (rtol (s_i + r_i |y_i|))
-// <= 1; the next size is h clip(0.9 err^(-1/3), 0.2, 6), after two rejections by the order estimated from them.
+// <= 1 and the system holds it for possible (StiffSystem::impossible_state()); the next size is h clip(0.9 err^(-1/3),
+// 0.2, 6), after two rejections by the order estimated from them. A step that fails is shortened, to kShortestShare of
+// minimum_step. There, and once substep_budget is used up, a step is accepted and reported whose error is below
+// kGrossShare. Without one, or after four times the budget, the interval ends unfinished (is_impossible).
 //
 // Sources: K. Gustafsson 1994, ACM Trans. Math. Softw. 20, 496 (rejections); A. Sandu et al. 1997, Atmos. Environ. 31,
 // 3459 (RODAS3); form (1) as in Hairer and Wanner 1996, IV.7. M = I unless set_mass() makes rows algebraic: the method

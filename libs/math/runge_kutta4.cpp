@@ -9,9 +9,10 @@ namespace slew::math {
 namespace {
 
 constexpr int kFirstIterations = 60;  // iterations from an arbitrary vector, and at suspicious sub-steps
-constexpr double kGrossError = 0.1;   // share of a state and its scale, in one sub-step
-constexpr int kMostSuspicions = 4;    // suspicious sub-steps examined per interval
-constexpr int kNextIterations = 4;    // iterations from the vector of the previous interval
+constexpr double kGrossError =
+    1e-2;                           // share of a state and its scale, in one sub-step: a swing followed with w h = 0.5
+constexpr int kMostSuspicions = 4;  // suspicious sub-steps examined per interval
+constexpr int kNextIterations = 4;  // iterations from the vector of the previous interval
 
 }  // namespace
 
@@ -53,16 +54,21 @@ bool RungeKutta4::is_suspicious() const noexcept {
   return 4 * later > kExplicitLimit * kExplicitLimit * earlier;
 }
 
-// The last two stages differ by a term of the third order of the step. If the term is a large part of a state, the step
-// is too long, stable or not.
-void RungeKutta4::watch_error(const double* y, double h, StiffReport& report) const noexcept {
+// (3), and the system's own balance
+void RungeKutta4::watch_error(StiffSystem& system, const double* y, double h, StiffReport& report) noexcept {
+  double largest = kGrossError;
   for (std::size_t i = 0; i < f_.size(); ++i) {
     const double share =
-        h / 6 * std::fabs(k4_[i] - k3_[i]) / (options_.scale[i] + std::max(std::fabs(y[i]), std::fabs(new_[i])));
-    if (!(share > kGrossError)) continue;
+        h / 3 * std::fabs(k3_[i] - k2_[i]) / (options_.scale[i] + std::max(std::fabs(y[i]), std::fabs(new_[i])));
+    if (!(share > largest)) continue;
+    largest = share;
     report.is_unstable = true;
     report.worst_state = static_cast<std::int32_t>(i);
   }
+  const std::int32_t impossible = system.impossible_state(h, y, new_.data());
+  if (impossible < 0) return;
+  report.is_unstable = true;
+  report.worst_state = impossible;
 }
 
 StiffReport RungeKutta4::advance(StiffSystem& system, std::span<double> y, double duration) noexcept {
@@ -85,13 +91,13 @@ StiffReport RungeKutta4::advance(StiffSystem& system, std::span<double> y, doubl
     for (std::size_t i = 0; i < n; ++i) stage_[i] = y[i] + h * k3_[i];
     system.derivative(stage_.data(), k4_.data());
     for (std::size_t i = 0; i < n; ++i) new_[i] = y[i] + h / 6 * (f_[i] + 2 * k2_[i] + 2 * k3_[i] + k4_[i]);
-    watch_error(y.data(), h, report);
     const auto bad = std::find_if(new_.begin(), new_.end(), [](double x) { return !std::isfinite(x); });
     if (bad != new_.end()) {
       report.is_finite = false;
       report.worst_state = static_cast<std::int32_t>(bad - new_.begin());
       return report;
     }
+    watch_error(system, y.data(), h, report);
     ++report.accepted;
     system.accepted(h, y.data(), f_.data(), new_.data());
     std::copy(new_.begin(), new_.end(), y.begin());

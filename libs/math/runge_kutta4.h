@@ -8,8 +8,11 @@
 // on the real axis, 2.83 on the imaginary one), at the start of every interval and at sub-steps, at most four an
 // interval, whose stages are suspicious:
 //   2 |k_3 - k_2| / |k_2 - k_1| > 2                       h times the growth of J along k_2 - k_1               (2)
-// A sub-step that is stable and still too long, such as over a jump of a pressure, is detected by
-//   h/6 |k_4 - k_3| > 0.1 (scale + max |y|, |y_new|)      of any state                                          (3)
+// The Jacobian sees one side of a law that turns: a valve that swings between open and closed is soft at one end of a
+// sub-step and stiff at the other. Every sub-step is therefore compared with the formula of order 2 that takes k_2 in
+// place of k_3, and reported as too long where
+//   h/3 |k_3 - k_2| > 0.01 (scale + max |y|, |y_new|)     of any state                                          (3)
+// or where its end is impossible (StiffSystem::impossible_state()).
 // Source: Hairer, Norsett and Wanner 1993, II.1; limits: Hairer and Wanner 1996, IV.2. Real-time safe.
 #pragma once
 
@@ -38,7 +41,7 @@ class RungeKutta4 final : public StiffIntegrator {
   }
 
  private:
-  void watch_error(const double* y, double h, StiffReport& report) const noexcept;
+  void watch_error(StiffSystem& system, const double* y, double h, StiffReport& report) noexcept;
   void watch(StiffSystem& system, const double* y, const double* f, double h, int iterations,
              StiffReport& report) noexcept;
   [[nodiscard]] bool is_suspicious() const noexcept;

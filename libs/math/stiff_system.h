@@ -39,14 +39,32 @@ class StiffSystem {
   [[nodiscard]] virtual double time_to_bend(const double* /*y*/, const double* /*f*/, const double* /*J*/) noexcept {
     return std::numeric_limits<double>::infinity();
   }
+  // Balance of a trial sub-step of h seconds from y_before to y that does not rest on the error estimate: the first
+  // state that no motion of the system can have reached, -1: none.
+  [[nodiscard]] virtual std::int32_t impossible_state(double /*h*/, const double* /*y_before*/,
+                                                      const double* /*y*/) noexcept {
+    return -1;
+  }
+  // Balance of an Euler sub-step, whose flows are those at its end y: the first state whose content changed by much
+  // else than h times the flow, -1: none.
+  [[nodiscard]] virtual std::int32_t unbalanced_state(const double* /*y_before*/, const double* /*y*/) noexcept {
+    return -1;
+  }
   // A sub-step from y_before (derivative f_before) to y was accepted; may move y back into its bounds.
   virtual void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept = 0;
 };
 
+// Adaptive methods shorten a sub-step that fails at minimum_step to this share of it: a volume of 1 mm3 behind a wide
+// orifice empties in 1e-11 s.
+inline constexpr double kShortestShare = 1e-9;
+
+// Error of a state, as a share of its size, with which no sub-step is accepted, whatever it costs.
+inline constexpr double kGrossShare = 1e-2;
+
 // Scales of errors and residuals: the size of state i is s_i + r_i |y_i|, with a separate r_i below zero.
 struct StiffOptions {
   double relative_tolerance = 1e-4;
-  double minimum_step = 1e-6;                    // s
+  double minimum_step = 1e-6;                    // s; shorter only after a failure (kShortestShare)
   double maximum_step = 1e-4;                    // s, sub-step of the fixed-step integrators
   std::uint32_t substep_budget = 200;            // accepted and rejected sub-steps per interval
   std::vector<double> scale;                     // s_i of the error measure, one per state, > 0
@@ -68,9 +86,12 @@ struct StiffReport {
   bool is_at_minimum_step = false;         // a step was accepted with its error because it could not be shorter
   bool is_unstable = false;                // an explicit method's sub-step is beyond its stability limit
   bool is_finite = true;                   // false: y is the last finite state, the interval is not finished
-  double largest_error = 0;                // largest error of the accepted steps, 1 = tolerance; explicit: h
-                                           // |lambda|_max / limit
-  std::int32_t worst_state = -1;           // the state with that error; when not finite: the first such state
+  bool is_impossible = false;     // no sub-step kept the system's balance (impossible_state()) or an error below
+                                  // kGrossShare: the interval is not finished
+  double largest_error = 0;       // largest error of the accepted steps, 1 = tolerance; explicit: h
+                                  // |lambda|_max / limit
+  std::int32_t worst_state = -1;  // the state with that error; when not finite or impossible: the first such
+                                  // state
 };
 
 // A function of one state: g(y_i) and its slope.

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ends a session whose circuit is no longer solved while its pressures are still finite.
+//
+// Two rules, checked after every step:
+//   - The excess of steps that were accepted with their error over those that were not reaches kMostUnsolved: steps
+//   that
+//     are not converged, and steps over the sub-step budget whose error exceeded the tolerance. The count decreases by
+//     one with each sound step, down to zero, so that single steps never add up to an end.
+//   - No sub-step keeps the oil of a volume, or has less than a gross error (math::StiffReport::is_impossible).
+// Not covered: pressures that are converged and wrong.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "core/state_hash.h"
+#include "core/step_report.h"
+#include "hydraulics/circuit_integrator.h"
+#include "hydraulics/hydraulics_def.h"
+
+namespace slew::hydraulics_node {
+
+// As of the mechanics (mechanics_node/divergence.h): more than a jump of a command takes in a sound run.
+inline constexpr int kMostUnsolved = 20;  // steps
+
+class ConvergenceWatch {
+ public:
+  explicit ConvergenceWatch(hydraulics::Solver solver) noexcept : solver_(solver) {}
+
+  void reset() noexcept { unsolved_ = 0, text_length_ = 0; }
+  // Counts a step. True: the run ends; text() names the offender and the reason. Does not allocate.
+  [[nodiscard]] bool ends_run(const StepReport& report, const hydraulics::CircuitIntegrator& integrator,
+                              std::string_view offender) noexcept;
+  [[nodiscard]] std::string_view text() const noexcept { return {text_.data(), text_length_}; }
+
+  // Adds nothing while all recent steps are sound: the hash of a sound run is that of its circuit.
+  void add_to(StateHash& hash) const noexcept {
+    if (unsolved_ != 0) hash.add(unsolved_);
+  }
+  template <typename Self, typename Bytes>
+  static void visit(Self& self, Bytes& bytes) {
+    bytes.count(self.unsolved_, kMostUnsolved);
+    bytes.count(self.text_length_, self.text_.size());
+    bytes.numbers(std::span(self.text_).first(self.text_length_));
+  }
+
+ private:
+  template <typename... Values>
+  void write(const char* form, const Values&... values) noexcept;
+
+  hydraulics::Solver solver_;
+  int unsolved_ = 0;  // excess, at most kMostUnsolved
+  std::array<char, 512> text_{};
+  std::size_t text_length_ = 0;
+};
+
+}  // namespace slew::hydraulics_node
