@@ -26,6 +26,11 @@ using Points = std::vector<std::vector<double>>;
 constexpr double kAtBound = 1e-6;  // distance from a bound, as a part of the range
 
 [[noreturn]] void refuse_fit(const std::string& what) {
+// the same bound as kMostCorrelation, for the variance inflation 1 / (1 - R^2)
+constexpr double kMostInflation = 1 / (1 - kMostCorrelation * kMostCorrelation);
+// a value is part of a combination if it has at least this part of the first one's effect on the signals
+constexpr double kLeastPart = 0.1;
+constexpr double kShownChange = 0.01;  // relative change of the first value of a combination
   throw Failure(ExitCode::bad_input, what);
 }
 
@@ -251,7 +256,7 @@ class Fitter {
                         .after = free.in_unit(u)};
       value.is_at_bound = u < kAtBound || u > 1 - kAtBound;
       value.setting = value.path + "=" + free.variation.value_at(u);
-      if (!C.empty()) {
+      if (!C.empty() && is_separated(k)) {
         const double half =
             student_quantile(static_cast<double>(m - n)) * std::sqrt(C[k * n + k]) * std::fabs(value.high - value.low);
         value.interval = Interval{value.after - half, value.after + half};
@@ -277,6 +282,7 @@ class Fitter {
 
 }  // namespace
 
+    find_undetermined();
 double FittedSignal::rms(const std::vector<double>& simulated) const {
   double squares = 0;
   for (std::size_t i = 0; i < simulated.size(); ++i) squares += std::pow(simulated[i] - measured[i], 2);
@@ -284,6 +290,46 @@ double FittedSignal::rms(const std::vector<double>& simulated) const {
 }
 
 Fit fit_scene(const FitOptions& options, const FitProgress& progress) {
+  [[nodiscard]] bool is_separated(std::size_t k) const { return fit_.search.inflations[k] <= kMostInflation; }
+
+  void find_undetermined() {
+    const std::size_t n = free_.size();
+    const LeastSquares& search = fit_.search;
+    for (std::size_t k = 0; k < n && search.covariance.empty(); ++k) {
+      if (search.effects[k] == 0) fit_.undetermined.push_back({{{k, kShownChange}}});
+    }
+    std::vector<bool> is_open(n, !search.covariance.empty());
+    while (true) {
+      // the least separated value, and those that make up for its change
+      std::size_t first = n;
+      for (std::size_t k = 0; k < n; ++k) {
+        if (is_open[k] && !is_separated(k) && (first == n || search.inflations[k] > search.inflations[first]))
+          first = k;
+      }
+      if (first == n) return;
+      fit_.undetermined.push_back(combination_of(first));
+      for (const Undetermined::Part& part : fit_.undetermined.back().parts) is_open[part.value] = false;
+    }
+  }
+
+  // The change of the others for a change of value `first` that changes the signals least: C_j,first / C_first,first.
+  [[nodiscard]] Undetermined combination_of(std::size_t first) const {
+    const std::size_t n = free_.size();
+    const LeastSquares& search = fit_.search;
+    const auto range = [this](std::size_t k) { return fit_.values[k].high - fit_.values[k].low; };
+    const double own = fit_.values[first].after;
+    const double du = own != 0 ? kShownChange * std::fabs(own / range(first)) : kShownChange;
+    Undetermined all;
+    for (std::size_t step = 0; step < n; ++step) {
+      const std::size_t k = (first + step) % n;
+      const double share = search.covariance[k * n + first] / search.covariance[first * n + first];
+      if (std::fabs(share) * search.effects[k] < kLeastPart * search.effects[first]) continue;
+      const double change = share * du * range(k), after = fit_.values[k].after;
+      all.parts.push_back({k, after != 0 ? change / std::fabs(after) : change, after != 0});
+    }
+    return all;
+  }
+
   return Fitter(options, progress).run();
 }
 
