@@ -12,6 +12,7 @@
 #include "analysis/parameter_sweep/measure.h"
 #include "analysis/parameter_sweep/variation.h"
 #include "core/failure.h"
+#include "analysis/sweep/result_folder.h"
 #include "core/text_output.h"
 #include "node/identity.h"
 #include "scene/expression.h"
@@ -53,6 +54,13 @@ class Fitter {
     rows_folder_ = (std::filesystem::path(fit_.folder) / "rows").string();
     std::error_code error;
     if (options.engine.is_fresh) std::filesystem::remove_all(rows_folder_, error);
+    folder_.emplace(fit_.folder, FolderUse{.task = "fit",
+                                           .manifest = manifest(),
+                                           .members = {{"scene", "the scene has changed"},
+                                                       {"data", "the measured data differ"},
+                                                       {"map", "--map differs"},
+                                                       {"free", "--free differs"}},
+                                           .is_fresh = options.engine.is_fresh});
     std::filesystem::create_directories(rows_folder_, error);  // write_text() reports its absence
     job_text_ = to_json(job_).dump();
     write_text(job_file(), job_text_);
@@ -80,6 +88,19 @@ class Fitter {
   Fit interrupted() {
     fit_.search.was_ended = true;
     return std::move(fit_);
+  }
+
+  // What the fit depends on, beside the number of iterations: more of them continue the search.
+  [[nodiscard]] Json manifest() const {
+    std::vector<std::string> scene_texts = {result_text(base_), job_.scene.duration};
+    for (const scene::ParameterText& parameter : base_.parameter_texts) {
+      scene_texts.push_back(parameter.name);
+      scene_texts.push_back(parameter.value);
+    }
+    std::vector<std::string> data;
+    for (const FittedSignal& signal : fit_.signals)
+      data.push_back(Json(signal.time).dump() + Json(signal.measured).dump());
+    return {{"scene", key_of(scene_texts)}, {"data", key_of(data)}, {"map", options_.maps}, {"free", options_.free}};
   }
 
   [[nodiscard]] std::string job_file() const { return (std::filesystem::path(rows_folder_) / "job.json").string(); }
@@ -309,6 +330,26 @@ Fit fit_scene(const FitOptions& options, const FitProgress& progress) {
       if (first == n) return;
       fit_.undetermined.push_back(combination_of(first));
       for (const Undetermined::Part& part : fit_.undetermined.back().parts) is_open[part.value] = false;
+  const FitOptions& options_;
+  const FitProgress& progress_;
+  scene::Scene base_;
+  std::optional<ResultFolder> folder_;
+  SignalJob job_;
+  std::string job_text_, rows_folder_;
+  std::vector<FreeValue> free_;
+  std::vector<double> start_;  // by free value, 0 to 1
+  Fit fit_;
+};
+
+}  // namespace
+
+double FittedSignal::rms(const std::vector<double>& simulated) const {
+  double squares = 0;
+  for (std::size_t i = 0; i < simulated.size(); ++i) squares += std::pow(simulated[i] - measured[i], 2);
+  return simulated.empty() ? 0 : std::sqrt(squares / static_cast<double>(simulated.size()));
+}
+
+Fit fit_scene(const FitOptions& options, const FitProgress& progress) {
     }
   }
 

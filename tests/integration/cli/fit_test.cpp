@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits against a closed form with noise: a block on a rail with gravity a and viscous friction c,
 //   x(t) = (a m / c) (t - (m / c) (1 - exp(-c t / m)))
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
