@@ -10,9 +10,10 @@
 #include "analysis/fit/measured_data.h"
 #include "analysis/fit/signal_run.h"
 #include "analysis/parameter_sweep/measure.h"
+#include "analysis/parameter_sweep/variable_values.h"
 #include "analysis/parameter_sweep/variation.h"
-#include "core/failure.h"
 #include "analysis/sweep/result_folder.h"
+#include "core/failure.h"
 #include "core/text_output.h"
 #include "node/identity.h"
 #include "scene/expression.h"
@@ -25,13 +26,13 @@ namespace {
 using Points = std::vector<std::vector<double>>;
 
 constexpr double kAtBound = 1e-6;  // distance from a bound, as a part of the range
-
-[[noreturn]] void refuse_fit(const std::string& what) {
 // the same bound as kMostCorrelation, for the variance inflation 1 / (1 - R^2)
 constexpr double kMostInflation = 1 / (1 - kMostCorrelation * kMostCorrelation);
 // a value is part of a combination if it has at least this part of the first one's effect on the signals
 constexpr double kLeastPart = 0.1;
 constexpr double kShownChange = 0.01;  // relative change of the first value of a combination
+
+[[noreturn]] void refuse_fit(const std::string& what) {
   throw Failure(ExitCode::bad_input, what);
 }
 
@@ -52,8 +53,7 @@ class Fitter {
     read_signals();
     read_free_values();
     rows_folder_ = (std::filesystem::path(fit_.folder) / "rows").string();
-    std::error_code error;
-    if (options.engine.is_fresh) std::filesystem::remove_all(rows_folder_, error);
+    job_text_ = to_json(job_).dump();
     folder_.emplace(fit_.folder, FolderUse{.task = "fit",
                                            .manifest = manifest(),
                                            .members = {{"scene", "the scene has changed"},
@@ -61,8 +61,6 @@ class Fitter {
                                                        {"map", "--map differs"},
                                                        {"free", "--free differs"}},
                                            .is_fresh = options.engine.is_fresh});
-    std::filesystem::create_directories(rows_folder_, error);  // write_text() reports its absence
-    job_text_ = to_json(job_).dump();
     write_text(job_file(), job_text_);
   }
 
@@ -90,6 +88,8 @@ class Fitter {
     return std::move(fit_);
   }
 
+  [[nodiscard]] std::string job_file() const { return (std::filesystem::path(rows_folder_) / "job.json").string(); }
+
   // What the fit depends on, beside the number of iterations: more of them continue the search.
   [[nodiscard]] Json manifest() const {
     std::vector<std::string> scene_texts = {result_text(base_), job_.scene.duration};
@@ -102,8 +102,6 @@ class Fitter {
       data.push_back(Json(signal.time).dump() + Json(signal.measured).dump());
     return {{"scene", key_of(scene_texts)}, {"data", key_of(data)}, {"map", options_.maps}, {"free", options_.free}};
   }
-
-  [[nodiscard]] std::string job_file() const { return (std::filesystem::path(rows_folder_) / "job.json").string(); }
 
   // ---- options ------------------------------------------------------------------------------------------------
 
@@ -118,7 +116,7 @@ class Fitter {
       job_.expressions.push_back(map.substr(equals + 1));
     }
     const std::vector<MeasuredSignal> measured = read_measured(options_.data, columns);
-    const std::vector<ElementVariable> variables = session::DirectSession(base_).variables();
+    const std::vector<ElementVariable> variables = variables_of_run(base_, session::DirectSession(base_));
     double end = 0;
     for (std::size_t i = 0; i < measured.size(); ++i) {
       const scene::CompiledExpression expression = compile_of_run("--map", job_.expressions[i], base_, variables);
@@ -284,6 +282,7 @@ class Fitter {
       }
       fit_.values.push_back(std::move(value));
     }
+    find_undetermined();
     for (std::size_t i = 0; i < n && !C.empty(); ++i) {
       for (std::size_t j = 0; j < n; ++j) {
         fit_.correlations.push_back(C[i * n + j] / std::sqrt(C[i * n + i] * C[j * n + j]));
@@ -291,26 +290,6 @@ class Fitter {
     }
   }
 
-  const FitOptions& options_;
-  const FitProgress& progress_;
-  scene::Scene base_;
-  SignalJob job_;
-  std::string job_text_, rows_folder_;
-  std::vector<FreeValue> free_;
-  std::vector<double> start_;  // by free value, 0 to 1
-  Fit fit_;
-};
-
-}  // namespace
-
-    find_undetermined();
-double FittedSignal::rms(const std::vector<double>& simulated) const {
-  double squares = 0;
-  for (std::size_t i = 0; i < simulated.size(); ++i) squares += std::pow(simulated[i] - measured[i], 2);
-  return simulated.empty() ? 0 : std::sqrt(squares / static_cast<double>(simulated.size()));
-}
-
-Fit fit_scene(const FitOptions& options, const FitProgress& progress) {
   [[nodiscard]] bool is_separated(std::size_t k) const { return fit_.search.inflations[k] <= kMostInflation; }
 
   void find_undetermined() {
@@ -330,26 +309,6 @@ Fit fit_scene(const FitOptions& options, const FitProgress& progress) {
       if (first == n) return;
       fit_.undetermined.push_back(combination_of(first));
       for (const Undetermined::Part& part : fit_.undetermined.back().parts) is_open[part.value] = false;
-  const FitOptions& options_;
-  const FitProgress& progress_;
-  scene::Scene base_;
-  std::optional<ResultFolder> folder_;
-  SignalJob job_;
-  std::string job_text_, rows_folder_;
-  std::vector<FreeValue> free_;
-  std::vector<double> start_;  // by free value, 0 to 1
-  Fit fit_;
-};
-
-}  // namespace
-
-double FittedSignal::rms(const std::vector<double>& simulated) const {
-  double squares = 0;
-  for (std::size_t i = 0; i < simulated.size(); ++i) squares += std::pow(simulated[i] - measured[i], 2);
-  return simulated.empty() ? 0 : std::sqrt(squares / static_cast<double>(simulated.size()));
-}
-
-Fit fit_scene(const FitOptions& options, const FitProgress& progress) {
     }
   }
 
@@ -371,6 +330,26 @@ Fit fit_scene(const FitOptions& options, const FitProgress& progress) {
     return all;
   }
 
+  const FitOptions& options_;
+  const FitProgress& progress_;
+  scene::Scene base_;
+  std::optional<ResultFolder> folder_;
+  SignalJob job_;
+  std::string job_text_, rows_folder_;
+  std::vector<FreeValue> free_;
+  std::vector<double> start_;  // by free value, 0 to 1
+  Fit fit_;
+};
+
+}  // namespace
+
+double FittedSignal::rms(const std::vector<double>& simulated) const {
+  double squares = 0;
+  for (std::size_t i = 0; i < simulated.size(); ++i) squares += std::pow(simulated[i] - measured[i], 2);
+  return simulated.empty() ? 0 : std::sqrt(squares / static_cast<double>(simulated.size()));
+}
+
+Fit fit_scene(const FitOptions& options, const FitProgress& progress) {
   return Fitter(options, progress).run();
 }
 

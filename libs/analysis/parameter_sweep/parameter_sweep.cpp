@@ -90,7 +90,7 @@ class ParameterSweeper {
   }
 
   void read_measures() {
-    const std::vector<ElementVariable> variables = session::DirectSession(base_).variables();
+    const std::vector<ElementVariable> variables = variables_of_run(base_, session::DirectSession(base_));
     for (const std::string& text : options_.job.measures) {
       const Measure measure = parse_measure(text, base_, variables);
       result_.measures.push_back({measure.text, measure.unit});
