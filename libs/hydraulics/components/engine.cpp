@@ -71,7 +71,7 @@ class Engine final : public HydraulicComponent {
         w_(shaft_.speed),
         u_(shaft_.fuel),
         control_(builder.add_control(def.name, SignalMoves::a_state)),
-        full_load_(straight_lines(*find_curve(builder.def(), def.torque_curve))) {}
+        full_load_(*find_curve(builder.def(), def.torque_curve)) {}
 
   // at the governed speed under its own losses
   void start(double* y) const noexcept override {
@@ -137,19 +137,8 @@ class Engine final : public HydraulicComponent {
   // T_full g
   [[nodiscard]] ValueSlope full_torque(double w) const noexcept {
     const double range = kCombustionRange * def_.stall_speed;
-    const ValueSlope g = unit_clip((w - def_.stall_speed) / range, kCombustionWidth), T = on_curve(w);
+    const ValueSlope g = unit_clip((w - def_.stall_speed) / range, kCombustionWidth), T = full_load_.at(w);
     return {T.value * g.value, T.slope * g.value + T.value * g.slope / range};
-  }
-  [[nodiscard]] ValueSlope on_curve(double w) const noexcept {
-    if (w <= full_load_.front()[0]) return {full_load_.front()[1], 0};
-    for (std::size_t i = 1; i < full_load_.size(); ++i) {
-      const auto& a = full_load_[i - 1];
-      const auto& b = full_load_[i];
-      if (w >= b[0]) continue;
-      const double slope = (b[1] - a[1]) / (b[0] - a[0]);
-      return {a[1] + slope * (w - a[0]), slope};
-    }
-    return {full_load_.back()[1], 0};
   }
   // friction of (1), with its slope
   [[nodiscard]] ValueSlope loss(double w) const noexcept {
@@ -162,7 +151,7 @@ class Engine final : public HydraulicComponent {
   EngineShaft shaft_;
   StateIndex w_, u_;  // speed over its reference, fuel
   int control_;
-  Table full_load_;
+  CurveFunction full_load_;
 };
 
 void validate_engine(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors,
