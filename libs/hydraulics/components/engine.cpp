@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/engine.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -168,6 +170,19 @@ void validate_engine(const HydraulicsDef& circuit, const ComponentDef& component
   if (def.speed <= def.stall_speed) {
     errors.push_back(
         {def.name + ".stall_speed", "the engine would stand at its governed speed", "a speed below `speed`", ""});
+  }
+  const double speed = std::max(def.speed, def.minimum_speed);
+  const double loss = def.friction_torque + def.viscous_friction * speed;
+  if (curve != nullptr && errors.empty()) {
+    const double most = CurveFunction(*curve).at(speed).value;
+    if (loss >= most) {
+      errors.push_back(
+          {def.name + ".friction_torque",
+           fmt::format("friction_torque and viscous_friction are {:g} Nm at {:g} rad/s, where the engine has "
+                       "{:g} Nm at full load: it cannot turn by itself",
+                       loss, speed, most),
+           "less friction, or more torque in '" + curve->name + "'", ""});
+    }
   }
   const auto is_driven = [&](const auto& other) {
     const std::span<const Field> fields = find_component_type(other->type_name())->fields;
