@@ -59,7 +59,7 @@ ExitCode run_fit(const FitOptions& options) {
   fmt::print("{}", options.is_json ? report_json(fit).dump(2) + '\n' : report_text(fit, output_width()));
   if (!options.is_json) fmt::print("{}\n{}\n", (folder / "fit.json").string(), (folder / "index.html").string());
   std::fflush(stdout);
-  return fit.search.has_converged && !fit.search.covariance.empty() ? ExitCode::ok : ExitCode::failed;
+  return fit.is_determined() ? ExitCode::ok : ExitCode::failed;
 }
 
 ExitCode run_fit_row(const FitRowOptions& options) {

@@ -38,17 +38,28 @@ recording::WriterLimits limits_of(const SliceOptions& options, const recording::
   return limits;
 }
 
-void print_rewritten(const SliceOptions& options, const recording::RewriteCounts& counts) {
+// Recordings that end at damage: the new file is whole, and lacks what lies behind the damage.
+using Damaged = std::vector<std::string>;
+
+// Damage of index or checks alone leaves every message readable.
+bool ends_at_damage(const recording::Reader& reader) {
+  return reader.damage().has_value() && !reader.has_all_messages();
+}
+
+void print_rewritten(const SliceOptions& options, const recording::RewriteCounts& counts, const Damaged& damaged) {
   const double from = static_cast<double>(counts.start_time) * 1e-9, to = static_cast<double>(counts.end_time) * 1e-9;
   if (options.is_json) {
     Json gaps = Json::array();
     for (const std::string& gap : counts.gaps) gaps.push_back(gap);
+    Json cut = Json::array();
+    for (const std::string& file : damaged) cut.push_back(file);
     fmt::print("{}\n", Json({{"file", options.output},
                              {"bytes", counts.bytes},
                              {"messages", counts.messages},
                              {"from", from},
                              {"to", to},
-                             {"gaps", gaps}})
+                             {"gaps", gaps},
+                             {"damaged", cut}})
                            .dump(2));
     return;
   }
@@ -57,6 +68,7 @@ void print_rewritten(const SliceOptions& options, const recording::RewriteCounts
   rows.add({"saved",
             fmt::format("{} from {:.6g} s to {:.6g} s", counted(counts.messages, "message", "messages"), from, to)});
   for (const std::string& gap : counts.gaps) rows.add({"gap", gap});
+  for (const std::string& file : damaged) rows.add({"lost", "what lies behind the damage of " + file});
   print_table(rows);
 }
 
@@ -73,8 +85,10 @@ ExitCode slice(const SliceOptions& options) {
   def.limits = limits_of(options, *reader);
   recording::RewriteCounts counts;
   require(recording::slice(*reader, options.output, def, counts));
-  print_rewritten(options, counts);
-  return ExitCode::ok;
+  // a slice that ends in front of the damage lacks nothing
+  const bool is_cut = ends_at_damage(*reader) && def.to_ns > reader->statistics().end_time;
+  print_rewritten(options, counts, is_cut ? Damaged{options.recording} : Damaged{});
+  return is_cut ? ExitCode::losses : ExitCode::ok;
 }
 
 ExitCode merge(const SliceOptions& options) {
@@ -86,8 +100,12 @@ ExitCode merge(const SliceOptions& options) {
   }
   recording::RewriteCounts counts;
   require(recording::join(parts, options.output, limits_of(options, *parts.front()), counts));
-  print_rewritten(options, counts);
-  return counts.gaps.empty() ? ExitCode::ok : ExitCode::losses;
+  Damaged damaged;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (ends_at_damage(*parts[i])) damaged.push_back(options.parts[i]);
+  }
+  print_rewritten(options, counts, damaged);
+  return counts.gaps.empty() && damaged.empty() ? ExitCode::ok : ExitCode::losses;
 }
 
 void add_output(options::Command& verb, SliceOptions& options) {
@@ -110,7 +128,8 @@ void add_slice(options::Command& program) {
   add_output(verb, *options);
   verb.footer(
       "Session and names of variables are in every slice. Slices that meet are one recording again with 'slewring "
-      "merge'. A slice replays when it begins with the session.\n\n"
+      "merge'. A slice replays when it begins with the session. Exit code 3 when the recording is damaged in this "
+      "time.\n\n"
       "Examples:\n"
       "  slewring slice runs/truck_crane-20260501-102030 --from 2s --to 5s -o lift.mcap\n"
       "  slewring slice runs/truck_crane-20260501-102030 --coding zstd -o for_foxglove.mcap");
@@ -123,7 +142,7 @@ void add_merge(options::Command& program) {
   verb.option("parts", options->parts, "recordings of one session, in any order").required().value_name("REC");
   add_output(verb, *options);
   verb.footer(
-      "Exit code 3 when no part has some of the time between them.\n\n"
+      "Exit code 3 when no part has some of the time between them, or a part ends at damage.\n\n"
       "Example:\n  slewring merge first.mcap second.mcap -o whole.mcap");
   verb.action([options] { return merge(*options); });
 }

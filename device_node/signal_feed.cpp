@@ -63,8 +63,8 @@ void SignalFeed::take(const wire::VariableBlock& block, double time) {
   if (block.header.epoch > epoch_) begin_epoch(block.header.epoch);
   const std::vector<double>* const values = values_.take(block);
   if (values == nullptr) return;
-  // outputs begin with the first step
-  if (has_time_ && time > last_time_) step_outputs(*values, time - last_time_);
+  // the first step gives the outputs their state, without time
+  if (!has_time_ || time > last_time_) step_outputs(*values, has_time_ ? time - last_time_ : 0);
   last_time_ = time;
   if (!has_time_) next_time_ = time;
   has_time_ = true;

@@ -36,7 +36,7 @@ struct AnalogOutputState {
   std::uint64_t held = 0;   // steps at a bound
 };
 
-// One step of dt [s]. Result: the output to send. Pre-condition: dt > 0.
+// One step of dt [s]; 0 at the first value. Result: the output to send. Pre-condition: dt >= 0.
 double step(const AnalogOutputDef& def, double value, double dt, AnalogOutputState& state) noexcept;
 
 }  // namespace slew::devices

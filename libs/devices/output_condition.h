@@ -58,7 +58,8 @@ struct SwitchedOutputState {
   std::uint64_t changes = 0;
 };
 
-// One step of dt [s] with the variable's value at its end. Result: whether is_on changed. Pre-condition: dt > 0.
+// One step of dt [s] with the variable's value at its end. 0 at the first value, at
+// which an output without delay is on already. Result: whether is_on changed. Pre-condition: dt >= 0.
 bool step(const SwitchedOutputDef& def, double value, double dt, SwitchedOutputState& state) noexcept;
 
 }  // namespace slew::devices

@@ -3,14 +3,33 @@
 
 #include <cstddef>
 
-#include "math/monotone_cubic.h"
-
 namespace slew::hydraulics {
 namespace {
 
 constexpr int kParts = 16;  // straight lines per interval: 0.1 % of the interval's rise at most
 
 }  // namespace
+
+CurveFunction::CurveFunction(const CurveDef& curve) {
+  if (curve.interpolation == Interpolation::linear) {
+    lines_ = curve.points;
+  } else {
+    cubic_ = math::monotone_cubic(curve.points, math::Ends::hold);
+  }
+}
+
+ValueSlope CurveFunction::at(double x) const noexcept {
+  if (lines_.empty()) return {math::value_at(cubic_, x), math::slope_at(cubic_, x)};
+  if (x <= lines_.front()[0]) return {lines_.front()[1], 0};
+  for (std::size_t i = 1; i < lines_.size(); ++i) {
+    const auto& a = lines_[i - 1];
+    const auto& b = lines_[i];
+    if (x >= b[0]) continue;
+    const double slope = (b[1] - a[1]) / (b[0] - a[0]);
+    return {a[1] + slope * (x - a[0]), slope};
+  }
+  return {lines_.back()[1], 0};
+}
 
 Table straight_lines(const CurveDef& curve) {
   const Table& points = curve.points;

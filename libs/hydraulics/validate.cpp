@@ -74,6 +74,29 @@ void check_references(const HydraulicsDef& def, const ComponentDef& component, c
   }
 }
 
+// Two ports between which a component passes oil are connected to two volumes: the only two that it has, or a pair.
+void check_port_pair(const ComponentDef& component, const ComponentType& type, const void* address, Problems& errors) {
+  std::vector<std::pair<std::string_view, std::string_view>> ports;  // key, volume
+  for (const Field& row : type.fields) {
+    if (row.reference == "volume" && row.key.starts_with("port_"))
+      ports.emplace_back(row.key, member<std::string>(row, address));
+  }
+  const auto volume_of = [&](std::string_view key) {
+    const auto found = std::find_if(ports.begin(), ports.end(), [key](const auto& port) { return port.first == key; });
+    return found == ports.end() ? std::string_view() : found->second;
+  };
+  std::vector<std::pair<std::string_view, std::string_view>> pairs = {{"port_1", "port_2"}, {"port_a", "port_b"}};
+  if (ports.size() == 2) pairs = {{ports[0].first, ports[1].first}};
+  for (const auto& [first, second] : pairs) {
+    const std::string_view volume = volume_of(first);
+    const std::string path = component.name + "." + std::string(second);
+    const bool is_reported =
+        std::any_of(errors.begin(), errors.end(), [&](const Problem& problem) { return problem.path == path; });
+    if (volume.empty() || volume != volume_of(second) || is_reported) continue;
+    errors.push_back({path, fmt::format("both ports are connected to '{}'", volume), "two volumes", ""});
+  }
+}
+
 void check_names(const HydraulicsDef& def, Problems& errors) {
   std::set<std::string_view> seen;
   const auto check = [&](const std::string& name, const char* section) {
@@ -311,6 +334,7 @@ void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
     check_fields(component->name, type->fields, component->address(), errors);
     check_references(def, *component, *type, component->address(), errors);
     if (type->validate != nullptr) type->validate(def, *component, errors, warnings);
+    check_port_pair(*component, *type, component->address(), errors);
   }
   check_volumes(def, errors);
   if (!are_types_known) return;

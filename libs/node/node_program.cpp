@@ -2,9 +2,13 @@
 #include "node/node_program.h"
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <new>
 #include <system_error>
 #include <vector>
@@ -66,6 +70,8 @@ int guarded(const std::string& program, const std::function<ExitCode()>& body) n
     return report(program, "out of memory; the program ends; close other programs or use a smaller scene",
                   ExitCode::resources);
   } catch (const std::system_error& error) {
+    // a write to standard output failed: finish_output() reports it
+    if (std::ferror(stdout) != 0) return static_cast<int>(ExitCode::ok);
     if (!is_of_resources(error.code())) return report(program, error.what(), ExitCode::failed);
     std::fflush(stdout);
     std::fprintf(stderr,
@@ -76,6 +82,27 @@ int guarded(const std::string& program, const std::function<ExitCode()>& body) n
   } catch (const std::exception& error) {
     return report(program, error.what(), ExitCode::failed);
   }
+}
+
+// The reader of standard output has closed its end, as `| head` does.
+bool is_output_closed_by_its_reader() noexcept {
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
+// Flushes standard output, std::cout included, and tests every write to it since the start. Storage instead of ok where
+// one was lost; another code stays.
+int finish_output(const std::string& program, int code) noexcept {
+  const bool was_lost_before = std::ferror(stdout) != 0;
+  errno = 0;
+  const bool is_lost = std::fflush(stdout) != 0 || was_lost_before;
+  const int error = errno;
+  if (!is_lost || is_output_closed_by_its_reader()) return code;
+  std::fprintf(stderr,
+               "%s: standard output cannot be written (%s); what was printed is incomplete; free space or send the "
+               "output to another place\n",
+               program.c_str(), error != 0 ? std::strerror(error) : "a write failed; is the disk full?");
+  return code == static_cast<int>(ExitCode::ok) ? static_cast<int>(ExitCode::storage) : code;
 }
 
 // --complete and --write-manual.
@@ -106,10 +133,10 @@ int run_program(options::Program& program, int argc, const char* const* argv) no
   const std::string& name = program.name();
   if (!check_processor(name)) return static_cast<int>(ExitCode::resources);
   program.version(name + " " + node::build_id(), node::version_json(name));
-  if (const auto service = service_of(program, argc, argv)) return guarded(name, *service);
+  if (const auto service = service_of(program, argc, argv)) return finish_output(name, guarded(name, *service));
   int exit_code = 0;
-  if (!program.parse(argc, argv, exit_code)) return exit_code;
-  return guarded(name, [&program] { return program.run(); });
+  if (program.parse(argc, argv, exit_code)) exit_code = guarded(name, [&program] { return program.run(); });
+  return finish_output(name, exit_code);
 }
 
 void apply_real_time(const NodeOptions& options, const std::string& program) {

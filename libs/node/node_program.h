@@ -16,7 +16,9 @@ namespace slew::node {
 // Checks the processor, adds --version, parses, and runs the program's action: all that a main does. An exception of
 // the action becomes one line on standard error and an exit code. Failure: its own code; a scene's LoadError:
 // bad_input; no memory, or a processor that this build is not for: resources; anything else: failed. A write to a file
-// at its size limit fails in the action instead of raising a signal (core/file_size_limit.h).
+// at its size limit fails in the action instead of raising a signal (core/file_size_limit.h). At the end standard
+// output is flushed: where a write to it failed, such as on a full disk, one line on standard error and storage instead
+// of ok. A reader that has closed its pipe is no failure.
 //
 // Two first words are for installations and not in --help: --complete WORD... prints the words that may stand in the
 // place of the last one (options/completion.h), --write-manual DIR writes the manual pages into that folder.

@@ -225,7 +225,8 @@ constexpr Field kScriptFields[] = {
     field<&ScriptDef::interpolation>(
         "interpolation",
         {.choices = kInterpolations,
-         .doc = "between two points: a line, of which a step gets the mean, or the earlier value held"}),
+         .doc = "between two points: a line, of which a step gets the mean, or the earlier value held; a digital input "
+                "always holds"}),
 };
 
 constexpr Field kScriptTrackFields[] = {

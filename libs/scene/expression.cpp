@@ -181,6 +181,11 @@ class Evaluator {
   // moves behind the unit
   void read_unit() {
     if (next() == '1') at_ += 2;
+    const std::string_view first = word_at(at_);
+    if (names_.has(first)) {
+      refuse(at_, fmt::format("'{}' is a parameter and would be read as a unit here", first),
+             "an operator before it, or another name of the parameter");
+    }
     read_unit_word();
     while (true) {
       std::size_t gap = 0;
@@ -188,9 +193,7 @@ class Evaluator {
       const bool is_joined = gap == 0 && (next() == '/' || next() == '.') && begins_unit(next(1));
       if (!is_joined && (gap == 0 || !begins_unit(next(gap)))) break;
       const std::size_t place = at_ + (is_joined ? 1 : gap);
-      std::size_t end = place;
-      while (end < text_.size() && continues_word(text_[end])) ++end;
-      const std::string_view word = text_.substr(place, end - place);
+      const std::string_view word = word_at(place);
       if (names_.has(word)) {
         refuse(at_, fmt::format("'{}' is a parameter and would be read as a unit here", word),
                is_joined ? "spaces around '/'" : "an operator before it");
@@ -199,6 +202,11 @@ class Evaluator {
       read_unit_word();
     }
     if (next() == '^') refuse(at_, "'^' behind a unit", "a power as in 'm2', or brackets around the quantity");
+  }
+  [[nodiscard]] std::string_view word_at(std::size_t place) const {
+    std::size_t end = place;
+    while (end < text_.size() && continues_word(text_[end])) ++end;
+    return text_.substr(place, end - place);
   }
   void read_unit_word() {
     while (begins_unit(next())) ++at_;

@@ -91,6 +91,7 @@ class ValueReader {
       return std::nullopt;
     }
     QuantityResult result = read_quantity(node.text, writing_of(node), dimension, context_.units);
+    if (result.value) warn_of_milli(node, dimension);
     if (!result.value) {
       report_problem(node.mark, std::move(result.problem));
     } else if (has_range && !field_.range.contains(*result.value)) {
@@ -98,6 +99,22 @@ class ValueReader {
       return std::nullopt;
     }
     return result.value;
+  }
+
+  // A prefix m where M is meant: no part of a machine has a pressure, force, torque or power of some thousandths, or a
+  // mass of some milligrams.
+  void warn_of_milli(const Node& node, Dimension dimension) {
+    const std::size_t begin = node.text.find_first_not_of("0123456789.eE+- ");
+    if (context_.warnings == nullptr || begin == std::string::npos) return;
+    const std::string_view unit = std::string_view(node.text).substr(begin);
+    constexpr std::string_view kLikelySlips[] = {"mPa", "mN", "mNm", "mN m", "mW", "mg"};
+    if (std::find(std::begin(kLikelySlips), std::end(kLikelySlips), unit) == std::end(kLikelySlips)) return;
+    const ValueProblem problem{
+        fmt::format("'{}' is {}", node.text,
+                    with_unit(read_quantity(node.text, writing_of(node), dimension, context_.units).value.value_or(0),
+                              dimension)),
+        fmt::format("M in the place of m, 'M{}', unless so little is meant", unit.substr(1)), ""};
+    context_.warnings->push_back(context_.report.at(node.mark, path_, problem).text());
   }
 
   void read_integer(const Node& node) {

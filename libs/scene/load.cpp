@@ -79,6 +79,7 @@ class SceneReader {
       read_script(script->value, script->mark, load_context_, names_, scene_, context_);
     }
     check_content();
+    find_changes_behind_the_end();
     if (report_.is_clean() && !lacks_files()) {
       check_problems([&](Problems&, Problems& warnings) { find_without_effect(scene_, warnings); });
     }
@@ -90,6 +91,22 @@ class SceneReader {
   }
 
  private:
+  // a run that an option cuts short leaves changes out as its user wants
+  void find_changes_behind_the_end() {
+    const Node::Entry* session = root_.find("session");
+    const Node::Entry* duration = session != nullptr ? session->value.find("duration") : nullptr;
+    const double end = scene_.session.duration;
+    if (duration == nullptr || !(end > 0) || report_.is_override(duration->mark)) return;
+    for (std::size_t i = 0; i < scene_.script.changes.size(); ++i) {
+      const ScriptChange& change = scene_.script.changes[i];
+      if (change.at < end) continue;
+      add_warning(
+          {fmt::format("script.parameters[{}]", i),
+           fmt::format("the change of {} at {:g} s has no effect: the run ends at {:g} s", change.set, change.at, end),
+           "an earlier time, or a longer session.duration", ""});
+    }
+  }
+
   void add_problem(const Problem& problem) {
     report_.add(places_.nearest(problem.path, root_.mark), problem.path,
                 {problem.what, problem.expected, problem.suggestion});

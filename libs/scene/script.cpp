@@ -5,7 +5,10 @@
 
 namespace slew::scene {
 ScriptPlayer::ScriptPlayer(const Scene& scene)
-    : interpolation_(scene.script.interpolation), tracks_(scene.inputs.size()), changes_(scene.script.changes) {
+    : is_held_(scene.inputs.size()), tracks_(scene.inputs.size()), changes_(scene.script.changes) {
+  for (std::size_t i = 0; i < scene.inputs.size(); ++i) {
+    is_held_[i] = scene.script.interpolation == ScriptInterpolation::step || scene.inputs[i].type == InputType::digital;
+  }
   for (const ScriptTrack& track : scene.script.tracks) {
     for (std::size_t i = 0; i < scene.inputs.size(); ++i) {
       if (scene.inputs[i].name != track.input) continue;
@@ -30,8 +33,7 @@ double ScriptPlayer::value(std::size_t input, SimTime t) const noexcept {
   const auto next = first_behind(t, points);
   if (next == points.begin()) return next->value;
   const Point& before = *(next - 1);
-  if (next == points.end() || before.time_ns == t.ns || interpolation_ == ScriptInterpolation::step)
-    return before.value;
+  if (next == points.end() || before.time_ns == t.ns || is_held_[input]) return before.value;
   const double share = static_cast<double>(t.ns - before.time_ns) / static_cast<double>(next->time_ns - before.time_ns);
   return before.value + (next->value - before.value) * share;
 }
@@ -43,7 +45,7 @@ void ScriptPlayer::read_course(std::size_t input, SimTime from, SimTime to, Sign
     if (time_ns > from.ns) course.push_back({static_cast<double>(time_ns - from.ns) / length, begin, end});
     from.ns = time_ns;
   };
-  if (interpolation_ == ScriptInterpolation::step || input >= tracks_.size() || tracks_[input].empty()) {
+  if (input >= tracks_.size() || tracks_[input].empty() || is_held_[input]) {
     add_until(to.ns, begin);
     return;
   }
@@ -60,8 +62,9 @@ void ScriptPlayer::read_course(std::size_t input, SimTime from, SimTime to, Sign
 
 std::size_t ScriptPlayer::most_pieces(SimDuration length) const noexcept {
   std::size_t most = 1;
-  if (interpolation_ == ScriptInterpolation::step) return most;
-  for (const Points& points : tracks_) {
+  for (std::size_t input = 0; input < tracks_.size(); ++input) {
+    if (is_held_[input]) continue;
+    const Points& points = tracks_[input];
     std::size_t first = 0;
     for (std::size_t last = 0; last < points.size(); ++last) {
       while (points[last].time_ns - points[first].time_ns >= length.ns) ++first;

@@ -13,8 +13,9 @@
 namespace slew::scene {
 
 // At a point of the table the value is the table's, bit for bit. Between two points: a straight line, or the earlier
-// value (interpolation step). Of two points at one time the second one counts from then on. Before the first and behind
-// the last point their values are held; an input without a track is 0.
+// value (interpolation step, and every digital input: a switch has no values between). Of two points at one time the
+// second one counts from then on. Before the first and behind the last point their values are held; an input without a
+// track is 0.
 class ScriptPlayer {
  public:
   explicit ScriptPlayer(const Scene& scene);
@@ -22,8 +23,8 @@ class ScriptPlayer {
   // Raw value -1..1 of the input with this index in Scene::inputs. Real-time safe.
   [[nodiscard]] double value(std::size_t input, SimTime t) const noexcept;
 
-  // The signal in [from, to) as straight pieces, which replace the content of `course`; with interpolation step one
-  // piece at value(from). Allocates while `course` grows.
+  // The signal in [from, to) as straight pieces, which replace the content of `course`; of an input that is
+  // held one piece at value(from). Allocates while `course` grows.
   void read_course(std::size_t input, SimTime from, SimTime to, SignalCourse& course) const;
 
   // Largest number of pieces of read_course() for a step of this length.
@@ -42,7 +43,7 @@ class ScriptPlayer {
   };
   using Points = std::vector<Point>;
   [[nodiscard]] static Points::const_iterator first_behind(SimTime t, const Points& points) noexcept;
-  ScriptInterpolation interpolation_;
+  std::vector<bool> is_held_;   // by input: from point to point
   std::vector<Points> tracks_;  // by input
   std::vector<ScriptChange> changes_;
   std::vector<std::int64_t> change_ns_;

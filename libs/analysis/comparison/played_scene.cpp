@@ -24,14 +24,19 @@ PlayedScene::PlayedScene(const scene::Scene& scene)
     : H_(scene.session.step_duration()), inputs_(inputs_of(scene)), session_(scene), controls_(inputs_.gate().size()) {
   set_floating_point_mode();
   require(session_.start());
+  take_tick();
 }
 
 void PlayedScene::advance() {
-  // no controller holds a channel: the wall clock is never read
-  inputs_.advance(n_, 0, commands_);
   for (std::size_t i = 0; i < controls_.size(); ++i) controls_[i] = inputs_.gate().control(i);
   session_.step(n_, commands_, controls_);
   ++n_;
+  take_tick();
+}
+
+void PlayedScene::take_tick() {
+  // no controller holds a channel: the wall clock is never read
+  inputs_.advance(n_, 0, commands_);
 }
 
 StateHashes PlayedScene::state_hashes() const noexcept {

@@ -23,6 +23,8 @@ class PlayedScene {
   // The scene must outlive it. Throws Failure when no start state exists.
   explicit PlayedScene(const scene::Scene& scene);
 
+  // The inputs of the tick that begins at time().
+  [[nodiscard]] const io_node::InputGate& inputs() const noexcept { return inputs_.gate(); }
   // From step() to the next one: controls and parameter changes of this step, then the physics.
   void advance();
 
@@ -34,6 +36,9 @@ class PlayedScene {
   [[nodiscard]] StateHashes state_hashes() const noexcept;
 
  private:
+  // Inputs and parameter changes of the tick of step n_.
+  void take_tick();
+
   SimDuration H_;
   io_node::SessionInputs inputs_;
   session::DirectSession session_;

@@ -10,7 +10,9 @@
 #include "analysis/fit/measured_data.h"
 #include "analysis/fit/signal_run.h"
 #include "analysis/parameter_sweep/measure.h"
+#include "analysis/parameter_sweep/variable_values.h"
 #include "analysis/parameter_sweep/variation.h"
+#include "analysis/sweep/result_folder.h"
 #include "core/failure.h"
 #include "core/text_output.h"
 #include "node/identity.h"
@@ -24,6 +26,11 @@ namespace {
 using Points = std::vector<std::vector<double>>;
 
 constexpr double kAtBound = 1e-6;  // distance from a bound, as a part of the range
+// the same bound as kMostCorrelation, for the variance inflation 1 / (1 - R^2)
+constexpr double kMostInflation = 1 / (1 - kMostCorrelation * kMostCorrelation);
+// a value is part of a combination if it has at least this part of the first one's effect on the signals
+constexpr double kLeastPart = 0.1;
+constexpr double kShownChange = 0.01;  // relative change of the first value of a combination
 
 [[noreturn]] void refuse_fit(const std::string& what) {
   throw Failure(ExitCode::bad_input, what);
@@ -46,10 +53,14 @@ class Fitter {
     read_signals();
     read_free_values();
     rows_folder_ = (std::filesystem::path(fit_.folder) / "rows").string();
-    std::error_code error;
-    if (options.engine.is_fresh) std::filesystem::remove_all(rows_folder_, error);
-    std::filesystem::create_directories(rows_folder_, error);  // write_text() reports its absence
     job_text_ = to_json(job_).dump();
+    folder_.emplace(fit_.folder, FolderUse{.task = "fit",
+                                           .manifest = manifest(),
+                                           .members = {{"scene", "the scene has changed"},
+                                                       {"data", "the measured data differ"},
+                                                       {"map", "--map differs"},
+                                                       {"free", "--free differs"}},
+                                           .is_fresh = options.engine.is_fresh});
     write_text(job_file(), job_text_);
   }
 
@@ -79,6 +90,19 @@ class Fitter {
 
   [[nodiscard]] std::string job_file() const { return (std::filesystem::path(rows_folder_) / "job.json").string(); }
 
+  // What the fit depends on, beside the number of iterations: more of them continue the search.
+  [[nodiscard]] Json manifest() const {
+    std::vector<std::string> scene_texts = {result_text(base_), job_.scene.duration};
+    for (const scene::ParameterText& parameter : base_.parameter_texts) {
+      scene_texts.push_back(parameter.name);
+      scene_texts.push_back(parameter.value);
+    }
+    std::vector<std::string> data;
+    for (const FittedSignal& signal : fit_.signals)
+      data.push_back(Json(signal.time).dump() + Json(signal.measured).dump());
+    return {{"scene", key_of(scene_texts)}, {"data", key_of(data)}, {"map", options_.maps}, {"free", options_.free}};
+  }
+
   // ---- options ------------------------------------------------------------------------------------------------
 
   void read_signals() {
@@ -92,7 +116,7 @@ class Fitter {
       job_.expressions.push_back(map.substr(equals + 1));
     }
     const std::vector<MeasuredSignal> measured = read_measured(options_.data, columns);
-    const std::vector<ElementVariable> variables = session::DirectSession(base_).variables();
+    const std::vector<ElementVariable> variables = variables_of_run(base_, session::DirectSession(base_));
     double end = 0;
     for (std::size_t i = 0; i < measured.size(); ++i) {
       const scene::CompiledExpression expression = compile_of_run("--map", job_.expressions[i], base_, variables);
@@ -251,13 +275,14 @@ class Fitter {
                         .after = free.in_unit(u)};
       value.is_at_bound = u < kAtBound || u > 1 - kAtBound;
       value.setting = value.path + "=" + free.variation.value_at(u);
-      if (!C.empty()) {
+      if (!C.empty() && is_separated(k)) {
         const double half =
             student_quantile(static_cast<double>(m - n)) * std::sqrt(C[k * n + k]) * std::fabs(value.high - value.low);
         value.interval = Interval{value.after - half, value.after + half};
       }
       fit_.values.push_back(std::move(value));
     }
+    find_undetermined();
     for (std::size_t i = 0; i < n && !C.empty(); ++i) {
       for (std::size_t j = 0; j < n; ++j) {
         fit_.correlations.push_back(C[i * n + j] / std::sqrt(C[i * n + i] * C[j * n + j]));
@@ -265,9 +290,50 @@ class Fitter {
     }
   }
 
+  [[nodiscard]] bool is_separated(std::size_t k) const { return fit_.search.inflations[k] <= kMostInflation; }
+
+  void find_undetermined() {
+    const std::size_t n = free_.size();
+    const LeastSquares& search = fit_.search;
+    for (std::size_t k = 0; k < n && search.covariance.empty(); ++k) {
+      if (search.effects[k] == 0) fit_.undetermined.push_back({{{k, kShownChange}}});
+    }
+    std::vector<bool> is_open(n, !search.covariance.empty());
+    while (true) {
+      // the least separated value, and those that make up for its change
+      std::size_t first = n;
+      for (std::size_t k = 0; k < n; ++k) {
+        if (is_open[k] && !is_separated(k) && (first == n || search.inflations[k] > search.inflations[first]))
+          first = k;
+      }
+      if (first == n) return;
+      fit_.undetermined.push_back(combination_of(first));
+      for (const Undetermined::Part& part : fit_.undetermined.back().parts) is_open[part.value] = false;
+    }
+  }
+
+  // The change of the others for a change of value `first` that changes the signals least: C_j,first / C_first,first.
+  [[nodiscard]] Undetermined combination_of(std::size_t first) const {
+    const std::size_t n = free_.size();
+    const LeastSquares& search = fit_.search;
+    const auto range = [this](std::size_t k) { return fit_.values[k].high - fit_.values[k].low; };
+    const double own = fit_.values[first].after;
+    const double du = own != 0 ? kShownChange * std::fabs(own / range(first)) : kShownChange;
+    Undetermined all;
+    for (std::size_t step = 0; step < n; ++step) {
+      const std::size_t k = (first + step) % n;
+      const double share = search.covariance[k * n + first] / search.covariance[first * n + first];
+      if (std::fabs(share) * search.effects[k] < kLeastPart * search.effects[first]) continue;
+      const double change = share * du * range(k), after = fit_.values[k].after;
+      all.parts.push_back({k, after != 0 ? change / std::fabs(after) : change, after != 0});
+    }
+    return all;
+  }
+
   const FitOptions& options_;
   const FitProgress& progress_;
   scene::Scene base_;
+  std::optional<ResultFolder> folder_;
   SignalJob job_;
   std::string job_text_, rows_folder_;
   std::vector<FreeValue> free_;

@@ -8,6 +8,9 @@
 // 95 % interval of value j with m residuals and n values: t sqrt(C_jj), t: 0.975 quantile of Student's distribution
 // with m - n degrees of freedom. It holds for independent normal errors of the samples, a scene that is right but for
 // the free values, and a minimum within the bounds. Errors that follow each other, or a wrong model, make it too small.
+// Values that the data cannot separate have no interval: column k of the Jacobian J is, up to kMostCorrelation, a
+// combination of the others' columns, so that values may change together and change no signal. The measure is the
+// variance inflation |J_k|^2 (J' J)^-1_kk, which does not depend on units or ranges.
 // Not covered: several minima (the search begins at the scene's own values), delays between the channels.
 #pragma once
 
@@ -25,6 +28,9 @@
 
 namespace slew::analysis {
 
+// Largest correlation of a value's column of J with a combination of the others' for which the data separate them.
+inline constexpr double kMostCorrelation = 0.999;
+
 struct FitOptions {
   scene::SceneOptions scene;
   std::string data;               // CSV file with a column `time [s]`
@@ -38,7 +44,7 @@ struct FittedValue {
   std::string path, unit;                // unit of the three below
   double low = 0, high = 0, before = 0;  // bounds, value of the scene
   double after = 0;
-  std::optional<Interval> interval{};  // 95 %; none: the data do not determine it
+  std::optional<Interval> interval{};  // 95 %; none: the data do not determine it alone
   bool is_at_bound = false;
   std::string setting{};  // "Boom.mass=612.3 kg"
 };
@@ -50,6 +56,17 @@ struct FittedSignal {
   [[nodiscard]] double rms(const std::vector<double>& simulated) const;  // of the difference from the measured one, SI
 };
 
+// Values that change no signal when they change together, or one value that changes none alone: relative changes of
+// the fitted values, or absolute ones in their units where a fitted value is 0.
+struct Undetermined {
+  struct Part {
+    std::size_t value = 0;  // index in Fit::values
+    double change = 0;
+    bool is_relative = true;
+  };
+  std::vector<Part> parts;
+};
+
 struct Fit {
   std::string scene, folder;
   LeastSquares search;
@@ -57,6 +74,11 @@ struct Fit {
   std::vector<FittedValue> values;
   std::vector<double> correlations;  // n x n; empty: the data do not determine the values
   std::vector<FittedSignal> signals;
+  std::vector<Undetermined> undetermined;
+  // The search converged and the data determine every value.
+  [[nodiscard]] bool is_determined() const {
+    return search.has_converged && !search.covariance.empty() && undetermined.empty();
+  }
 };
 
 using FitProgress = std::function<bool(std::string_view doing, double share)>;

@@ -34,6 +34,30 @@ std::string correlations_of(const Fit& fit, std::size_t width) {
   return '\n' + table.text("", width);
 }
 
+std::string text_of(const Undetermined& combination, const Fit& fit) {
+  std::string text;
+  for (const Undetermined::Part& part : combination.parts) {
+    const FittedValue& value = fit.values[part.value];
+    text += text.empty() ? "" : " with ";
+    text += value.path + " by " +
+            (part.is_relative ? fmt::format("{:+.3g} %", 100 * part.change)
+                              : fmt::format("{:+.3g} {}", part.change, value.unit));
+  }
+  return text;
+}
+
+std::string undetermined_text(const Fit& fit) {
+  if (fit.undetermined.empty() && !fit.search.covariance.empty()) return "";
+  std::string text = "\nThe data do not determine the values";
+  if (fit.undetermined.empty()) text += ": a change of some of them together changes no signal";
+  text += ".\n";
+  for (const Undetermined& one : fit.undetermined) {
+    text += fmt::format("A change of {} {} no signal.\n", text_of(one, fit),
+                        one.parts.size() > 1 ? "changes practically" : "changes");
+  }
+  return text + "Fix a value by --set in the place of --free, or measure another signal.\n";
+}
+
 }  // namespace
 
 std::string report_text(const Fit& fit, std::size_t width) {
@@ -54,11 +78,7 @@ std::string report_text(const Fit& fit, std::size_t width) {
                   counted(fit.runs, "run", "runs"));
   text += values.text("", width) + '\n' + signals.text("", width) + correlations_of(fit, width);
   if (!fit.search.has_converged) text += "\nwhy the search stopped: " + fit.search.reason + '\n';
-  if (fit.search.covariance.empty()) {
-    text +=
-        "\nThe data do not determine the values: a change of some of them together changes no signal. Fix one, or "
-        "measure another signal.\n";
-  }
+  text += undetermined_text(fit);
   return text + '\n' + settings.substr(settings.empty() ? 0 : 1) + '\n';
 }
 
@@ -72,7 +92,9 @@ Json report_json(const Fit& fit) {
                {"squares", Json::array({fit.search.squares_before, fit.search.squares_after})},
                {"values", Json::array()},
                {"signals", Json::array()},
-               {"correlations", fit.correlations}};
+               {"correlations", fit.correlations},
+               {"is_determined", fit.is_determined()},
+               {"undetermined", Json::array()}};
   for (const FittedValue& value : fit.values) {
     json["values"].push_back(
         {{"path", value.path},
@@ -83,6 +105,15 @@ Json report_json(const Fit& fit) {
          {"interval", value.interval ? Json::array({value.interval->low, value.interval->high}) : Json()},
          {"is_at_bound", value.is_at_bound},
          {"setting", value.setting}});
+  }
+  for (const Undetermined& one : fit.undetermined) {
+    Json parts = Json::array();
+    for (const Undetermined::Part& part : one.parts) {
+      parts.push_back({{"path", fit.values[part.value].path},
+                       {"change", part.change},
+                       {"unit", part.is_relative ? Json("1") : Json(fit.values[part.value].unit)}});
+    }
+    json["undetermined"].push_back(std::move(parts));
   }
   for (const FittedSignal& signal : fit.signals) {
     json["signals"].push_back({{"column", signal.column},

@@ -33,6 +33,11 @@ struct LeastSquares {
   int iterations = 0;
   double squares_before = 0, squares_after = 0;  // r' r
   std::vector<double> covariance{};              // n x n, of u; empty: J' J is singular or m <= n
+  // |J_k|: change of the residuals with u_k, by unknown. 0: the unknown changes no residual.
+  std::vector<double> effects{};
+  // |J_k|^2 (J' J)^-1_kk, by unknown; empty without covariance. 1 / (1 - R^2) with R, the correlation of column k of J
+  // with the nearest combination of the others: by how much the others make the variance of u_k larger.
+  std::vector<double> inflations{};
 };
 
 // start: in [0, 1]. residuals: their number.

@@ -41,14 +41,14 @@ class SampledSignal {
 SignalOutcome run_scene(const SignalJob& job) {
   const scene::Scene scene = scene::load_scene(job.scene);
   PlayedScene played(scene);
-  const std::vector<ElementVariable> variables = played.session().variables();
+  const std::vector<ElementVariable> variables = variables_of_run(scene, played.session());
   std::vector<SampledSignal> signals;
   double end = 0;
   for (std::size_t i = 0; i < job.expressions.size(); ++i) {
     signals.emplace_back(compile_of_run("--map", job.expressions[i], scene, variables), job.times[i]);
     end = std::max(end, job.times[i].back());
   }
-  VariableValues values(played.session());
+  VariableValues values(played);
   SignalOutcome outcome;
   while (true) {
     const double t = played.time().seconds();

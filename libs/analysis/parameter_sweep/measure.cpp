@@ -65,6 +65,12 @@ class MeasureNames final : public scene::ExpressionNames {
         return {scene::Quantity{value.value, info(value.dimension).exponent, false}, std::nullopt};
       }
     }
+    if (belongs_to_controller(name)) {
+      return {std::nullopt,
+              scene::ValueProblem{
+                  fmt::format("'{}' belongs to a controller, and no controller takes part in these runs", name),
+                  "another variable, such as the input's raw or control", ""}};
+    }
     return {std::nullopt, scene::ValueProblem{fmt::format("there is no variable, parameter or value '{}'", name),
                                               "a name of 'slewring variables SCENE'", closest_of(name)}};
   }
@@ -78,6 +84,14 @@ class MeasureNames final : public scene::ExpressionNames {
   }
 
  private:
+  // Variables of an input that only a controller determines.
+  [[nodiscard]] bool belongs_to_controller(std::string_view name) const {
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string_view::npos || !name.substr(dot).starts_with(".loop_")) return false;
+    return std::any_of(scene_.inputs.begin(), scene_.inputs.end(),
+                       [&](const scene::InputDef& input) { return input.name == name.substr(0, dot); });
+  }
+
   const scene::Scene& scene_;
   std::span<const ElementVariable> variables_;
   scene::UnitSystem& units_;

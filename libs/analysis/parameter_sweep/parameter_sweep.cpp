@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <optional>
 
 #include "analysis/parameter_sweep/measure.h"
+#include "analysis/parameter_sweep/variable_values.h"
+#include "analysis/sweep/result_folder.h"
 #include "core/failure.h"
 #include "core/text_output.h"
 #include "session/direct_session.h"
@@ -89,7 +90,7 @@ class ParameterSweeper {
   }
 
   void read_measures() {
-    const std::vector<ElementVariable> variables = session::DirectSession(base_).variables();
+    const std::vector<ElementVariable> variables = variables_of_run(base_, session::DirectSession(base_));
     for (const std::string& text : options_.job.measures) {
       const Measure measure = parse_measure(text, base_, variables);
       result_.measures.push_back({measure.text, measure.unit});
@@ -100,9 +101,6 @@ class ParameterSweeper {
 
   [[nodiscard]] std::filesystem::path rows_folder() const {
     return std::filesystem::path(options_.engine.folder) / "rows";
-  }
-  [[nodiscard]] std::filesystem::path manifest_file() const {
-    return std::filesystem::path(options_.engine.folder) / "sweep.json";
   }
   [[nodiscard]] std::string job_file() const { return (rows_folder() / "job.json").string(); }
 
@@ -122,34 +120,17 @@ class ParameterSweeper {
             {"seed", is_grid ? Json() : Json(options_.seed)}};
   }
 
-  void prepare_folder() const {
-    const Json own = manifest();
-    std::error_code error;
-    if (options_.engine.is_fresh) {
-      std::filesystem::remove_all(rows_folder(), error);
-    } else {
-      refuse_other_sweep(own);
-    }
-    std::filesystem::create_directories(rows_folder(), error);  // write_text() reports its absence
+  void prepare_folder() {
+    folder_.emplace(options_.engine.folder, FolderUse{.task = "sweep",
+                                                      .manifest = manifest(),
+                                                      .members = {{"scene", "the scene has changed"},
+                                                                  {"vary", "--vary differs"},
+                                                                  {"measure", "--measure differs"},
+                                                                  {"sample", "--sample differs"},
+                                                                  {"samples", "--samples differs"},
+                                                                  {"seed", "--seed differs"}},
+                                                      .is_fresh = options_.engine.is_fresh});
     write_text(job_file(), to_json(options_.job).dump());
-    write_text(manifest_file().string(), own.dump(2) + '\n');
-  }
-
-  void refuse_other_sweep(const Json& own) const {
-    std::ifstream in(manifest_file(), std::ios::binary);
-    if (!in) return;
-    const std::optional<Json> there = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
-    for (const auto& [member, what] :
-         {std::pair{"scene", "the scene has changed"}, std::pair{"vary", "--vary differs"},
-          std::pair{"measure", "--measure differs"}, std::pair{"sample", "--sample differs"},
-          std::pair{"samples", "--samples differs"}, std::pair{"seed", "--seed differs"}}) {
-      const Json* before = there ? there->find(member) : nullptr;
-      if (before != nullptr && before->dump() == own.at(member).dump()) continue;
-      throw Failure(ExitCode::bad_input,
-                    fmt::format("the folder {} holds rows of another sweep: {}; nothing was run; name another folder "
-                                "with -o, or discard those rows with --anew",
-                                options_.engine.folder, what));
-    }
   }
 
   // ---- rows ---------------------------------------------------------------------------------------------------
@@ -181,6 +162,7 @@ class ParameterSweeper {
 
   const ParameterSweepOptions& options_;
   scene::Scene base_;
+  std::optional<ResultFolder> folder_;  // locked until the rows are written
   ParameterSweep result_;
 };
 

@@ -20,8 +20,8 @@ namespace {
 class MeasuredScene {
  public:
   MeasuredScene(const scene::Scene& scene, const std::vector<std::string>& texts)
-      : scene_(scene), played_(scene), values_(played_.session()) {
-    const std::vector<ElementVariable> variables = played_.session().variables();
+      : scene_(scene), played_(scene), values_(played_) {
+    const std::vector<ElementVariable> variables = variables_of_run(scene, played_.session());
     for (const std::string& text : texts) measures_.push_back(parse_measure(text, scene, variables));
     for (const Measure& measure : measures_) runs_.emplace_back(measure);
   }

@@ -1,46 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// The values of all variables of a session in this process, in the order of DirectSession::variables().
+// The variables of a run in this process and their values: those of the physics nodes, then raw value, control value
+// and age of every input, as `slewring variables SCENE` lists them and a recording has them. An input's loop_delay and
+// loop_time_ms are left out: they belong to a controller, which no such run has.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
-#include "session/direct_session.h"
+#include "analysis/comparison/played_scene.h"
+#include "core/element_variable.h"
+#include "scene/scene.h"
 
 namespace slew::analysis {
 
-inline constexpr wire::Role kVariableRoles[] = {wire::Role::mechanics, wire::Role::hydraulics};
+// session: of this scene.
+[[nodiscard]] std::vector<ElementVariable> variables_of_run(const scene::Scene& scene,
+                                                            const session::DirectSession& session);
 
 class VariableValues {
  public:
-  // The session must outlive it.
-  explicit VariableValues(const session::DirectSession& session)
-      : session_(session), values_(session.variables().size()) {}
+  // The run must outlive it.
+  explicit VariableValues(const PlayedScene& played);
 
-  // Values now, SI; valid until the next call.
-  [[nodiscard]] std::span<const double> read() {
-    std::span<double> rest = values_;
-    for (const wire::Role role : kVariableRoles) {
-      const coupling::Subsystem* subsystem = session_.subsystem(role);
-      if (subsystem == nullptr) continue;
-      const std::size_t count = subsystem->variables().size();
-      subsystem->read_variables(rest.first(count));
-      rest = rest.subspan(count);
-    }
-    return values_;
-  }
+  // Values now, SI, in the order of variables_of_run(); valid until the next call.
+  [[nodiscard]] std::span<const double> read();
 
   // Of the last step.
-  [[nodiscard]] bool has_failed() const noexcept {
-    return session_.report(wire::Role::mechanics).has_failed() || session_.report(wire::Role::hydraulics).has_failed();
-  }
-  [[nodiscard]] bool has_converged() const noexcept {
-    return !session_.report(wire::Role::mechanics).has(StepFlag::not_converged) &&
-           !session_.report(wire::Role::hydraulics).has(StepFlag::not_converged);
-  }
+  [[nodiscard]] bool has_failed() const noexcept;
+  [[nodiscard]] bool has_converged() const noexcept;
 
  private:
-  const session::DirectSession& session_;
+  const PlayedScene& played_;
   std::vector<double> values_;
 };
 

@@ -18,6 +18,7 @@ bool meets(const Tradeoff& tradeoff, const TradeoffRow& row, const ErrorBound& b
   return std::all_of(bound.variables.begin(), bound.variables.end(), [&](std::size_t v) {
     if (v >= row.result.errors.size() || !row.result.errors[v]) return false;
     const double range = tradeoff.variables[v].range;
+    if (bound.is_relative && tradeoff.variables[v].is_at_rest) return true;
     const double allowed = bound.is_relative ? bound.bound * range : bound.bound;
     return row.result.errors[v]->largest <= allowed;
   });

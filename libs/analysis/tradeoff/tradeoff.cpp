@@ -23,6 +23,9 @@
 namespace slew::analysis {
 namespace {
 
+// own error of the reference, as a share of the range, above which the variable is at rest
+constexpr double kMostOwnError = 0.01;
+
 constexpr double kReferenceTolerance = 1e-9, kLooserTolerance = 1e-8;
 constexpr double kReferenceLimit = 600;       // s of wall time
 constexpr double kRowLimit = 60;              // s
@@ -352,13 +355,14 @@ class Trader {
       tasks.push_back(task_of(job, "error of the reference", kReferenceWeight, result_text(scene)));
     }
     const std::vector<SweepResult> results = run_sweep(tasks, sweep_options(), part(rows_from_, 1));
-    for (std::size_t k = 0; k < row_of.size(); ++k) take(results[k], result_.rows[row_of[k]]);
     if (results.size() > row_of.size() && results.back().is_done && results.back().failure.empty()) {
       const RowResult own = result_from(results.back().value);
       for (std::size_t v = 0; v < own.errors.size(); ++v) {
         if (own.errors[v]) result_.variables[v].spread = own.errors[v]->largest;
       }
+      mark_at_rest(result_.variables);
     }
+    for (std::size_t k = 0; k < row_of.size(); ++k) take(results[k], result_.rows[row_of[k]]);
   }
 
   void take(const SweepResult& from, TradeoffRow& row) {
@@ -373,7 +377,8 @@ class Trader {
     for (std::size_t v = 0; v < row.result.errors.size(); ++v) {
       const double range = result_.variables[v].range;
       row.parts_from_reference =
-          row.parts_from_reference || (range > 0 && row.result.errors[v] && row.result.errors[v]->largest > range);
+          row.parts_from_reference ||
+          (result_.variables[v].is_compared() && row.result.errors[v] && row.result.errors[v]->largest > range);
     }
   }
 
@@ -404,7 +409,7 @@ std::optional<double> relative_error(const Tradeoff& tradeoff, const TradeoffRow
                                      ErrorKind kind) {
   if (variable >= row.result.errors.size() || !row.result.errors[variable]) return std::nullopt;
   const double range = tradeoff.variables[variable].range;
-  if (!(range > 0)) return std::nullopt;
+  if (!tradeoff.variables[variable].is_compared()) return std::nullopt;
   const VariableError& error = *row.result.errors[variable];
   return (kind == ErrorKind::largest ? error.largest : error.rms) / range;
 }
@@ -415,6 +420,17 @@ double worst_error(const Tradeoff& tradeoff, const TradeoffRow& row, ErrorKind k
     if (const std::optional<double> error = relative_error(tradeoff, row, v, kind)) worst = std::max(worst, *error);
   }
   return worst < 0 ? std::numeric_limits<double>::infinity() : worst;
+}
+
+void mark_at_rest(std::vector<TradeoffVariable>& variables) {
+  std::map<std::string_view, double> spreads;
+  for (const TradeoffVariable& variable : variables) {
+    double& of_stem = spreads[stem_of(variable.name)];
+    of_stem = std::max(of_stem, variable.spread.value_or(0));
+  }
+  for (TradeoffVariable& variable : variables) {
+    variable.is_at_rest = spreads[stem_of(variable.name)] > kMostOwnError * variable.range;
+  }
 }
 
 std::string verdict(const TradeoffRow& row) {

@@ -35,6 +35,11 @@ struct TradeoffVariable {
   Dimension dimension = Dimension::none;
   double range = 0;              // the errors are relative to it
   std::optional<double> spread;  // largest difference of the reference to itself at ten times its tolerance
+  // It moves no more than a hundred times that difference: an error relative to the range would be noise.
+  bool is_at_rest = false;
+
+  // A relative error exists.
+  [[nodiscard]] bool is_compared() const noexcept { return range > 0 && !is_at_rest; }
 };
 
 struct TradeoffRow {
@@ -68,12 +73,16 @@ using TradeoffProgress = std::function<bool(std::string_view doing, double share
 // Throws LoadError for a wrong scene, Failure for options that cannot be met.
 [[nodiscard]] Tradeoff trade_off(const TradeoffOptions& options, const TradeoffProgress& progress);
 
-// Largest or root-mean-square error of a variable relative to its range; none: it has no range, or the row lacks it.
+// Largest or root-mean-square error of a variable relative to its range; none: it has no range, is at rest,
+// or the row lacks it.
 enum class ErrorKind { largest, rms };
 [[nodiscard]] std::optional<double> relative_error(const Tradeoff& tradeoff, const TradeoffRow& row,
                                                    std::size_t variable, ErrorKind kind = ErrorKind::largest);
 // The worst of all variables; infinite when the row has none of them.
 [[nodiscard]] double worst_error(const Tradeoff& tradeoff, const TradeoffRow& row, ErrorKind kind = ErrorKind::largest);
+
+// Marks the variables that are at rest, by range and spread; components of a vector together.
+void mark_at_rest(std::vector<TradeoffVariable>& variables);
 
 // "yes", or the reason for no.
 [[nodiscard]] std::string verdict(const TradeoffRow& row);

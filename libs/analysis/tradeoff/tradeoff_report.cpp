@@ -74,7 +74,7 @@ ReportTable table_of(const Tradeoff& tradeoff) {
   for (const TradeoffVariable& variable : tradeoff.variables) {
     ReportColumn largest{.csv = fmt::format("{} largest error [{}]", variable.name, variable.unit)};
     ReportColumn rms{.csv = fmt::format("{} RMS error [{}]", variable.name, variable.unit)};
-    if (variable.range > 0) {
+    if (variable.is_compared()) {
       largest.text = variable.name;
       rms.text = "RMS";
     }
@@ -135,7 +135,8 @@ Json to_json(const Tradeoff& tradeoff, const std::optional<Answer>& answer) {
     json["variables"].push_back({{"name", variable.name},
                                  {"unit", variable.unit},
                                  {"range", variable.range},
-                                 {"spread", json_number(variable.spread)}});
+                                 {"spread", json_number(variable.spread)},
+                                 {"is_at_rest", variable.is_at_rest}});
   }
   for (const TradeoffRow& row : tradeoff.rows) json["rows"].push_back(json_of(tradeoff, row));
   if (answer) {
@@ -152,7 +153,10 @@ std::string variables_text(const Tradeoff& tradeoff) {
     if (!(variable.range > 0)) continue;
     text +=
         fmt::format("{}{} {}", text.empty() ? "" : ", ", variable.name, quantity_text(variable.range, variable.unit));
-    if (variable.spread) text += fmt::format(" (own error {})", share(*variable.spread / variable.range));
+    if (variable.is_at_rest) {
+      text += " (at rest, no error)";
+    } else if (variable.spread)
+      text += fmt::format(" (own error {})", share(*variable.spread / variable.range));
   }
   return text;
 }
@@ -174,7 +178,7 @@ select,label{font-size:14px;margin-right:1em}
 constexpr std::string_view kTradeoffScript = R"(
 const D=JSON.parse(document.getElementById('data').textContent),S='http://www.w3.org/2000/svg';
 const pick=document.getElementById('variable'),kind=document.getElementById('kind'),tip=document.getElementById('tip');
-const names=['worst of all',...D.variables.filter(v=>v.range>0).map(v=>v.name)];
+const names=['worst of all',...D.variables.filter(v=>v.range>0&&!v.is_at_rest).map(v=>v.name)];
 names.forEach((n,i)=>pick.add(new Option(n,i)));
 const error=r=>{if(!r.us_per_ms)return null;const rms=kind.value=='rms';
  if(pick.value==0)return rms?r.worst_rms:r.worst_error;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/engine.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -71,7 +73,7 @@ class Engine final : public HydraulicComponent {
         w_(shaft_.speed),
         u_(shaft_.fuel),
         control_(builder.add_control(def.name, SignalMoves::a_state)),
-        full_load_(straight_lines(*find_curve(builder.def(), def.torque_curve))) {}
+        full_load_(*find_curve(builder.def(), def.torque_curve)) {}
 
   // at the governed speed under its own losses
   void start(double* y) const noexcept override {
@@ -137,19 +139,8 @@ class Engine final : public HydraulicComponent {
   // T_full g
   [[nodiscard]] ValueSlope full_torque(double w) const noexcept {
     const double range = kCombustionRange * def_.stall_speed;
-    const ValueSlope g = unit_clip((w - def_.stall_speed) / range, kCombustionWidth), T = on_curve(w);
+    const ValueSlope g = unit_clip((w - def_.stall_speed) / range, kCombustionWidth), T = full_load_.at(w);
     return {T.value * g.value, T.slope * g.value + T.value * g.slope / range};
-  }
-  [[nodiscard]] ValueSlope on_curve(double w) const noexcept {
-    if (w <= full_load_.front()[0]) return {full_load_.front()[1], 0};
-    for (std::size_t i = 1; i < full_load_.size(); ++i) {
-      const auto& a = full_load_[i - 1];
-      const auto& b = full_load_[i];
-      if (w >= b[0]) continue;
-      const double slope = (b[1] - a[1]) / (b[0] - a[0]);
-      return {a[1] + slope * (w - a[0]), slope};
-    }
-    return {full_load_.back()[1], 0};
   }
   // friction of (1), with its slope
   [[nodiscard]] ValueSlope loss(double w) const noexcept {
@@ -162,7 +153,7 @@ class Engine final : public HydraulicComponent {
   EngineShaft shaft_;
   StateIndex w_, u_;  // speed over its reference, fuel
   int control_;
-  Table full_load_;
+  CurveFunction full_load_;
 };
 
 void validate_engine(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors,
@@ -179,6 +170,19 @@ void validate_engine(const HydraulicsDef& circuit, const ComponentDef& component
   if (def.speed <= def.stall_speed) {
     errors.push_back(
         {def.name + ".stall_speed", "the engine would stand at its governed speed", "a speed below `speed`", ""});
+  }
+  const double speed = std::max(def.speed, def.minimum_speed);
+  const double loss = def.friction_torque + def.viscous_friction * speed;
+  if (curve != nullptr && errors.empty()) {
+    const double most = CurveFunction(*curve).at(speed).value;
+    if (loss >= most) {
+      errors.push_back(
+          {def.name + ".friction_torque",
+           fmt::format("friction_torque and viscous_friction are {:g} Nm at {:g} rad/s, where the engine has "
+                       "{:g} Nm at full load: it cannot turn by itself",
+                       loss, speed, most),
+           "less friction, or more torque in '" + curve->name + "'", ""});
+    }
   }
   const auto is_driven = [&](const auto& other) {
     const std::span<const Field> fields = find_component_type(other->type_name())->fields;

@@ -121,7 +121,7 @@ constexpr double kTravelTimeConstants = 3;  // in a step response, to 95 % of th
 // An edge between two volumes as a function of the spool position.
 struct Edge {
   StateIndex from, to;
-  Table curve;           // empty: by overlap
+  CurveFunction curve;   // empty: by overlap
   double direction = 1;  // +1: a positive position opens it; 0: the bypass
   double begin = 0;      // position at which it opens
   double gain = 1;       // opening over position
@@ -129,24 +129,13 @@ struct Edge {
   double G = 0;          // m3/s/Pa
 
   [[nodiscard]] ValueSlope opening(double s) const noexcept {
-    if (!curve.empty()) return on_curve(s);
+    if (!curve.empty()) return curve.at(s);
     if (direction == 0) {
       const ValueSlope x = unit_clip((begin - std::fabs(s)) * gain, kBypassWidth);
       return {x.value, s < 0 ? gain * x.slope : -gain * x.slope};
     }
     const ValueSlope x = ramp((direction * s - begin) * gain, kEdgeWidth);
     return {x.value, direction * gain * x.slope};
-  }
-
- private:
-  [[nodiscard]] ValueSlope on_curve(double s) const noexcept {
-    if (s <= curve.front()[0]) return {curve.front()[1], 0};
-    for (std::size_t i = 1; i < curve.size(); ++i) {
-      if (s >= curve[i][0]) continue;
-      const double slope = (curve[i][1] - curve[i - 1][1]) / (curve[i][0] - curve[i - 1][0]);
-      return {curve[i - 1][1] + slope * (s - curve[i - 1][0]), slope};
-    }
-    return {curve.back()[1], 0};
   }
 };
 
@@ -163,12 +152,12 @@ class SpoolValve final : public HydraulicComponent {
     const StateIndex a = builder.volume(def.port_a), b = builder.volume(def.port_b);
     const StateIndex c = def.port_c.empty() ? p : builder.volume(def.port_c);
     const StateIndex d = def.port_d.empty() ? t : builder.volume(def.port_d);
-    const auto table = [&](const std::string& curve) {
-      return curve.empty() ? Table{} : straight_lines(*find_curve(builder.def(), curve));
+    const auto function = [&](const std::string& curve) {
+      return curve.empty() ? CurveFunction{} : CurveFunction(*find_curve(builder.def(), curve));
     };
-    edges_ = {Edge{p, a, table(def.pa.curve), 1}, Edge{b, t, table(def.bt.curve), 1},
-              Edge{p, b, table(def.pb.curve), -1}, Edge{a, t, table(def.at.curve), -1},
-              Edge{c, d, table(def.bypass_curve), 0}};
+    edges_ = {Edge{p, a, function(def.pa.curve), 1}, Edge{b, t, function(def.bt.curve), 1},
+              Edge{p, b, function(def.pb.curve), -1}, Edge{a, t, function(def.at.curve), -1},
+              Edge{c, d, function(def.bypass_curve), 0}};
     apply_parameters();
   }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits against a closed form with noise: a block on a rail with gravity a and viscous friction c,
 //   x(t) = (a m / c) (t - (m / c) (1 - exp(-c t / m)))
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -126,6 +129,79 @@ TEST_F(Fit, ReportsValuesThatTheDataDoNotDetermine) {
 TEST_F(Fit, RefusesBeforeAnyRun) {
   const auto refusal = [this](std::vector<std::string> more) {
     more.insert(more.end(), {"-o", "none"});
+// the motion has c / m alone, and a: an interval of a stays, c and m have none though the search finds some pair
+TEST_F(Fit, NamesTheCombinationThatTheDataDoNotSeparate) {
+  const CommandResult command =
+      fit({"--map", "way=Block.position.x", "--free", "a=1m/s2..5m/s2", "--free", "Block.mass=5kg..20kg", "--free",
+           "Rail.viscous_friction=2Ns/m..20Ns/m", "-o", "out"});
+  EXPECT_EQ(command.code, 1) << command.err << command.out;
+  const Json found = result("out");
+  EXPECT_EQ(found["is_determined"], false);
+  const Json& values = found["values"];
+  ASSERT_TRUE(values[0]["interval"].is_array()) << command.out;
+  EXPECT_NEAR(values[0]["after"].get<double>(), kA, 0.05);
+  EXPECT_TRUE(values[1]["interval"].is_null()) << command.out;
+  EXPECT_TRUE(values[2]["interval"].is_null()) << command.out;
+  EXPECT_NEAR(values[2]["after"].get<double>() / values[1]["after"].get<double>(), kC / kMass, 0.02);
+  // c and m by the same part of themselves
+  ASSERT_EQ(found["undetermined"].size(), 1u) << command.out;
+  const Json& parts = found["undetermined"][0];
+  ASSERT_EQ(parts.size(), 2u) << parts;
+  EXPECT_NEAR(parts[0]["change"].get<double>() / parts[1]["change"].get<double>(), 1, 0.05) << parts;
+  for (const char* name : {"Block.mass by", "Rail.viscous_friction by"}) {
+    EXPECT_NE(command.out.find(name), std::string::npos) << command.out;
+  }
+}
+
+TEST_F(Fit, KeepsTheResultOfAnotherFitInItsFolder) {
+  const std::vector<std::string> first = {"--map", "way=Block.position.x",        "--free", "a=1m/s2..5m/s2",
+                                          "--set", "Rail.viscous_friction=8Ns/m", "-o",     "out"};
+  ASSERT_EQ(fit(first).code, 0);
+  const Json before = result("out");
+  const auto refusal = [&](std::size_t place, const std::string& value, const std::string& reason) {
+    std::vector<std::string> other = first;
+    other[place] = value;
+    const CommandResult command = fit(other);
+    EXPECT_EQ(command.code, 2) << value;
+    EXPECT_NE(command.err.find("holds rows of another fit: " + reason), std::string::npos) << command.err;
+    EXPECT_EQ(result("out"), before) << value;
+  };
+  refusal(3, "a=1m/s2..4m/s2", "--free differs");
+  refusal(1, "way=Block.position.x * 1", "--map differs");
+  refusal(5, "Rail.viscous_friction=7Ns/m", "the scene has changed");
+  std::ofstream(work_.path() / "measured.csv", std::ios::app) << "2100,5000\n";
+  refusal(3, first[3], "the measured data differ");
+  // no sweep either
+  const CommandResult swept = run(
+      "slewring",
+      {"sweep", "rail.yaml", "--vary", "a=1m/s2,2m/s2", "--measure", "max(Block.position.x)", "--anew", "-o", "out"},
+      work_.path());
+  EXPECT_EQ(swept.code, 2);
+  EXPECT_NE(swept.err.find("holds the results of a fit"), std::string::npos) << swept.err;
+  EXPECT_EQ(result("out"), before);
+  std::vector<std::string> anew = first;
+  anew.emplace_back("--anew");
+  EXPECT_EQ(fit(anew).code, 0);
+  EXPECT_NE(result("out"), before);
+}
+
+// the lock of a program that still runs; the kernel frees it with the program
+TEST_F(Fit, RefusesAFolderInWhichAnotherProgramWorks) {
+  std::filesystem::create_directories(work_.path() / "out");
+  const int lock = open((work_.path() / "out" / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+  ASSERT_EQ(flock(lock, LOCK_EX | LOCK_NB), 0);
+  const std::vector<std::string> fitted = {"--map", "way=Block.position.x",        "--free", "a=1m/s2..5m/s2",
+                                           "--set", "Rail.viscous_friction=8Ns/m", "-o",     "out"};
+  const std::vector<std::string> swept = {
+      "sweep", "rail.yaml", "--vary", "a=1m/s2,2m/s2", "--measure", "max(Block.position.x)", "-o", "out", "--quiet"};
+  for (const CommandResult& command : {fit(fitted), run("slewring", swept, work_.path())}) {
+    EXPECT_EQ(command.code, 2) << command.out;
+    EXPECT_NE(command.err.find("is in use by another sweep or fit"), std::string::npos) << command.err;
+  }
+  close(lock);
+  EXPECT_EQ(fit(fitted).code, 0);
+}
+
     const CommandResult command = fit(more);
     EXPECT_EQ(command.code, 2) << command.out;
     EXPECT_FALSE(std::filesystem::exists(work_.path() / "none"));

@@ -85,6 +85,43 @@ TEST_F(Sweep, MeasuresTheKnownMotionOfABlock) {
   EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org/2000/svg"));  // no other address
 }
 
+// every variable that `variables SCENE` lists, but for those of a controller's loop
+TEST_F(Sweep, MeasuresTheInputsAsTheyAreRecorded) {
+  std::ofstream(work_.path() / "source.yaml") << R"(
+volumes: {V: {rigid_volume: 1 l}, T: {fixed: true}}
+components: {F: {type: flow_source, port_1: T, port_2: V, flow_per_signal: 1 l/min}}
+inputs: {I: {type: analog, primitive: F, scale: 2}}
+script: {inputs: {I: [[0 s, 0], [0.1 s, 1]]}}
+session: {duration: 0.1 s}
+)";
+  const CommandResult variables = run("slewring", {"variables", "source.yaml", "--json"}, work_.path());
+  std::vector<std::string> arguments = {"source.yaml", "--vary", "I.scale=2,4", "-o", "out"};
+  for (const char* measure : {"at(I.raw, 50 ms)", "at(I.control, 50 ms)", "final(I.raw)"})
+    arguments.insert(arguments.end(), {"--measure", measure});
+  std::size_t listed = 0;
+  for (const Json& variable : Json::parse(variables.out)) {
+    const std::string name = variable["name"];
+    if (name.find(".loop_") != std::string::npos) continue;
+    arguments.insert(arguments.end(), {"--measure", "final(" + name + ")"});
+    ++listed;
+  }
+  EXPECT_GE(listed, 4u) << variables.out;
+  const CommandResult result = sweep(arguments);
+  ASSERT_EQ(result.code, 0) << result.err;
+  // the tick at 50 ms has the mean of its step of 1 ms
+  const Json report = rows("out");
+  for (const double scale : {2.0, 4.0}) {
+    const Json& values = report["rows"][scale == 2 ? 0 : 1]["values"];
+    EXPECT_NEAR(values[0].get<double>(), 0.505, 1e-12);
+    EXPECT_NEAR(values[1].get<double>(), scale * 0.505, 1e-12);
+    EXPECT_NEAR(values[2].get<double>(), 1, 1e-12);
+  }
+  const CommandResult loop =
+      sweep({"source.yaml", "--vary", "I.scale=2,4", "--measure", "max(I.loop_delay)", "-o", "no"});
+  EXPECT_EQ(loop.code, 2);
+  EXPECT_NE(loop.err.find("'I.loop_delay' belongs to a controller"), std::string::npos) << loop.err;
+}
+
 TEST_F(Sweep, RowsAreTheSameBytesWithAnyNumberOfWorkers) {
   const auto arguments = [](const char* workers, const char* folder) {
     return std::vector<std::string>{"boom.yaml",

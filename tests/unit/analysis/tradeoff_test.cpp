@@ -93,6 +93,26 @@ Tradeoff example() {
   return tradeoff;
 }
 
+// noise of a machine at rest is no error: its range is that of the reference's own error
+TEST(Variable, ThatMovesNoMoreThanTheReferenceErrsIsAtRest) {
+  Tradeoff tradeoff = example();
+  tradeoff.variables.push_back({.name = "Bag.position.x", .unit = "m", .range = 7, .spread = 1e-6});
+  tradeoff.variables.push_back({.name = "Bag.position.y", .unit = "m", .range = 7, .spread = 2e-6});
+  tradeoff.variables.push_back({.name = "Hinge.torque", .unit = "N m", .range = 6.9e-10, .spread = 1e-11});
+  tradeoff.variables.push_back({.name = "Foot.force.x", .unit = "N", .range = 1e-9, .spread = 0});
+  tradeoff.variables.push_back({.name = "Foot.force.y", .unit = "N", .range = 1e-9, .spread = 4e-10});
+  mark_at_rest(tradeoff.variables);
+  std::vector<bool> rests;
+  for (const TradeoffVariable& variable : tradeoff.variables) rests.push_back(variable.is_at_rest);
+  EXPECT_EQ(rests, (std::vector<bool>{false, false, false, true, true, true}));
+  for (TradeoffRow& row : tradeoff.rows) row.result.errors.resize(6, VariableError{1e-9, 1e-9});
+  EXPECT_EQ(relative_error(tradeoff, tradeoff.rows[0], 3), std::nullopt);
+  EXPECT_DOUBLE_EQ(worst_error(tradeoff, tradeoff.rows[0]), 0.01);
+  const std::string text = report_text(tradeoff, std::nullopt);
+  EXPECT_NE(text.find("Hinge.torque"), std::string::npos) << text;
+  EXPECT_NE(text.find("(at rest, no error)"), std::string::npos) << text;
+}
+
 TEST(ParetoFront, KeepsWhatNothingBeats) {
   EXPECT_EQ(pareto_front({1, 2, 3, 4}, {4, 3, 2, 1}), (std::vector<std::size_t>{0, 1, 2, 3}));
   EXPECT_EQ(pareto_front({4, 1, 2, 3}, {1, 1, 0.5, 0.7}), (std::vector<std::size_t>{1, 2}));

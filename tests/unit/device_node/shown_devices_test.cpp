@@ -109,6 +109,20 @@ TEST(UdpOut, OutputsFollowEveryStepBetweenTwoPackets) {
   EXPECT_EQ(dash.device->counts().at("output_changes").at("Lamp").integer(), 2);
 }
 
+// the first packet too has outputs of its own values: 1e5 Pa are a quarter of the gauge
+TEST(UdpOut, TheFirstPacketHasTheOutputsOfItsValues) {
+  Dash dash;
+  dash.publish_step(0, 0, 1e5);
+  ASSERT_EQ(dash.packets.size(), 1u);
+  EXPECT_FLOAT_EQ(dash.gauge(0), 8);
+  EXPECT_EQ(dash.lamp(0), 0);
+  // and after a reset, where the lamp is on from the first step
+  dash.publish_step(0, 0, 3e5, 1);
+  ASSERT_EQ(dash.packets.size(), 2u);
+  EXPECT_FLOAT_EQ(dash.gauge(1), 16);
+  EXPECT_EQ(dash.lamp(1), 1);
+}
+
 TEST(UdpOut, AValueThatIsNotFiniteIsNotSent) {
   Dash dash;
   dash.publish_step(0, std::nan(""), 1e5);

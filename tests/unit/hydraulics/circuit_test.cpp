@@ -250,6 +250,32 @@ TEST(Curve, pchip_passes_through_its_points_and_stays_between_them) {
   EXPECT_EQ(find_curve(def, "nothing"), nullptr);
 }
 
+// the cubic itself, not lines through it: by hand from the slopes of Fritsch and Carlson (1980) at the points
+TEST(Curve, pchip_is_the_cubic_with_its_own_slope) {
+  CurveDef curve;
+  curve.points = {{-1, 0}, {0, 0.2}, {0.3, 3}, {0.5, 3.2}, {1, 10}};
+  curve.interpolation = Interpolation::pchip;
+  const CurveFunction function(curve);
+  // weighted harmonic means: w1 = 2 h1 + h0, w2 = h1 + 2 h0
+  const double m_1 = (1.6 + 2.3) / (1.6 / 0.2 + 2.3 / (2.8 / 0.3)), m_2 = (0.7 + 0.8) / (0.7 / (2.8 / 0.3) + 0.8 / 1);
+  for (const double x : {0.002, 0.01, 0.1, 0.2, 0.29}) {
+    const double h = 0.3, t = x / h, u = 1 - t;
+    const double y = u * u * (1 + 2 * t) * 0.2 + t * t * (3 - 2 * t) * 3 + t * u * h * (u * m_1 - t * m_2);
+    EXPECT_NEAR(function.at(x).value, y, 1e-12) << x;
+  }
+  for (double x = -0.995; x < 1; x += 0.01) {
+    const double step = 1e-6;
+    const double slope = (function.at(x + step).value - function.at(x - step).value) / (2 * step);
+    EXPECT_NEAR(function.at(x).slope, slope, 1e-4) << x;
+  }
+  for (const auto& [end, value] : {std::pair{-2.0, 0.0}, std::pair{2.0, 10.0}}) {
+    EXPECT_EQ(function.at(end).value, value);
+    EXPECT_EQ(function.at(end).slope, 0);
+  }
+  curve.interpolation = Interpolation::linear;
+  EXPECT_NEAR(CurveFunction(curve).at(0.15).value, 1.6, 1e-12);
+}
+
 TEST(Circuit, numbers_its_states_volumes_first_then_pistons_then_components) {
   const Circuit circuit(crane_circuit());
   EXPECT_EQ(circuit.volume_count(), 8);

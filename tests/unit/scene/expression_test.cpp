@@ -24,7 +24,7 @@ class Names final : public ExpressionNames {
 
  private:
   UnitSystem& units_;
-  const std::map<std::string, std::string, std::less<>> values_ = {{"L", "2.6 m"}, {"a", "30 deg"},  {"m", "500 kg"},
+  const std::map<std::string, std::string, std::less<>> values_ = {{"L", "2.6 m"}, {"a", "30 deg"},  {"M", "500 kg"},
                                                                    {"n", "3"},     {"p", "250 bar"}, {"t", "4 s"}};
 };
 
@@ -85,7 +85,7 @@ TEST(Expression, ReadsANumberWithItsUnitToTheSameBitsAsAScene) {
 }
 
 TEST(Expression, CarriesUnits) {
-  EXPECT_EQ(value_of("m * L^2").exponent, (Exponents{1, 2, 0, 0, 0}));
+  EXPECT_EQ(value_of("M * L^2").exponent, (Exponents{1, 2, 0, 0, 0}));
   EXPECT_EQ(value_of("p * 3 cm2").exponent, (Exponents{1, 1, -2, 0, 0}));
   EXPECT_EQ(value_of("a / t").exponent, (Exponents{0, 0, -1, 0, 1}));
   EXPECT_EQ(value_of("sqrt(2 * p / (870 kg/m3))").exponent, (Exponents{0, 1, -1, 0, 0}));
@@ -102,9 +102,13 @@ TEST(Expression, ANumberIsBareUntilAUnitTakesPart) {
 }
 
 TEST(Expression, AWordBehindANumberIsItsUnit) {
-  EXPECT_EQ(value_of("2 m").value, 2);        // not twice the parameter m
   EXPECT_EQ(value_of("2 m / t").value, 0.5);  // spaces around the slash: a division
-  EXPECT_EQ(value_of("2 * m").value, 1000);
+  EXPECT_EQ(value_of("2 * M").value, 1000);
+  for (const char* first : {"1 t", "1t", "L + 2.5 t"}) {
+    EXPECT_NE(fault_of(first).find("'t' is a parameter and would be read as a unit here; an operator before it"),
+              std::string::npos)
+        << fault_of(first);
+  }
   EXPECT_EQ(fault_of("2 m/t"), "3: 't' is a parameter and would be read as a unit here; spaces around '/'");
   EXPECT_EQ(fault_of("2 m L"), "3: 'L' is a parameter and would be read as a unit here; an operator before it");
   EXPECT_EQ(fault_of("2 m^2"), "3: '^' behind a unit; a power as in 'm2', or brackets around the quantity");
@@ -113,8 +117,8 @@ TEST(Expression, AWordBehindANumberIsItsUnit) {
 TEST(Expression, TextsOfQuantitiesReadBackToTheSameBits) {
   UnitSystem units;
   for (const char* text :
-       {"L/3", "m * L^2 / 7", "a / 7", "p / 3", "1 / t", "L * a", "m / (3 * t^5)", "n / 7", "m * a^2", "(40 degC) / 3",
-        "p * L^3", "1 / (3 m)", "p / (7 t)", "L^3 / (7 a)", "m / (7 t)"}) {
+       {"L/3", "M * L^2 / 7", "a / 7", "p / 3", "1 / t", "L * a", "M / (3 * t^5)", "n / 7", "M * a^2", "(40 degC) / 3",
+        "p * L^3", "1 / (3 m)", "p / (7 * t)", "L^3 / (7 * a)", "M / (7 * t)"}) {
     const Quantity quantity = value_of(text);
     const NamedQuantity again = quantity_of(text_of(quantity), units);
     ASSERT_TRUE(again.quantity) << text << " is " << text_of(quantity);

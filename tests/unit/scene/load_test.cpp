@@ -27,6 +27,35 @@ TEST(Load, TheCanonicalTextOfASceneReadsBackToTheSameText) {
   }
 }
 
+// 25 mPa are 25 millipascal
+TEST(Load, WarnsOfMilliWhereMegaIsLikely) {
+  const Scene scene = load_text(
+      "volumes:\n  V: {rigid_volume: 1 l, initial_pressure: 0.2 MPa}\n  T: {fixed: true}\n"
+      "components:\n  R: {type: relief_valve, port_1: V, port_2: T, nominal_flow: 10 l/min, setting_pressure: 25 "
+      "mPa}\n",
+      "test");
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_EQ(
+      scene.warnings[0],
+      "test:5:95: R.setting_pressure: '25 mPa' is 0.025 Pa; expected M in the place of m, 'MPa', unless so little is "
+      "meant");
+}
+
+TEST(Load, WarnsOfAScriptedChangeBehindTheEndOfTheRun) {
+  const std::string script =
+      "volumes:\n  V: {rigid_volume: 1 l}\n  T: {fixed: true}\n"
+      "components:\n  R: {type: relief_valve, port_1: V, port_2: T, nominal_flow: 10 l/min, setting_pressure: 25 MPa}\n"
+      "script:\n  parameters:\n    - {at: 1 s, set: R.setting_pressure, value: 20 MPa}\n"
+      "    - {at: 3 s, set: R.setting_pressure, value: 25 MPa}\n";
+  const Scene scene = load_text(script + "session: {duration: 2 s}\n", "test");
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("the change of R.setting_pressure at 3 s has no effect: the run ends at 2 s"),
+            std::string::npos)
+      << scene.warnings[0];
+  EXPECT_TRUE(load_text(script + "session: {duration: 4 s}\n", "test").warnings.empty());
+  EXPECT_TRUE(load_text(script, "test").warnings.empty());
+}
+
 TEST(Load, TextsSurviveTheRoundTrip) {
   const std::string title = "the \"hi\" \\ to\tit: # [x] \xC3\xA4, and 'so'";
   std::string scene = kPendulum + "plots:\n  Swing: {title: " + yaml_text(title) + ", variables: [Rod.position.x]}\n";

@@ -57,6 +57,35 @@ TEST(Script, StepInterpolationJumpsAtThePoint) {
   EXPECT_EQ(script.value(0, {1'000'000'000}), 1.0);
 }
 
+// a switch has no values between: it does not turn half-way to the next point
+TEST(Script, ADigitalInputHoldsItsValueFromPointToPoint) {
+  const std::string tracks = "  inputs:\n    Stick: [[0, 0], [1 s, 1]]\n    Button: [[0, 0], [1 s, 1], [2 s, 0]]\n";
+  for (const char* interpolation : {"", "  interpolation: linear\n", "  interpolation: step\n"}) {
+    const ScriptPlayer script = player(std::string("script:\n") + interpolation + tracks);
+    EXPECT_EQ(script.value(1, {999'999'999}), 0.0) << interpolation;
+    EXPECT_EQ(script.value(1, at(1)), 1.0) << interpolation;
+    EXPECT_EQ(script.value(1, {1'999'999'999}), 1.0) << interpolation;
+    EXPECT_EQ(script.value(1, at(2)), 0.0) << interpolation;
+    SignalCourse course;
+    script.read_course(1, at(0.4), at(0.6), course);
+    ASSERT_EQ(course.size(), 1u) << interpolation;
+    EXPECT_EQ(course[0].end, 0.0) << interpolation;
+  }
+  // a stick beside it still moves along the line
+  EXPECT_DOUBLE_EQ(player("script:\n" + tracks).value(0, at(0.5)), 0.5);
+}
+
+// a table beside the scene, as for --input FILE.csv, and as an export of a recording's inputs
+TEST(Script, ADigitalInputOfATableHoldsItsValueToo) {
+  const TemporaryFolder folder;
+  folder.write("keys.csv", "time [s],Button.raw,Stick.raw\n0,0,0\n1,1,1\n");
+  const ScriptPlayer script(
+      load_text(kValve + "script: {interpolation: linear, file: keys.csv}\n", folder.path() / "test.yaml"));
+  EXPECT_EQ(script.value(1, {999'999'999}), 0.0);
+  EXPECT_EQ(script.value(1, at(1)), 1.0);
+  EXPECT_DOUBLE_EQ(script.value(0, at(0.5)), 0.5);
+}
+
 TEST(Script, AnInputWithoutTrackIsNeutral) {
   const ScriptPlayer script = player("script:\n  inputs:\n    Stick: [[0, 1]]\n");
   EXPECT_EQ(script.value(1, at(1)), 0.0);

@@ -46,6 +46,9 @@ class SimulatedResiduals final : public ceres::CostFunction {
       for (std::size_t i = 0; i < m; ++i) {
         jacobians[0][i * n + k] = (values[above * m + i] - values[below * m + i]) / step;
       }
+      double squares = 0;
+      for (std::size_t i = 0; i < m; ++i) squares += jacobians[0][i * n + k] * jacobians[0][i * n + k];
+      problem_.column_squares[k] = squares;
     }
     return true;
   }
