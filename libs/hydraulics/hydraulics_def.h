@@ -158,9 +158,10 @@ inline constexpr Field kHydraulicsFields[] = {
     field<&HydraulicsDef::pressure_scale>(
         "pressure_scale",
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure added to the scale of the error"}),
-    field<&HydraulicsDef::minimum_step>(
-        "minimum_step",
-        {.dimension = Dimension::time, .range = kPositive, .read_by = kReadByHalving, .doc = "smallest sub-step; shorter only after a failure"}),
+    field<&HydraulicsDef::minimum_step>("minimum_step", {.dimension = Dimension::time,
+                                                         .range = kPositive,
+                                                         .read_by = kReadByHalving,
+                                                         .doc = "smallest sub-step; shorter only after a failure"}),
     field<&HydraulicsDef::max_substep>("max_substep", {.dimension = Dimension::time,
                                                        .range = kPositive,
                                                        .read_by = kReadByFixedStep,
