@@ -92,7 +92,7 @@ class Fitter {
 
   // What the fit depends on, beside the number of iterations: more of them continue the search.
   [[nodiscard]] Json manifest() const {
-    std::vector<std::string> scene_texts = {result_text(base_), job_.scene.duration};
+    std::vector<std::string> scene_texts = {result_text(base_)};
     for (const scene::ParameterText& parameter : base_.parameter_texts) {
       scene_texts.push_back(parameter.name);
       scene_texts.push_back(parameter.value);
@@ -290,14 +290,13 @@ class Fitter {
     }
   }
 
-  [[nodiscard]] bool is_separated(std::size_t k) const { return fit_.search.inflations[k] <= kMostInflation; }
+  [[nodiscard]] bool is_separated(std::size_t k) const {
+    return fit_.search.effects[k] > 0 && fit_.search.inflations[k] <= kMostInflation;
+  }
 
   void find_undetermined() {
     const std::size_t n = free_.size();
     const LeastSquares& search = fit_.search;
-    for (std::size_t k = 0; k < n && search.covariance.empty(); ++k) {
-      if (search.effects[k] == 0) fit_.undetermined.push_back({{{k, kShownChange}}});
-    }
     std::vector<bool> is_open(n, !search.covariance.empty());
     while (true) {
       // the least separated value, and those that make up for its change
@@ -320,7 +319,9 @@ class Fitter {
     const double own = fit_.values[first].after;
     const double du = own != 0 ? kShownChange * std::fabs(own / range(first)) : kShownChange;
     Undetermined all;
-    for (std::size_t step = 0; step < n; ++step) {
+    // a value without any effect is undetermined alone
+    const std::size_t others = search.effects[first] > 0 ? n : 1;
+    for (std::size_t step = 0; step < others; ++step) {
       const std::size_t k = (first + step) % n;
       const double share = search.covariance[k * n + first] / search.covariance[first * n + first];
       if (std::fabs(share) * search.effects[k] < kLeastPart * search.effects[first]) continue;

@@ -70,7 +70,7 @@ LeastSquares minimise_squares(std::vector<double> start, std::size_t residuals, 
   LeastSquares result;
   result.u = std::move(start);
   result.covariance.resize(n * n);
-  std::vector<double> column_squares(n, 0);
+  result.effects.resize(n);
   Callback callback{.residuals_at = residuals_at, .unknowns = n, .residuals = residuals};
   SquaresProblem problem{.unknowns = n,
                          .residuals = residuals,
@@ -80,7 +80,7 @@ LeastSquares minimise_squares(std::vector<double> start, std::size_t residuals, 
                          .residuals_at = call_back,
                          .u = result.u.data(),
                          .covariance = result.covariance.data(),
-                         .column_squares = column_squares.data()};
+                         .column_lengths = result.effects.data()};
   minimise(problem);
   if (callback.fault) std::rethrow_exception(callback.fault);
   result.has_converged = problem.has_converged;
@@ -89,13 +89,12 @@ LeastSquares minimise_squares(std::vector<double> start, std::size_t residuals, 
   result.iterations = problem.iterations;
   result.squares_before = problem.squares_before;
   result.squares_after = problem.squares_after;
-  for (const double squares : column_squares) result.effects.push_back(std::sqrt(squares));
   if (!problem.has_covariance || residuals <= n) {
     result.covariance.clear();
     return result;
   }
   for (std::size_t k = 0; k < n; ++k) {
-    result.inflations.push_back(column_squares[k] * result.covariance[k * n + k]);
+    result.inflations.push_back(result.effects[k] * result.effects[k] * result.covariance[k * n + k]);
   }
   const double variance = result.squares_after / static_cast<double>(residuals - n);
   for (double& value : result.covariance) value *= variance;

@@ -4,7 +4,7 @@
 //
 // Unknowns u are in [0, 1]. The Jacobian is that of central differences, of one-sided ones at a bound, with a step that
 // exceeds the integrators' error; all points of a Jacobian are computed at once. Covariance of u at the minimum with m
-// residuals r and n unknowns:  C = (r' r / (m - n)) (J' J)^-1.
+// residuals r and n unknowns:  C = (r' r / (m - n)) (J' J)^-1; where J' J is singular, large in its direction.
 // Ceres is in a library of its own, which this program loads for a fit alone: Debian's Ceres comes with SuiteSparse
 // under the GPL, LAPACK and others, and is built for other instructions. Only plain doubles cross its border.
 #pragma once
@@ -32,7 +32,7 @@ struct LeastSquares {
   std::vector<double> u{};  // best point
   int iterations = 0;
   double squares_before = 0, squares_after = 0;  // r' r
-  std::vector<double> covariance{};              // n x n, of u; empty: J' J is singular or m <= n
+  std::vector<double> covariance{};              // n x n, of u; empty: there is no Jacobian at u, or m <= n
   // |J_k|: change of the residuals with u_k, by unknown. 0: the unknown changes no residual.
   std::vector<double> effects{};
   // |J_k|^2 (J' J)^-1_kk, by unknown; empty without covariance. 1 / (1 - R^2) with R, the correlation of column k of J

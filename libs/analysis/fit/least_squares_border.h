@@ -24,7 +24,7 @@ struct SquaresProblem {
   double squares_before = 0, squares_after = 0;
   double* covariance = nullptr;  // n x n, of u for residuals of variance 1
   bool has_covariance = false;
-  double* column_squares = nullptr;  // n, squared length of each column of the last Jacobian, which is that at u
+  double* column_lengths = nullptr;  // n, of the Jacobian at u
   char reason[256] = {};
 };
 

@@ -126,9 +126,6 @@ TEST_F(Fit, ReportsValuesThatTheDataDoNotDetermine) {
   EXPECT_NE(command.out.find("The data do not determine the values"), std::string::npos) << command.out;
 }
 
-TEST_F(Fit, RefusesBeforeAnyRun) {
-  const auto refusal = [this](std::vector<std::string> more) {
-    more.insert(more.end(), {"-o", "none"});
 // the motion has c / m alone, and a: an interval of a stays, c and m have none though the search finds some pair
 TEST_F(Fit, NamesTheCombinationThatTheDataDoNotSeparate) {
   const CommandResult command =
@@ -202,6 +199,9 @@ TEST_F(Fit, RefusesAFolderInWhichAnotherProgramWorks) {
   EXPECT_EQ(fit(fitted).code, 0);
 }
 
+TEST_F(Fit, RefusesBeforeAnyRun) {
+  const auto refusal = [this](std::vector<std::string> more) {
+    more.insert(more.end(), {"-o", "none"});
     const CommandResult command = fit(more);
     EXPECT_EQ(command.code, 2) << command.out;
     EXPECT_FALSE(std::filesystem::exists(work_.path() / "none"));

@@ -80,7 +80,7 @@ TEST(Script, ADigitalInputOfATableHoldsItsValueToo) {
   const TemporaryFolder folder;
   folder.write("keys.csv", "time [s],Button.raw,Stick.raw\n0,0,0\n1,1,1\n");
   const ScriptPlayer script(
-      load_text(kValve + "script: {interpolation: linear, file: keys.csv}\n", folder.path() / "test.yaml"));
+      load_file(folder.write("scene.yaml", kValve + "script: {interpolation: linear, file: keys.csv}\n")));
   EXPECT_EQ(script.value(1, {999'999'999}), 0.0);
   EXPECT_EQ(script.value(1, at(1)), 1.0);
   EXPECT_DOUBLE_EQ(script.value(0, at(0.5)), 0.5);

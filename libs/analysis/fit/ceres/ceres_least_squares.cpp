@@ -2,6 +2,7 @@
 // The border's function with Ceres. Not with our flags: see least_squares_border.h.
 #include <ceres/ceres.h>
 #include <glog/logging.h>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cstddef>
@@ -46,9 +47,6 @@ class SimulatedResiduals final : public ceres::CostFunction {
       for (std::size_t i = 0; i < m; ++i) {
         jacobians[0][i * n + k] = (values[above * m + i] - values[below * m + i]) / step;
       }
-      double squares = 0;
-      for (std::size_t i = 0; i < m; ++i) squares += jacobians[0][i * n + k] * jacobians[0][i * n + k];
-      problem_.column_squares[k] = squares;
     }
     return true;
   }
@@ -57,14 +55,26 @@ class SimulatedResiduals final : public ceres::CostFunction {
   const SquaresProblem& problem_;
 };
 
-bool find_covariance(ceres::Problem& problem, double* u, double* values) {
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::DENSE_SVD;
-  options.null_space_rank = 0;  // fails for a singular J' J
-  ceres::Covariance covariance(options);
-  const double* block = u;
-  const std::vector<std::pair<const double*, const double*>> blocks = {{block, block}};
-  return covariance.Compute(blocks, &problem) && covariance.GetCovarianceBlock(u, u, values);
+// (S J' J S + e)^-1 with columns of length one by S, and e, which only bounds the variance of what J does not
+// determine.
+bool find_covariance(const SimulatedResiduals& cost, SquaresProblem& squares) {
+  constexpr double kLeast = 1e-10;
+  const auto n = static_cast<Eigen::Index>(squares.unknowns), m = static_cast<Eigen::Index>(squares.residuals);
+  Eigen::VectorXd residuals(m);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> J(m, n);
+  const double* u = squares.u;
+  double* jacobian = J.data();
+  if (!cost.Evaluate(&u, residuals.data(), &jacobian)) return false;
+  Eigen::Map<Eigen::VectorXd> lengths(squares.column_lengths, n);
+  lengths = J.colwise().norm();
+  const Eigen::VectorXd S = lengths.unaryExpr([](double length) { return length > 0 ? 1 / length : 1.0; });
+  const Eigen::MatrixXd scaled = J * S.asDiagonal();
+  const Eigen::MatrixXd normal = scaled.transpose() * scaled + kLeast * Eigen::MatrixXd::Identity(n, n);
+  const Eigen::LLT<Eigen::MatrixXd> factors(normal);
+  if (factors.info() != Eigen::Success) return false;
+  Eigen::Map<Eigen::MatrixXd>(squares.covariance, n, n) =
+      S.asDiagonal() * factors.solve(Eigen::MatrixXd::Identity(n, n)) * S.asDiagonal();
+  return true;
 }
 
 }  // namespace
@@ -72,7 +82,8 @@ bool find_covariance(ceres::Problem& problem, double* u, double* values) {
 extern "C" __attribute__((visibility("default"))) void slewring_minimise_squares(SquaresProblem& squares) {
   FLAGS_minloglevel = google::GLOG_FATAL;  // the caller reports what failed
   ceres::Problem problem;
-  problem.AddResidualBlock(new SimulatedResiduals(squares), nullptr, squares.u);  // the problem owns it
+  auto* const cost = new SimulatedResiduals(squares);
+  problem.AddResidualBlock(cost, nullptr, squares.u);  // the problem owns it
   for (std::size_t k = 0; k < squares.unknowns; ++k) {
     problem.SetParameterLowerBound(squares.u, static_cast<int>(k), 0);
     problem.SetParameterUpperBound(squares.u, static_cast<int>(k), 1);
@@ -90,5 +101,5 @@ extern "C" __attribute__((visibility("default"))) void slewring_minimise_squares
   squares.squares_before = 2 * summary.initial_cost;
   squares.squares_after = 2 * summary.final_cost;
   std::snprintf(squares.reason, sizeof squares.reason, "%s", summary.message.c_str());
-  squares.has_covariance = summary.IsSolutionUsable() && find_covariance(problem, squares.u, squares.covariance);
+  squares.has_covariance = summary.IsSolutionUsable() && find_covariance(*cost, squares);
 }
