@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The function of fmt that interprets a format text is in its library. Without this declaration every unit that calls
-// format_to compiles it anew, which takes a quarter of the time of the unit.
+// format_to compiles it once more, which takes a quarter of the time of the unit.
 #pragma once
 
 #include <fmt/format.h>

@@ -173,7 +173,10 @@ void validate_engine(const HydraulicsDef& circuit, const ComponentDef& component
   }
   const double speed = std::max(def.speed, def.minimum_speed);
   const double loss = def.friction_torque + def.viscous_friction * speed;
-  if (curve != nullptr && errors.empty()) {
+  // one without any torque is switched off
+  const bool is_on = curve != nullptr && std::any_of(curve->points.begin(), curve->points.end(),
+                                                     [](const auto& point) { return point[1] > 0; });
+  if (is_on && errors.empty()) {
     const double most = CurveFunction(*curve).at(speed).value;
     if (loss >= most) {
       errors.push_back(

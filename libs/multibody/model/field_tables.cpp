@@ -14,14 +14,6 @@
 #include "multibody/motions/motion_fields.h"
 
 namespace slew::multibody {
-
-MechanicsDef::MechanicsDef() = default;
-MechanicsDef::~MechanicsDef() = default;
-MechanicsDef::MechanicsDef(const MechanicsDef&) = default;
-MechanicsDef::MechanicsDef(MechanicsDef&&) noexcept = default;
-MechanicsDef& MechanicsDef::operator=(const MechanicsDef&) = default;
-MechanicsDef& MechanicsDef::operator=(MechanicsDef&&) noexcept = default;
-
 namespace {
 
 using enum Dimension;

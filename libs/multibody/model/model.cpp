@@ -20,13 +20,6 @@ int index_of(const std::vector<Element>& elements, std::string_view name) noexce
 
 }  // namespace
 
-Model::Model() = default;
-Model::~Model() = default;
-Model::Model(const Model&) = default;
-Model::Model(Model&&) noexcept = default;
-Model& Model::operator=(const Model&) = default;
-Model& Model::operator=(Model&&) noexcept = default;
-
 int find_body(const Model& model, std::string_view name) noexcept {
   return index_of(model.bodies, name);
 }

@@ -9,10 +9,6 @@
 
 namespace slew::multibody {
 
-Workspace::~Workspace() = default;
-Workspace::Workspace(Workspace&&) noexcept = default;
-Workspace& Workspace::operator=(Workspace&&) noexcept = default;
-
 Workspace::Workspace(const Model& model)
     : motion(model.links.size()),
       inertia(model.links.size()),
