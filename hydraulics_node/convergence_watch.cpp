@@ -25,8 +25,7 @@ const char* remedy_of(Solver solver) noexcept {
       break;
   }
   return "Use a larger hydraulics.substep_budget or a shorter session.step, and look at the smallest volumes and "
-         "widest "
-         "openings beside it";
+         "widest openings beside it";
 }
 
 }  // namespace

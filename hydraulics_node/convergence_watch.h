@@ -2,10 +2,10 @@
 // Ends a session whose circuit is no longer solved while its pressures are still finite.
 //
 // Two rules, checked after every step:
-//   - The excess of steps that were accepted with their error over those that were not reaches kMostUnsolved: steps
-//   that
-//     are not converged, and steps over the sub-step budget whose error exceeded the tolerance. The count decreases by
-//     one with each sound step, down to zero, so that single steps never add up to an end.
+//   - The excess of steps accepted with their error over sound ones reaches kMostUnsolved: steps that are not
+//   converged,
+//     and steps over the sub-step budget whose error exceeded the tolerance. The count decreases by one with each sound
+//     step, down to zero, so that single steps never add up to an end.
 //   - No sub-step keeps the oil of a volume, or has less than a gross error (math::StiffReport::is_impossible).
 // Not covered: pressures that are converged and wrong.
 #pragma once

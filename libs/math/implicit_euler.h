@@ -7,9 +7,9 @@
 // h is the interval over the smallest whole number that brings it to maximum_step or below. Newton takes a fresh
 // Jacobian each iteration and ends when max |d_i| / (rtol (s_i + r_i |y_i|)) <= 0.1. A sub-step whose iteration does
 // not converge, or that does not keep the system's balance (StiffSystem::impossible_state(), unbalanced_state()), is
-// repeated with half its length (counted as
-// rejected) down to kShortestShare of minimum_step, once substep_budget is used up to minimum_step. There it is
-// accepted and reported; an impossible one ends the interval. Source: Hairer and Wanner 1996, IV.8. Real-time safe.
+// repeated with half its length (counted as rejected) down to kShortestShare of minimum_step, or to minimum_step once
+// substep_budget is used up. There it is accepted and reported; an impossible one ends the interval. Source: Hairer and
+// Wanner 1996, IV.8. Real-time safe.
 #pragma once
 
 #include "math/stage_matrix.h"

@@ -137,8 +137,8 @@ std::string correlations_text(const ParameterSweep& sweep, std::size_t width) {
 std::string notes_text(const ParameterSweep& sweep, std::size_t shown) {
   std::string text;
   if (sweep.kept > 0) {
-    text += fmt::format("{} of an earlier sweep {} kept; --anew runs all again\n", counted(sweep.kept, "row", "rows"),
-                        sweep.kept == 1 ? "was" : "were");
+    text += fmt::format("{} of an earlier sweep {} kept; add --anew to compute all\n",
+                        counted(sweep.kept, "row", "rows"), sweep.kept == 1 ? "was" : "were");
   }
   if (sweep.done() > shown) {
     text += fmt::format("{} of {} rows are shown; the files have all\n", shown, sweep.done());
@@ -154,8 +154,9 @@ std::string notes_text(const ParameterSweep& sweep, std::size_t shown) {
                         counted(not_converged, "row", "rows"));
   }
   if (sweep.foreign() > 0) {
-    text += fmt::format("{} of another build or processor family: their bits may differ; --anew runs them here\n",
-                        counted(sweep.foreign(), "row is", "rows are"));
+    text +=
+        fmt::format("{} of another build or processor family: their bits may differ; add --anew to compute them here\n",
+                    counted(sweep.foreign(), "row is", "rows are"));
   }
   return text;
 }

@@ -205,6 +205,40 @@ TEST(PointForce, InBodyAxesTurnsWithItsBody) {
   EXPECT_NEAR(mechanism.ws.udot[3], -1.5, 1e-14);
 }
 
+// A body turned by 90 degrees about z, pushed by 50 N along (0.6, 0.8, 0) at its point (0, 0.5, 0), which is (-0.5, 0,
+// 0) of Ground; alone, and fixed to another body of the same mass whose axes are those of Ground.
+TEST(PointForce, ActsAtItsPointOfATurnedBody) {
+  constexpr Triple kTurned{M_PI / 2, 0, 0};
+  for (const bool is_fixed : {false, true}) {
+    MechanicsDef def = free_body({});
+    if (is_fixed) {
+      def.bodies.push_back({.name = "Arm", .orientation = kTurned, .mass = 100, .inertia = {2, 2, 2}});
+      def.joints.push_back({.name = "Weld",
+                            .type = JointType::fixed,
+                            .body1 = "Load",
+                            .body2 = "Arm",
+                            .orientation2 = {0, 0, -M_PI / 2}});
+    } else {
+      def.bodies[0].orientation = kTurned;
+    }
+    const double mass = is_fixed ? 200 : 100, inertia = is_fixed ? 4 : 2;
+    for (const LoadAxes axes : {LoadAxes::ground, LoadAxes::body}) {
+      def.point_forces = {{.name = "Push",
+                           .body = is_fixed ? "Arm" : "Load",
+                           .point = {0, 0.5, 0},
+                           .direction = {0.6, 0.8, 0},
+                           .axes = axes,
+                           .force = 50}};
+      const Vec3 F = axes == LoadAxes::ground ? Vec3(30, 40, 0) : Vec3(-40, 30, 0);
+      Mechanism mechanism(def);
+      forward_dynamics(mechanism.model, mechanism.state.q, mechanism.state.u, {}, mechanism.ws);
+      EXPECT_NEAR(mechanism.ws.udot[0], F.x() / mass, 1e-14) << is_fixed;
+      EXPECT_NEAR(mechanism.ws.udot[1], F.y() / mass, 1e-14) << is_fixed;
+      EXPECT_NEAR(mechanism.ws.udot[5], -0.5 * F.y() / inertia, 1e-13) << is_fixed;
+    }
+  }
+}
+
 // F = 100 t up to 1 s, then 100 N, on 100 kg: v = t^2/2, then 1/2 + (t - 1)
 TEST(PointForce, FollowsItsTableOverTime) {
   MechanicsDef def = free_body({});
