@@ -210,10 +210,11 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
   const std::span<const hydraulics::ActuatorLinearisation> actuators = integrator_->actuators();
   for (std::size_t i = 0; i < m_; ++i) {
     const hydraulics::ActuatorLinearisation& a = actuators[i];
+    const math::RelaxingSpring spring = math::one_for_all(a.springs, exchange_every_ * H_.seconds());
     sample.F[i] = a.F;
-    sample.F_dot[i] = a.F_dot;
-    sample.K[i] = a.K;
-    sample.lambda[i] = a.lambda;
+    sample.F_dot[i] = spring.F_dot;
+    sample.K[i] = spring.K;
+    sample.lambda[i] = spring.lambda;
     sample.D[i] = a.D;
     stiffness_[i] = a.stiffness;
     sample.x_ref[i] = a.x;

@@ -439,9 +439,22 @@ void CircuitIntegrator::refresh() noexcept {
 void CircuitIntegrator::refresh_force_rates() noexcept {
   circuit_.rates(y_.data(), f_.data());
   for (std::size_t j = 0; j < m_; ++j) {
-    if (circuit_.is_line(static_cast<int>(j))) continue;
-    published_[j].F_dot = pressure_force(circuit_.actuators()[j], y_.data(), f_.data()).rate;
+    if (!circuit_.is_line(static_cast<int>(j))) publish_force_rate(j);
   }
+}
+
+// F_dot of an actuator and the shares of its springs, from y_ and its rates f_. A motor's setting that moves counts
+// with chamber A.
+void CircuitIntegrator::publish_force_rate(std::size_t j) noexcept {
+  const Actuator& actuator = circuit_.actuators()[j];
+  ActuatorLinearisation& out = published_[j];
+  out.F_dot = pressure_force(actuator, y_.data(), f_.data()).rate;
+  const double b = -actuator.setting_at(y_.data()) * actuator.area_b *
+                   circuit_.pressure(actuator.port_b, y_.data()).slope * f_[at(actuator.port_b)];
+  const double brake = actuator.brake.state < 0 ? 0 : actuator.brake.force * f_[at(actuator.brake.state)];
+  out.springs[0].F_dot = out.F_dot - b - brake;
+  out.springs[1].F_dot = b;
+  out.springs[2].F_dot = brake;
 }
 
 // Stiffness of an actuator's brake: its own while it holds, none while it slips.
@@ -465,17 +478,22 @@ void CircuitIntegrator::publish() noexcept {
     const ValueSlope p_a = circuit_.pressure(actuator.port_a, y_.data());
     const ValueSlope p_b = circuit_.pressure(actuator.port_b, y_.data());
     out.p_a = p_a.value, out.p_b = p_b.value;
-    const auto [F, F_dot] = pressure_force(actuator, y_.data(), f_.data());
-    out.F = F, out.F_dot = F_dot;
+    out.F = pressure_force(actuator, y_.data(), f_.data()).F;
     const double e = actuator.setting_at(y_.data()), A_a = e * actuator.area_a, A_b = e * actuator.area_b;
     out.Q_a = C_[a] * f_[a] + out.v * A_a;
     out.Q_b = C_[b] * f_[b] - out.v * A_b;
     // a chamber that cavitates is no spring
-    const double K_a = C_[a] > 0 ? A_a * A_a / C_[a] * p_a.slope : 0;
-    const double K_b = C_[b] > 0 ? A_b * A_b / C_[b] * p_b.slope : 0;
-    out.K = K_a + K_b + brake_stiffness(static_cast<int>(j));
-    const double weighted = (K_a > 0 ? K_a * outflow_[a] / C_[a] : 0) + (K_b > 0 ? K_b * outflow_[b] / C_[b] : 0);
-    out.lambda = out.K > 0 ? std::max(0.0, weighted / out.K) : 0;
+    const auto spring = [this](std::size_t volume, double area, double slope) {
+      const double C = C_[volume];
+      return C > 0 ? math::RelaxingSpring{area * area / C * slope, std::max(0.0, outflow_[volume] / C)}
+                   : math::RelaxingSpring{};
+    };
+    out.springs = {spring(a, A_a, p_a.slope), spring(b, A_b, p_b.slope),
+                   math::RelaxingSpring{brake_stiffness(static_cast<int>(j))}};
+    publish_force_rate(j);
+    out.K = out.lambda = 0;
+    for (const math::RelaxingSpring& part : out.springs) out.K += part.K, out.lambda += part.K * part.lambda;
+    if (out.K > 0) out.lambda /= out.K;
     out.stiffness = out.K;
     out.D = 0;
     if (circuit_.is_line(static_cast<int>(j))) publish_line(static_cast<int>(j));
@@ -489,6 +507,7 @@ void CircuitIntegrator::publish_line(int actuator) noexcept {
   out.D = thrust.damping;
   out.F = thrust.force - out.D * out.v;
   out.K = out.F_dot = out.lambda = out.stiffness = 0;
+  out.springs = {};
   for (std::size_t side = 0; side < 2; ++side) {
     const LineChamber& line = circuit_.lines()[2 * static_cast<std::size_t>(actuator) + side];
     if (!line.is_line) continue;

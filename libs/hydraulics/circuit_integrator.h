@@ -17,12 +17,14 @@
 // Published at the end (coupling study, section 8; K_A = (e A_A)^2/C_A, K_B = (e A_B)^2/C_B, K_b of a brake that
 // holds):
 //   F, F_dot = F',  K = K_A + K_B + K_b,  lambda = (K_A l_A + K_B l_B)/K,  l = -(dQ/dp)/C                        (2)
-// l on the steeper side of unilateral valves. Chambers have no feed-through, D = 0; where they are transmission lines
+// l on the steeper side of unilateral valves. The springs of (2) apart are there too: what one of them is over a step,
+// is not told by their sums (math/relaxing_spring.h). Chambers have no feed-through, D = 0; where they are transmission lines
 // (line_chambers.h) F is the force of the lines at v, D their impedance, K = F_dot = lambda = 0. The mean pressure of a
 // volume, and with it the oil that the line takes, is integrated by the method itself: the oil that leaves the volume
 // enters the line at any tolerance.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -34,6 +36,7 @@
 #include "hydraulics/circuit.h"
 #include "hydraulics/piston_motion.h"
 #include "math/dense_lu.h"
+#include "math/relaxing_spring.h"
 #include "math/stiff_system.h"
 
 namespace slew::hydraulics {
@@ -46,6 +49,8 @@ struct ActuatorLinearisation {
   double D = 0;             // N s/m
   double stiffness = 0;     // N/m, K of the oil columns, also for lines
   double lambda = 0;        // 1/s
+  // chamber A, chamber B, brake; F_dot, K and lambda are their sums and weighted mean. Zero for lines
+  std::array<math::RelaxingSpring, 3> springs;
   double x = 0;             // m, the circuit's own piston position
   double v = 0;             // m/s
   double work = 0;          // J, integral of F v dt over the last step
@@ -124,6 +129,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   };
   // Force and its rate of an actuator at y with rates f.
   [[nodiscard]] PressureForce pressure_force(const Actuator& actuator, const double* y, const double* f) const noexcept;
+  void publish_force_rate(std::size_t actuator) noexcept;
   [[nodiscard]] double at_full_setting(const Actuator& actuator, const double* y) const noexcept;
   [[nodiscard]] double brake_stiffness(int actuator) noexcept;
   void add_accelerations(const double* y, double* f) noexcept;

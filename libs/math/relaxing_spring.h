@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Springs that relax (Maxwell elements), and the one that stands for several of them over a step.
+//
+// A force with z' = F_dot - K (v - v_ref) - lambda (z - F_n) is a spring K whose change decays with lambda. Under a
+// speed that differs from v_ref by u for a time H its change at the end, and the integral of the change over H, are
+//   dz(H) = -K u H a(x),   int dz dt = -K u H^2 b(x),   x = lambda H,
+//   a(x) = (1 - e^-x) / x,   b(x) = (1 - a(x)) / x                                                                (1)
+// Several springs in parallel have the sums of both. The one that stands for them has the same two values: b/a grows
+// from 1/2 to 1 with x alone, 2 b/a - 1 = coth(x/2) - 2/x is Langevin's function of x/2, so that x follows from the
+// sums, and K after it. A mean of lambda weighted with K, its limit for H -> 0, would let a fast spring (a chamber
+// that is drained within H) relax a slow one (a closed chamber) with it.
+// F_dot keeps the integral of its own change, sum F_dot_i b(x_i) H^2: the impulse of the step.
+#pragma once
+
+#include <span>
+
+namespace slew::math {
+
+struct RelaxingSpring {
+  double K = 0;       // N/m
+  double lambda = 0;  // 1/s, >= 0
+  double F_dot = 0;   // N/s
+};
+
+// The one that stands for all of them over H seconds, H > 0. With one lambda for all it is the sum.
+[[nodiscard]] RelaxingSpring one_for_all(std::span<const RelaxingSpring> springs, double H) noexcept;
+
+}  // namespace slew::math
