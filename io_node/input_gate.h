@@ -58,7 +58,7 @@ struct ChannelConfig {
   double scale = 1;       // control value at raw 1
   double dead_zone = 0;   // raw value, 0..1
   double ramp = 0;        // s for a full stroke 0..1; 0: none
-  double rate_limit = 0;  // 1/s, of the raw value; 0: none
+  double rate_limit = 0;  // 1/s, of the value behind the dead zone; 0: none
   double neutral = 0;     // raw value of a channel without holder and source
   scene::ControllerMode controller = scene::ControllerMode::sampled;
   StepIndex delay = 1;                   // d of a lockstep channel, steps, >= 1

@@ -196,9 +196,10 @@ constexpr Field kInputFields[] = {
     field<&InputDef::ramp>("ramp", {.dimension = Dimension::time,
                                     .range = kRampRange,
                                     .doc = "shortest time from neutral to full stick; 0: none"}),
-    field<&InputDef::rate_limit>("rate_limit", {.dimension = Dimension::frequency,
-                                                .range = kNotNegative,
-                                                .doc = "largest accepted change of the raw value per second; 0: any"}),
+    field<&InputDef::rate_limit>("rate_limit",
+                                 {.dimension = Dimension::frequency,
+                                  .range = kNotNegative,
+                                  .doc = "largest change per second of the value behind the dead zone; 0: any"}),
     field<&InputDef::controller>(
         "controller",
         {.choices = kControllerModes,

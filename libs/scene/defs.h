@@ -109,7 +109,7 @@ struct InputDef {
   double scale = 1;                          // component's signal at full stick; its sign is the stick's direction
   double dead_zone = 0;                      // dead zone of the raw value
   double ramp = 0;                           // s, from neutral to full stick; 0: none
-  double rate_limit = 0;                     // 1/s, largest change of the raw value that a source may send; 0: none
+  double rate_limit = 0;                     // 1/s, largest change of the value behind the dead zone; 0: none
   ControllerMode controller = ControllerMode::sampled;
   std::int64_t controller_delay =
       1;                         // steps, lockstep: tick n takes the value computed from the variables of n - delay

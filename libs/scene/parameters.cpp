@@ -11,6 +11,7 @@
 #include "multibody/build/validate.h"
 #include "multibody/forces/element_speeds.h"
 #include "multibody/joints/joint_axes.h"
+#include "multibody/model/body_inertia.h"
 #include "multibody/model/field_tables.h"
 #include "multibody/model/model.h"
 #include "multibody/model/parameters.h"
@@ -221,6 +222,15 @@ std::string ParameterDirectory::obstacle_of_machine(const ParameterInfo& paramet
   Scene changed;
   changed.session = session_;
   changed.mechanics = *whole_mechanics_;
+  for (multibody::BodyDef& body : changed.mechanics.bodies) {
+    if (parameter.path != body.name + ".mass") continue;
+    // a live mass changes the inertia about the centre in proportion: what the scene gives about the origin is no sum
+    // of the old inertia and the new mass
+    const math::Mat3 I = multibody::inertia_about_center(body);
+    body.inertia = {I(0, 0), I(1, 1), I(2, 2)};
+    body.products = {I(0, 1), I(0, 2), I(1, 2)};
+    body.inertia_about = multibody::InertiaPoint::center_of_mass;
+  }
   if (!assign(changed, parameter.path, value)) return {};
   Problems problems;
   multibody::validate(changed.mechanics, problems);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -104,15 +105,31 @@ void check_turns(const Scene& scene, const multibody::Model& model, Problems& pr
 }  // namespace
 
 std::string_view obstacle_of(const PortDef& port, coupling::Level level) noexcept {
-  if (port.unit != coupling::PortUnit::radian || level != coupling::Level::tlm) return "";
-  return "level tlm is not for motors: the oil of one step is a large part of the motor's own";
+  if (level != coupling::Level::tlm) return "";
+  if (port.unit == coupling::PortUnit::radian) {
+    return "level tlm is not for motors: the oil of one step is a large part of the motor's own";
+  }
+  if (port.shares_volume) {
+    return "level tlm is not for cylinders that share a volume: the waves between their lines grow at any step";
+  }
+  return "";
 }
 
 void make_ports(Scene& scene, Problems& problems) {
+  std::map<std::string, int> chambers;  // by volume that is not fixed
+  for (const auto& component : scene.hydraulics.components) {
+    const std::optional<hydraulics::ActuatorDef> actuator = component->actuator();
+    if (!actuator) continue;
+    for (const std::string& volume : {actuator->port_a, actuator->port_b}) ++chambers[volume];
+  }
+  for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) {
+    if (volume.fixed) chambers.erase(volume.name);
+  }
   for (const auto& component : scene.hydraulics.components) {
     const std::optional<hydraulics::ActuatorDef> actuator = component->actuator();
     if (!actuator) continue;
     PortDef port = port_of(component->name, *actuator);
+    port.shares_volume = chambers[actuator->port_a] > 1 || chambers[actuator->port_b] > 1;
     take_curve(port, actuator->line_force.friction_curve, scene, problems);
     check_force(port, actuator->motion, scene, problems);
     scene.ports.push_back(std::move(port));
@@ -123,11 +140,13 @@ void make_ports(Scene& scene, Problems& problems) {
     if (!obstacle.empty()) problems.push_back({port.name + ".coupling", std::string(obstacle), "session", ""});
   }
   for (const PortDef& port : scene.ports) {
-    if (port.level != coupling::PortLevel::session) continue;
-    const std::string_view obstacle = obstacle_of(port, scene.session.coupling);
+    const bool follows = port.level == coupling::PortLevel::session;
+    const coupling::Level level = follows ? scene.session.coupling : coupling::level_of(port.level);
+    std::string_view obstacle = obstacle_of(port, level);
+    if (obstacle.empty() && !follows) obstacle = obstacle_of(scene.session, level);
     if (obstacle.empty()) continue;
     problems.push_back({port.name + ".coupling", std::string(obstacle),
-                        "coupling: two for this port, or another session.coupling", ""});
+                        follows ? "coupling: two for this port, or another session.coupling" : "another level", ""});
   }
   if (scene.ports.size() > coupling::kMaxPorts) {
     problems.push_back({scene.ports[coupling::kMaxPorts].name,

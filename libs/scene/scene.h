@@ -43,6 +43,7 @@ struct PortDef {
   coupling::LineForceDef line_force;
   coupling::PortLevel level = coupling::PortLevel::session;
   coupling::PortUnit unit = coupling::PortUnit::metre;
+  bool shares_volume = false;  // with a chamber of another actuator
 };
 
 // A file that belongs to the scene and must be the same on every machine.

@@ -61,6 +61,13 @@ TEST_F(Parameters, AValueWithWhichTheLoaderWouldRefuseTheMachineIsRefusedWithIts
   EXPECT_EQ(directory.check("Rod.mass", 1e-3).status.text, "");
 }
 
+// the inertia follows the mass, whatever point it is given about
+TEST_F(Parameters, AMassIsAcceptedWhereTheInertiaIsGivenAboutTheOrigin) {
+  const ParameterDirectory about_origin(
+      load_text(kPendulum, "test", {"Rod.inertia=[0.6, 0.9, 0.86]", "Rod.inertia_about=body_origin"}));
+  for (const double mass : {0.5, 4.0, 50.0}) EXPECT_EQ(about_origin.check("Rod.mass", mass).status.text, "") << mass;
+}
+
 TEST_F(Parameters, AnAssignmentIsRefusedWithAReason) {
   const auto refusal = [&](const char* text) { return directory.parse_assignment(text).status.text; };
   EXPECT_EQ(refusal("Rod.mas=5"), "no parameter 'Rod.mas'; did you mean 'Rod.mass'?");
@@ -113,7 +120,7 @@ forces:
             "Rope.stiffness would change nothing: the rope has its spring by axial_rigidity");
 }
 
-constexpr const char* kCylinder = SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml";
+constexpr const char* kChambers = SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml";
 
 TEST(ParameterOfChoices, IsListedWithItsNamesAndTakesOneOfThem) {
   const Scene scene = load_file(kCylinder);
@@ -163,6 +170,43 @@ TEST(ParameterOfChoices, OfLevelTlmNeverReachesAMotor) {
   ParameterDirectory waves(load_file(file, of_tlm));
   EXPECT_FALSE(waves.parse_assignment("Motor_Slew.coupling=session").status.is_ok());
   EXPECT_TRUE(waves.parse_assignment("Motor_Slew.coupling=hold").status.is_ok());
+}
+
+// the waves between two lines on one volume grow at any step: refused at load and as a live change
+TEST(ParameterOfChoices, OfLevelTlmNeverReachesCylindersThatShareAVolume) {
+  constexpr const char* kChambers =
+      ", port_b: B, piston_diameter: 60 mm, rod_diameter: 35 mm, piston_length: 0, chamber_length: 900 mm, "
+      "rod_length: 950 mm, minimum_stroke: 20 mm, maximum_stroke: 880 mm}\n";
+  const auto text = [&](const char* volume) {
+    return std::string(R"(
+bodies:
+  L: {position: [0, 1.4, 0], mass: 700, inertia: [1, 1, 1]}
+  R: {position: [1, 1.4, 0], mass: 700, inertia: [1, 1, 1]}
+joints:
+  JL: {type: prismatic, body2: L, point1: [0, 1.4, 0], orientation1: [-90 deg, 0, 0], orientation2: [-90 deg, 0, 0]}
+  JR: {type: prismatic, body2: R, point1: [1, 1.4, 0], orientation1: [-90 deg, 0, 0], orientation2: [-90 deg, 0, 0]}
+forces:
+  FL: {type: translational, body1: Ground, body2: L}
+  FR: {type: translational, body1: Ground, point1: [1, 0, 0], body2: R}
+volumes:
+  A: {rigid_volume: 0.4 l}
+  Other: {rigid_volume: 0.4 l}
+  B: {fixed: true}
+components:
+)") + "  CL: {type: double_acting_cylinder, force: FL, port_a: A" +
+           kChambers + "  CR: {type: double_acting_cylinder, force: FR, port_a: " + volume + kChambers;
+  };
+  const std::string shared = text("A");
+  const char* const why =
+      "level tlm is not for cylinders that share a volume: the waves between their lines grow at any step";
+  EXPECT_NE(problems_of(shared, {"session.coupling=tlm"}).find(why), std::string::npos);
+  EXPECT_NE(problems_of(shared, {"CR.coupling=tlm"}).find(why), std::string::npos);
+  ParameterDirectory directory(load_text(shared, "test"));
+  EXPECT_EQ(directory.parse_assignment("CL.coupling=tlm").status.text, std::string("CL.coupling: CL: ") + why);
+  EXPECT_FALSE(directory.parse_assignment("session.coupling=tlm").status.is_ok());
+  EXPECT_TRUE(directory.parse_assignment("session.coupling=hold").status.is_ok());
+  // a fixed volume has no lines
+  EXPECT_EQ(problems_of(text("Other"), {"session.coupling=tlm"}), "");
 }
 
 TEST_F(Parameters, OfACouplingThatIsNotThereIsRefused) {
