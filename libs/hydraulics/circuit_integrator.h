@@ -17,11 +17,11 @@
 // Published at the end (coupling study, section 8; K_A = (e A_A)^2/C_A, K_B = (e A_B)^2/C_B, K_b of a brake that
 // holds):
 //   F, F_dot = F',  K = K_A + K_B + K_b,  lambda = (K_A l_A + K_B l_B)/K,  l = -(dQ/dp)/C                        (2)
-// l on the steeper side of unilateral valves. The springs of (2) apart are there too: what one of them is over a step,
-// is not told by their sums (math/relaxing_spring.h). Chambers have no feed-through, D = 0; where they are transmission lines
-// (line_chambers.h) F is the force of the lines at v, D their impedance, K = F_dot = lambda = 0. The mean pressure of a
-// volume, and with it the oil that the line takes, is integrated by the method itself: the oil that leaves the volume
-// enters the line at any tolerance.
+// l on the steeper side of unilateral valves. The springs of (2) are there one by one, too: over a step
+// their sums do not stand for them (math/relaxing_spring.h). Chambers have no feed-through, D = 0; where they are
+// transmission lines (line_chambers.h) F is the force of the lines at v, D their impedance, K = F_dot = lambda = 0. The
+// mean pressure of a volume, and with it the oil that the line takes, is integrated by the method itself: the oil that
+// leaves the volume enters the line at any tolerance.
 #pragma once
 
 #include <array>
@@ -43,12 +43,12 @@ namespace slew::hydraulics {
 
 // One actuator's force near (x, v), and its work and impulse in the last step.
 struct ActuatorLinearisation {
-  double F = 0;             // N
-  double F_dot = 0;         // N/s at constant v
-  double K = 0;             // N/m; 0 for lines
-  double D = 0;             // N s/m
-  double stiffness = 0;     // N/m, K of the oil columns, also for lines
-  double lambda = 0;        // 1/s
+  double F = 0;          // N
+  double F_dot = 0;      // N/s at constant v
+  double K = 0;          // N/m; 0 for lines
+  double D = 0;          // N s/m
+  double stiffness = 0;  // N/m, K of the oil columns, also for lines
+  double lambda = 0;     // 1/s
   // chamber A, chamber B, brake; F_dot, K and lambda are their sums and weighted mean. Zero for lines
   std::array<math::RelaxingSpring, 3> springs;
   double x = 0;             // m, the circuit's own piston position

@@ -15,7 +15,8 @@ struct Change {
   double end = 0, integral = 0;
 };
 
-// of z' = rate - lambda z from z = 0 over H, by 20,000 steps of the trapezoidal rule on a grid that is fine at the start
+// of z' = rate - lambda z from z = 0 over H, by 20,000 steps of the trapezoidal rule on a grid that is fine at the
+// start
 Change change(double rate, double lambda, double H) {
   constexpr int kSteps = 20'000;
   Change result;
@@ -57,8 +58,8 @@ TEST(RelaxingSpring, StandsForSeveralAtTheEndOfAStepAndInItsIntegral) {
     EXPECT_NEAR(its.integral, all.integral, 1e-5 * all.integral) << i;
     double size = 0;
     for (const RelaxingSpring& spring : springs) size += std::fabs(change(spring.F_dot, spring.lambda, H).integral);
-    EXPECT_NEAR(change({one}, H, &RelaxingSpring::F_dot).integral,
-                change(springs, H, &RelaxingSpring::F_dot).integral, 1e-5 * size)
+    EXPECT_NEAR(change({one}, H, &RelaxingSpring::F_dot).integral, change(springs, H, &RelaxingSpring::F_dot).integral,
+                1e-5 * size)
         << i;
   }
 }

@@ -37,15 +37,18 @@ forces:
   F: {type: translational, body1: Ground, body2: M}
 hydraulics: {start: table13, oil_bulk_modulus: 1.5e9, entrained_air: 0, relative_tolerance: 1e-6}
 volumes:
-  A: {rigid_volume: 3e-4, initial_pressure: )" + pressure + R"(}
+  A: {rigid_volume: 3e-4, initial_pressure: )" +
+                              pressure + R"(}
   B: {rigid_volume: 2e-4, initial_pressure: 1e5}
   T: {fixed: true, initial_pressure: 1e5}
 components:
   C: {type: double_acting_cylinder, force: F, port_a: A, port_b: B, piston_diameter: 80 mm, rod_diameter: 45 mm, piston_length: 0,
       chamber_length: 1 m, rod_length: 1.1 m, minimum_stroke: 20 mm, maximum_stroke: 980 mm, cylinder_coefficient: 1,
       bulk_modulus: 1e30, viscous_friction: 0}
-  O: {type: orifice, port_1: B, port_2: T, diameter: )" + diameter + R"(}
-)", "drained rod side", overrides);
+  O: {type: orifice, port_1: B, port_2: T, diameter: )" +
+                              diameter + R"(}
+)",
+                          "drained rod side", overrides);
 }
 
 // largest of a trace less its smallest
@@ -62,11 +65,11 @@ TEST(ChambersApart, AClosedOneKeepsItsSpringBesideADrainedOneAtEveryStep) {
     const Traces reference = reference_traces(cylinder(diameter, {}), kDuration);
     const double reached = range(reference[0].x);
     EXPECT_NEAR(reached, swing, 0.15 * swing) << diameter;  // the drain damps a little
-    for (const auto& [step, two, linear] : {std::tuple("1 ms", 5e-3, 2e-2), std::tuple("2 ms", 1e-2, 5e-2),
-                                            std::tuple("5 ms", 3e-2, 0.2)}) {
+    for (const auto& [step, two, linear] :
+         {std::tuple("1 ms", 5e-3, 2e-2), std::tuple("2 ms", 1e-2, 5e-2), std::tuple("5 ms", 3e-2, 0.2)}) {
       for (const auto& [level, bound] : {std::pair("two", two), std::pair("linear", linear)}) {
-        const scene::Scene scene = cylinder(diameter, {std::string("session.step=") + step,
-                                                       std::string("session.coupling=") + level});
+        const scene::Scene scene =
+            cylinder(diameter, {std::string("session.step=") + step, std::string("session.coupling=") + level});
         const Comparison result = compare(scene, reference, kDuration);
         EXPECT_FALSE(result.has_failed);
         EXPECT_LT(result.ports[0].x, bound * reached) << diameter << ", " << step << ", " << level;
