@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What docs/machines/excavator.md states: digging forces by lever arms, and the end of the cycle.
 
-Usage: excavator_test.py PROJECT SLEWRING digging|cycle|chart
+Usage: excavator_test.py PROJECT SLEWRING digging|cycle|chart|levers
 The lever arms are computed here from the pins of the scene, by plane geometry alone.
 """
 import csv
@@ -152,5 +152,20 @@ def chart(_):
     return good
 
 
+def levers(folder):
+    full = ", ".join(f"Input_{name}: [[0 s, 0], [1 s, 0], [1.5 s, {stick}]]" for name, stick in
+                     (("Lift", 1), ("Crowd", -1), ("Curl", -1), ("Slew", 1)))
+    good = True
+    for limit in 0, 560:
+        _, run = record("excavator_20t", f"{folder}/{limit}", "--duration", "4", "--set", f"Pump.maximum_torque={limit}Nm",
+                        "--set", f"script.inputs={{{full}, Input_Brake: [[0 s, 0], [0.5 s, 1]]}}")
+        stalls = max(run["Engine.is_stalled"]) > 0
+        good &= expect(f"with a limit of {limit} Nm the engine {'stalls' if stalls else 'keeps running'}", stalls == (limit == 0))
+        last = run["Pump.torque"][-100:]  # a second; the swash lags behind pressures that swing
+        torque = sum(last) / len(last)
+        good &= expect(f"the torque is {torque:.1f} Nm in the last second", limit == 0 or abs(torque - limit) < 0.03 * limit)
+    return good
+
+
 with tempfile.TemporaryDirectory() as work:
-    sys.exit(0 if {"digging": digging, "cycle": cycle, "chart": chart}[WHAT](work) else 1)
+    sys.exit(0 if {"digging": digging, "cycle": cycle, "chart": chart, "levers": levers}[WHAT](work) else 1)

@@ -129,7 +129,7 @@ inline void add_engine_and_filters(HydraulicsDef& circuit) {
   engine.friction_torque = 20, engine.viscous_friction = 0.05;
   LsPumpDef& ls_pump = add<LsPumpDef>(circuit, "Engine_Ls_Pump");
   ls_pump.port_a = "Vol_C", ls_pump.port_b = "Vol_T", ls_pump.displacement = 5e-6, ls_pump.drive = {"Engine", 0.8};
-  ls_pump.standby_pressure = 150 * kBar, ls_pump.mechanical_coefficient = 0.9;
+  ls_pump.standby_pressure = 150 * kBar, ls_pump.mechanical_coefficient = 0.9, ls_pump.maximum_torque = 50;
   FilterDef& filter = add<FilterDef>(circuit, "Filter");
   filter.port_1 = "Vol_A", filter.port_2 = "Vol_C", filter.nominal_flow = 1e-4, filter.clogging = 0.5;
   filter.nominal_pressure_drop = 5 * kBar, filter.bypass.nominal_flow = 5e-4;

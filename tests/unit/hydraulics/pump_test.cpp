@@ -9,6 +9,7 @@
 #include <string>
 
 #include "hydraulics/circuit_integrator.h"
+#include "hydraulics/components/ls_pump.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
 #include "tests/support/circuit_rig.h"
 
@@ -183,6 +184,27 @@ TEST(Pump, a_swash_below_its_least_one_is_refused) {
   errors.clear();
   validate(def, errors, warnings);
   EXPECT_TRUE(errors.empty());
+}
+
+// A controller that demands the full swash, against a line of constant pressure: alpha = eta_m T/(D p), at most 1.
+TEST(LsPump, its_torque_limiter_holds_the_torque_at_every_pressure) {
+  for (const double pressure : {20.0, 60.0, 120.0, 250.0}) {
+    CircuitRig rig;
+    add_tank(rig.def, "Line", (pressure + 1) * kBar), add_tank(rig.def, "Tank", 1 * kBar);
+    LsPumpDef& pump = add<LsPumpDef>(rig.def, "Pump");
+    pump.port_a = "Line", pump.port_b = "Tank", pump.speed = 150, pump.displacement = 1e-5;
+    pump.mechanical_coefficient = 0.9, pump.standby_pressure = 400 * kBar, pump.maximum_torque = 80;
+    rig.run(2);
+    const double full = 0.9 * 80 / (1e-5 * pressure * kBar);
+    EXPECT_NEAR(rig.variable("Pump.swash"), std::min(1.0, full), 2e-3) << pressure;
+    EXPECT_LT(rig.variable("Pump.torque"), 80.01);
+    rig.set("Pump.maximum_torque", 40);
+    rig.run(2);
+    EXPECT_NEAR(rig.variable("Pump.swash"), std::min(1.0, 0.5 * full), 2e-3) << pressure;
+    rig.set("Pump.maximum_torque", 0);
+    rig.run(2);
+    EXPECT_NEAR(rig.variable("Pump.swash"), 1, 2e-3) << pressure;
+  }
 }
 
 }  // namespace pump_test
