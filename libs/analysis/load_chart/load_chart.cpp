@@ -58,6 +58,14 @@ class ChartMaker {
       if (!progress("poses", static_cast<double>(chart_.poses.size()) / static_cast<double>(rows.size()))) break;
       chart_.poses.push_back(pose_of(row));
     }
+    const auto has_load = [](const ChartPose& pose) { return pose.has_load(); };
+    if (!chart_.poses.empty() && std::none_of(chart_.poses.begin(), chart_.poses.end(), has_load)) {
+      const ChartPose& first = chart_.poses.front();
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("no position of --over has a load; at the first one, {}: {}; there is no chart; choose "
+                                "other positions or joints",
+                                fmt::join(first.settings, ", "), first.refusal));
+    }
     if (!is_steady_) {
       chart_.warnings.emplace_back(
           "a pressure that limits loads still rose after 30 s of stall; the loads are those of its value then");
@@ -93,6 +101,10 @@ class ChartMaker {
     if (!base_->has_mechanics() || base_->ports.empty()) {
       refuse_chart("no cylinder carries a payload in this scene", "take a scene with mechanics and hydraulics");
     }
+    if (base_->has_flexible_bodies()) {
+      refuse_chart("the scene has flexible or segmented bodies, which no start by joint coordinates puts elsewhere",
+                   "take its rigid scene");
+    }
     if (norm(Vec3(mechanics.gravity)) <= 0) refuse_chart("the scene has no gravity", "set mechanics.gravity");
     for (const multibody::JointDef& joint : mechanics.joints) {
       if (joint.type != multibody::JointType::floating) continue;
@@ -100,9 +112,6 @@ class ChartMaker {
                                "only",
                                joint.name),
                    fmt::format("hold it with --set {}.type=fixed", joint.name));
-    }
-    if (!mechanics.flexible_bodies.empty() && !options_.lines.empty()) {
-      refuse_chart("tipping of a machine with flexible bodies is not covered", "take its rigid scene");
     }
   }
 
@@ -132,8 +141,7 @@ class ChartMaker {
         chart_.limits.push_back({LimitKind::structure, base_->ports[i].name + " structure"});
       }
     }
-    const multibody::MechanicsDef& mechanics = base_->mechanics;
-    has_tipping_ = !lines_.empty() || (mechanics.tyre_dummies.size() >= 3 && mechanics.flexible_bodies.empty());
+    has_tipping_ = !lines_.empty() || base_->mechanics.tyre_dummies.size() >= 3;
     if (has_tipping_) chart_.limits.push_back({LimitKind::tipping, "tipping"});
   }
 

@@ -9,7 +9,7 @@
 // The load of the pose is the smallest of them, at least 0. F_i,max is what the valves press with when the pistons are
 // held; it does not depend on the pose and is found once, at the first one that the machine reaches.
 //
-// Not covered: safety factors, dynamics, friction of joints, strength beyond (2), flexible bodies with modes for (3).
+// Not covered: safety factors, dynamics, friction of joints, strength beyond (2), flexible bodies.
 #pragma once
 
 #include <cstddef>

@@ -36,7 +36,7 @@ struct Weight {
   double mass = 0;
 };
 
-// All masses but the body's own. Pre-condition: observe() with this workspace, no flexible body with modes.
+// All masses but the body's own. Pre-condition: observe() with this workspace, no flexible body.
 [[nodiscard]] std::vector<Weight> weights_without(const multibody::Model& model, const multibody::Workspace& ws,
                                                   int body);
 

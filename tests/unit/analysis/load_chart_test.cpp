@@ -114,6 +114,11 @@ TEST(LoadChart, BadInputIsRefusedBeforeTheWork) {
   refuses(bad, "one or two joints");
   bad.over = {"Boom_Foot=up,down"};
   refuses(bad, "'up' is no position");
+  bad.over = {"Boom_Foot=-60deg,-50deg"};
+  refuses(bad, "no position of --over has a load");
+  bad = good, bad.scene = SLEWRING_SOURCE_DIR "/scenes/truck_crane_segmented.yaml";
+  bad.over = {"Pillar_LiftBoom=0deg,10deg"};
+  refuses(bad, "flexible or segmented bodies");
   bad = good, bad.lines = {"0 0 0, 0 0 0"};
   refuses(bad, "two points of Ground");
   bad = good, bad.structure = {"Lft=1kN"};
