@@ -33,14 +33,15 @@ int main(int argc, char** argv) {
       "take SLEWRING_KEYS, SLEWRING_IDENTITY and SLEWRING_INSECURE_LAN=1. NO_COLOR: no colours on a terminal.");
   program.require_command();
   for (const auto add :
-       {cli::add_run,       cli::add_check,         cli::add_describe, cli::add_draw,         cli::add_import,
-        cli::add_variables, cli::add_schema,        cli::add_flex,     cli::add_sessions,     cli::add_topics,
-        cli::add_watch,     cli::add_param,         cli::add_control,  cli::add_info,         cli::add_plot,
-        cli::add_animate,   cli::add_export,        cli::add_recover,  cli::add_slice,        cli::add_merge,
-        cli::add_replay,    cli::add_compare,       cli::add_fit,      cli::add_fit_row,      cli::add_sweep,
-        cli::add_sweep_row, cli::add_sweep_part,    cli::add_tradeoff, cli::add_tradeoff_row, cli::add_simplify,
-        cli::add_extremes,  cli::add_extremes_case, cli::add_stress,   cli::add_stress_load,  cli::add_node,
-        cli::add_keys,      cli::add_doctor,        cli::add_bridge,   cli::add_device,       cli::add_window}) {
+       {cli::add_run,       cli::add_check,         cli::add_describe,  cli::add_draw,         cli::add_import,
+        cli::add_variables, cli::add_schema,        cli::add_flex,      cli::add_sessions,     cli::add_topics,
+        cli::add_watch,     cli::add_param,         cli::add_control,   cli::add_info,         cli::add_plot,
+        cli::add_animate,   cli::add_export,        cli::add_recover,   cli::add_slice,        cli::add_merge,
+        cli::add_replay,    cli::add_compare,       cli::add_fit,       cli::add_fit_row,      cli::add_sweep,
+        cli::add_sweep_row, cli::add_sweep_part,    cli::add_tradeoff,  cli::add_tradeoff_row, cli::add_simplify,
+        cli::add_extremes,  cli::add_extremes_case, cli::add_loadchart, cli::add_stress,       cli::add_stress_load,
+        cli::add_node,      cli::add_keys,          cli::add_doctor,    cli::add_bridge,       cli::add_device,
+        cli::add_window}) {
     add(program);
   }
   cli::add_help(program);

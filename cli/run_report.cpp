@@ -268,7 +268,7 @@ void report_recorded(const scene::Scene& scene, const std::string& assets, const
 }
 
 std::string range_text(const VariableReport& variable) {
-  const auto text = [&variable](double value) { return quantity_text(value, variable.unit); };
+  const auto text = [&variable](double value) { return quantity_text(value, variable.unit, variable.name); };
   if (text(variable.min) == text(variable.max))
     return fmt::format("{} {} all the time", variable.name, text(variable.max));
   return fmt::format("{} {} to {}, {} at the end", variable.name, text(variable.min), text(variable.max),

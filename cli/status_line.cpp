@@ -173,7 +173,8 @@ std::string StatusText::variables_text(const observer::SessionView& view, std::s
           return scene::fits_pattern(variable->name, pattern);
         });
     if (!is_plotted) continue;
-    const std::string item = "  " + variable->name + " " + quantity_text(variable->value, variable->unit);
+    const std::string item =
+        "  " + variable->name + " " + quantity_text(variable->value, variable->unit, variable->name);
     if (text.size() + item.size() > room) break;
     ++shown;
     text += item;

@@ -45,6 +45,7 @@ void add_tradeoff(options::Command& program);
 void add_tradeoff_row(options::Command& program);
 void add_extremes(options::Command& program);
 void add_extremes_case(options::Command& program);
+void add_loadchart(options::Command& program);
 void add_stress(options::Command& program);
 void add_stress_load(options::Command& program);
 void add_keys(options::Command& program);

@@ -63,7 +63,7 @@ void print_line(const observer::SessionView& view, const std::vector<std::string
       const observer::VariableView& variable = *view.find(name);
       line += fmt::format("  {} {}", name,
                           view.is_left_out(name) ? "left out (session.shed)"
-                          : variable.step >= 0   ? quantity_text(variable.value, variable.unit)
+                          : variable.step >= 0   ? quantity_text(variable.value, variable.unit, name)
                                                  : missing);
     }
     fmt::print("{}\n", printable(line));

@@ -12,6 +12,7 @@ namespace slew {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr DisplayUnit kRpm{30 / std::numbers::pi, "rpm"};
 
 constexpr std::pair<std::string_view, DisplayUnit> kUnits[] = {{"Pa", {1e-5, "bar"}},
                                                                {"Pa/s", {1e-5, "bar/s"}},
@@ -29,9 +30,12 @@ constexpr std::pair<std::string_view, DisplayUnit> kUnits[] = {{"Pa", {1e-5, "ba
 
 // further units in which users choose values
 constexpr std::pair<std::string_view, DisplayUnit> kUnitsOfData[] = {
-    {"m", {1e3, "mm"}},     {"m2", {1e4, "cm2"}},
-    {"m3", {1e6, "cm3"}},   {"rad/s", {30 / std::numbers::pi, "rpm"}},
-    {"m2/s", {1e6, "cSt"}}, {"m3/rad", {2e6 * std::numbers::pi, "cm3/rev"}}};
+    {"m", {1e3, "mm"}}, {"m2", {1e4, "cm2"}},   {"m3", {1e6, "cm3"}},
+    {"rad/s", kRpm},    {"m2/s", {1e6, "cSt"}}, {"m3/rad", {2e6 * std::numbers::pi, "cm3/rev"}}};
+
+bool is_shaft_speed(std::string_view variable) {
+  return variable.ends_with(".speed") || variable.ends_with(".speed_setting");
+}
 
 // the fewest digits that give the value again, at most six
 std::string few_digits(double value) {
@@ -51,18 +55,19 @@ std::string with_unit(std::string text, std::string_view unit) {
 
 }  // namespace
 
-DisplayUnit display_unit(std::string_view si_unit) {
+DisplayUnit display_unit(std::string_view si_unit, std::string_view variable) {
+  if (si_unit == "rad/s" && is_shaft_speed(variable)) return kRpm;
   for (const auto& [unit, shown] : kUnits) {
     if (unit == si_unit) return shown;
   }
   return {1, si_unit};
 }
 
-std::string quantity_text(double value, std::string_view si_unit) {
+std::string quantity_text(double value, std::string_view si_unit, std::string_view variable) {
   // what rounding leaves of an angle of zero
   constexpr double kNoAngle = 1e-12;  // rad
   if (si_unit == "rad" && std::fabs(value) < kNoAngle) value = 0;
-  const DisplayUnit shown = display_unit(si_unit);
+  const DisplayUnit shown = display_unit(si_unit, variable);
   std::string text = fmt::format("{:.4g}", value * shown.factor);
   if (text == "-0") text = "0";
   return with_unit(std::move(text), shown.unit);

@@ -17,11 +17,13 @@ struct DisplayUnit {
   std::string_view unit;
 };
 
-// Pa -> bar, m3/s -> l/min, rad -> deg, ...; units that are not in the list stay as they are.
-[[nodiscard]] DisplayUnit display_unit(std::string_view si_unit);
+// Pa -> bar, m3/s -> l/min, rad -> deg, ...; units that are not in the list stay as they are. variable: full name of
+// the shown variable, where there is one: `El.speed` and `El.speed_setting` in rad/s are those of a shaft and are shown
+// in rpm; rates of joints and bodies (`velocity`, `rate`, `angular_velocity`) in deg/s.
+[[nodiscard]] DisplayUnit display_unit(std::string_view si_unit, std::string_view variable = {});
 
 // "47.2 kN" style: value in the display unit with four significant digits. An angle below 1e-12 rad is 0.
-[[nodiscard]] std::string quantity_text(double value, std::string_view si_unit);
+[[nodiscard]] std::string quantity_text(double value, std::string_view si_unit, std::string_view variable = {});
 
 // A chosen value as a user would write it: at most six digits, in the usual unit that gives the shortest text: "30
 // deg", "1500 rpm", "0.1 l/min", "500 kg". Parsing the text gives the value to 1e-9 where six digits suffice. A missing

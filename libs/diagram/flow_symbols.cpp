@@ -223,6 +223,22 @@ Symbol shuttle_valve_symbol(const ComponentDef& def) {
   return symbol;
 }
 
+// spool of three places, shut in the middle, piloted by both sides
+Symbol flushing_valve_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 96, .height = 52};
+  Pen pen;
+  for (const double x : {12.0, 36.0, 60.0}) pen.box({x, 12}, 24, 28);
+  pen.arrow({18, 40}, {24, 12}, 5);
+  pen.arrow({78, 40}, {72, 12}, 5);
+  pen.path("M30 40V35M27 35H33M66 40V35M63 35H69M42 40V35M39 35H45M54 40V35M51 35H57M48 12V17M45 17H51");
+  pen.path("M0 26L3 20L6 32L9 20L12 26M96 26L93 20L90 32L87 20L84 26M42 40V52M54 40V52M48 12V0");
+  symbol.ports = {straight(def, "port_1", Role::inlet, Side::bottom, 42, 52),
+                  straight(def, "port_2", Role::inlet, Side::bottom, 54, 52),
+                  straight(def, "port_3", Role::outlet, Side::top, 48, 0)};
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
 constexpr SymbolRow kFlowRows[] = {{"check_valve", check_symbol},
                                    {"throttle_check_valve", throttle_check_symbol},
                                    {"pilot_check_valve", pilot_check_symbol},
@@ -236,7 +252,8 @@ constexpr SymbolRow kFlowRows[] = {{"check_valve", check_symbol},
                                    {"line", line_symbol},
                                    {"flow_divider", flow_divider_symbol},
                                    {"gear_flow_divider", gear_flow_divider_symbol},
-                                   {"shuttle_valve", shuttle_valve_symbol}};
+                                   {"shuttle_valve", shuttle_valve_symbol},
+                                   {"flushing_valve", flushing_valve_symbol}};
 
 }  // namespace
 

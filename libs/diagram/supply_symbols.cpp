@@ -34,12 +34,19 @@ Symbol pump_symbol(const ComponentDef& def) {
   Symbol symbol{.width = 76, .height = kMachineHeight, .place = Place::supply};
   Pen pen;
   draw_pump(pen, 38);
+  const bool is_over_centre = number_of(def, "minimum_swash") < 0;
+  if (is_over_centre) pen.filled("M38 47L45 36L31 36Z");
   if (is_set(def, "swash_per_signal") || is_set(def, "maximum_pressure") || is_set(def, "maximum_power")) {
     pen.adjustable({20, 49}, {57, 6});
   }
   add_shaft(symbol, pen, def, 58);
   symbol.ports.push_back(straight(def, "port_a", Role::outlet, Side::top, 38, 0));
-  symbol.ports.push_back(straight(def, "port_b", Role::back, Side::bottom, 38, kMachineHeight));
+  symbol.ports.push_back(
+      straight(def, "port_b", is_over_centre ? Role::outlet : Role::back, Side::bottom, 38, kMachineHeight));
+  if (!text_of(def, "port_c").empty()) {
+    pen.dashed("M51 42L54 46V54");
+    symbol.ports.push_back(straight(def, "port_c", Role::pilot, Side::bottom, 54, kMachineHeight));
+  }
   symbol.drawing = pen.take();
   return symbol;
 }

@@ -48,6 +48,7 @@ constexpr Figure kFigures[] = {
     {"line", "length"},
     {"flow_divider", "nominal_flow"},
     {"shuttle_valve", "nominal_flow"},
+    {"flushing_valve", "nominal_flow"},
     {"unloading_valve", "cut_out_pressure", "out "},
     {"unloading_valve", "cut_in_pressure", "in "},
     {"gear_flow_divider", "displacement_2"},

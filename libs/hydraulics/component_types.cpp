@@ -12,6 +12,7 @@
 #include "hydraulics/components/engine.h"
 #include "hydraulics/components/filter.h"
 #include "hydraulics/components/flow_divider.h"
+#include "hydraulics/components/flushing_valve.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose.h"
 #include "hydraulics/components/hose_burst_valve.h"
@@ -64,6 +65,7 @@ std::span<const ComponentType> component_types() {
       flow_divider_type(),
       gear_flow_divider_type(),
       shuttle_valve_type(),
+      flushing_valve_type(),
       unloading_valve_type(),
       ls_pump_type(),
       pump_type(),

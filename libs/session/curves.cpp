@@ -77,14 +77,14 @@ std::vector<plotting::Series> Curves::select(std::span<const std::string> patter
     const auto kept = curves_.find(variable.place);
     plotting::Series curve = kept == curves_.end() ? plotting::Series{} : kept->second;
     curve.name = name;
-    curve.unit = units == Units::display ? std::string(display_unit(variable.unit).unit) : variable.unit;
+    const DisplayUnit shown = display_unit(variable.unit, name);
+    curve.unit = units == Units::display ? std::string(shown.unit) : variable.unit;
     if (curve.unit == "1") curve.unit.clear();
     const auto writer = writers_.find(variable.place.first);
     const StepIndex between = writer == writers_.end() ? 0 : writer->second.between;
     curve.spacing = static_cast<double>(between) * step_.seconds();
     if (units == Units::display) {
-      const double factor = display_unit(variable.unit).factor;
-      for (double& value : curve.values) value *= factor;
+      for (double& value : curve.values) value *= shown.factor;
     }
     selected.push_back(std::move(curve));
   }

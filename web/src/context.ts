@@ -56,7 +56,7 @@ export class Context {
     this.workspaceChanged.emit();
   }
   unitOf(variable: string): DisplayUnit {
-    return displayUnit(this.session.variables.get(variable)?.unit ?? "1", this.#units);
+    return displayUnit(this.session.variables.get(variable)?.unit ?? "1", this.#units, variable);
   }
 
   // A colour of the style sheet.

@@ -20,9 +20,14 @@ const engineering: Record<string, DisplayUnit> = {
   J: { factor: 1e-3, text: "kJ" },
 };
 
-export function displayUnit(unit: string, system: UnitSystem): DisplayUnit {
+const rpm: DisplayUnit = { factor: 30 / Math.PI, text: "rpm" };
+
+// The speed of a shaft has a unit of its own, by the name of its variable, as in libs/core/display.cpp.
+export function displayUnit(unit: string, system: UnitSystem, variable: string): DisplayUnit {
   const text = unit === "1" ? "" : unit;
-  return (system === "engineering" && engineering[unit]) || { factor: 1, text };
+  if (system === "si") return { factor: 1, text };
+  if (unit === "rad/s" && /\.speed(_setting)?$/.test(variable)) return rpm;
+  return engineering[unit] ?? { factor: 1, text };
 }
 
 // Five digits, of a width that stays while the value moves.

@@ -5,58 +5,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "analysis/description/instant.h"
+#include "analysis/description/largest_force.h"
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/report_table.h"
-#include "coupling/line_force.h"
 #include "hydraulics/circuit.h"
-#include "hydraulics/stall.h"
 #include "mechanics_node/payload.h"
 
 namespace slew::analysis {
 namespace {
 
 // a cylinder whose force changes by less with 1 kg does not carry the load: a hundred thousandth of its weight
-constexpr double kNoShare = 1e-4;  // m/s2
-constexpr double kCreep = 0.05;    // m/s, up to which the largest friction counts: the load has to begin to move
-constexpr int kCreepPoints = 50;
+constexpr double kNoShare = 1e-4;    // m/s2
 constexpr double kLowered = 0.01;    // part of a setting
 constexpr double kOfSetting = 0.25;  // effect from which a setting limits
-
-struct Command {
-  std::string input;
-  double stick = 0;
-  hydraulics::HeldControl held;
-};
-
-// every input at full stick in both directions; the neutral circuit without inputs
-std::vector<Command> commands_of(const scene::Scene& scene, const hydraulics::Circuit& circuit) {
-  std::vector<Command> commands;
-  for (const scene::InputDef& input : scene.inputs) {
-    const int control = circuit.find_control(input.primitive);
-    if (control < 0) continue;
-    for (const double stick : {1.0, -1.0}) {
-      if (stick < 0 && input.type == scene::InputType::digital) continue;
-      commands.push_back({input.name, stick, {control, stick * input.scale}});
-    }
-  }
-  if (commands.empty()) commands.push_back({});
-  return commands;
-}
-
-// largest friction on the way to kCreep [N]
-double friction(const coupling::LineForceLaw& law, double F, double direction) {
-  double largest = 0;
-  // in equal ratios, since breaking away takes place at a tenth of a millimetre a second
-  for (int k = 0; k <= kCreepPoints; ++k) {
-    const double v = kCreep * std::exp2(-0.25 * k);
-    largest = std::max(largest, std::fabs(law.friction(F, direction * v)));
-  }
-  return largest;
-}
 
 class Finder {
  public:
@@ -141,34 +108,23 @@ class Finder {
 
   // (2)
   void find_largest_forces(LiftableLoad& result) {
-    const hydraulics::Circuit circuit(scene_.hydraulics);
-    commands_ = commands_of(scene_, circuit);
-    for (const LiftingPort& port : result.ports) stroke_.push_back(port.stroke);
+    std::vector<double> strokes;
+    for (const LiftingPort& port : result.ports) strokes.push_back(port.stroke);
+    largest_.emplace(scene_, std::move(strokes));
     command_of_.assign(result.ports.size(), 0);
-    std::vector<hydraulics::Stall> stalls;
-    for (const Command& command : commands_) {
-      stalls.push_back(hydraulics::find_stall(scene_.hydraulics, stroke_, command.held));
-    }
     for (std::size_t i = 0; i < result.ports.size(); ++i) {
       LiftingPort& port = result.ports[i];
       if (!port.carries()) continue;
       const double direction = port.force_per_kg > 0 ? 1 : -1;
-      for (std::size_t c = 1; c < stalls.size(); ++c) {
-        if (direction * stalls[c].forces[i] > direction * stalls[command_of_[i]].forces[i]) command_of_[i] = c;
-      }
-      const hydraulics::Stall& best = stalls[command_of_[i]];
-      const hydraulics::Actuator& actuator = circuit.actuators()[i];
-      const int chamber = direction > 0 ? actuator.port_a : actuator.port_b;
-      port.chamber = circuit.volume_name(chamber);
-      port.pressure = best.pressures[static_cast<std::size_t>(chamber)];
-      port.input = commands_[command_of_[i]].input;
-      port.stick = commands_[command_of_[i]].stick;
-      port.is_steady = best.is_steady;
-      const coupling::LineForceLaw law(scene_.ports[i].line_force);
-      const double F = best.forces[i];
-      // friction reduces the force and does not reverse it
-      port.largest_force = F - direction * std::min(std::fabs(F), friction(law, F, direction));
-      const coupling::LineForceDef& ends = law.def();
+      const LargestForce largest = largest_->of(i, direction);
+      command_of_[i] = largest.command;
+      port.largest_force = largest.force;
+      port.pressure = largest.pressure;
+      port.chamber = largest.chamber;
+      port.input = largest.input;
+      port.stick = largest.stick;
+      port.is_steady = largest.is_steady;
+      const coupling::LineForceDef& ends = scene_.ports[i].line_force;
       port.is_at_end = direction > 0 ? port.stroke >= ends.stroke_max : port.stroke <= ends.stroke_min;
     }
   }
@@ -196,8 +152,7 @@ class Finder {
         double& value = *static_cast<double*>(field.member(component->address()));
         const double kept = value;
         value = (1 - kLowered) * kept;
-        const hydraulics::Stall lowered =
-            hydraulics::find_stall(scene_.hydraulics, stroke_, commands_[command_of_[at]].held);
+        const hydraulics::Stall lowered = largest_->stall(command_of_[at]);
         value = kept;
         const double effect = (port.pressure - lowered.pressures[chamber]) / (kLowered * kept);
         if (effect >= kOfSetting) {
@@ -211,8 +166,7 @@ class Finder {
 
   scene::Scene& scene_;
   const LiftingPose& pose_;
-  std::vector<Command> commands_;
-  std::vector<double> stroke_;
+  std::optional<LargestForces> largest_;
   std::vector<std::size_t> command_of_;  // by port
 };
 

@@ -4,10 +4,9 @@
 //   F_i(m) = F_i(m_0) + s_i (m - m_0)                line force that holds port i with the payload m             (1)
 //   F_i,max = F_stall - F_mu(F_stall)                line force when the valves press with all they have         (2)
 //   m_i = m_0 + (F_i,max - F_i(m_0)) / s_i,   answer: the smallest m_i                                         (3)
-// (1): mechanics_node/payload.h. F_stall: the circuit itself with held pistons (hydraulics/stall.h), the best of every
-// input at full stick to either side, one at a time; F_mu: the largest friction of the cylinder at up to kCreep. A
-// limiting setting is found by lowering each pressure of each component by 1 % and stalling again: what lowers the
-// pressure in the loaded chamber by kOfSetting of its own change or more is named.
+// (1): mechanics_node/payload.h. (2): largest_force.h. A limiting setting is found by lowering each pressure of each
+// component by 1 % and stalling again: what lowers the pressure in the loaded chamber by kOfSetting of its own change
+// or more is named.
 //
 // Not covered: friction of joints, speeds (the load hangs at rest), tipping of the carrier, strength, buckling.
 #pragma once

@@ -69,8 +69,9 @@ std::string report_text(const Fit& fit, std::size_t width) {
   }
   ReportTable signals({"signal", "measured", "RMS before", "RMS after"});
   for (const FittedSignal& signal : fit.signals) {
-    signals.add({signal.expression, signal.column, quantity_text(signal.rms(signal.before), signal.unit),
-                 quantity_text(signal.rms(signal.after), signal.unit)});
+    signals.add({signal.expression, signal.column,
+                 quantity_text(signal.rms(signal.before), signal.unit, signal.expression),
+                 quantity_text(signal.rms(signal.after), signal.unit, signal.expression)});
   }
   std::string text =
       fmt::format("{}: {} after {}, {}\n\n", fit.scene, fit.search.has_converged ? "converged" : "not converged",
@@ -128,7 +129,7 @@ Json report_json(const Fit& fit) {
 std::string report_html(const Fit& fit) {
   std::vector<plotting::Plot> plots;
   for (const FittedSignal& signal : fit.signals) {
-    const DisplayUnit unit = display_unit(signal.unit);
+    const DisplayUnit unit = display_unit(signal.unit, signal.expression);
     const auto series = [&](const char* name, const std::vector<double>& values) {
       plotting::Series one{.name = name, .unit = std::string(unit.unit), .time = signal.time, .values = values};
       for (double& value : one.values) value *= unit.factor;

@@ -215,6 +215,7 @@ Measure parse_measure(const std::string& text, const scene::Scene& scene, std::s
   measure.unit =
       only ? std::string(info(variables[*only].dimension).si_unit) : scene::si_unit_of(measure.expression.exponent());
   if (measure.unit == "1") measure.unit.clear();
+  if (only) measure.variable = variables[*only].name;
   return measure;
 }
 

@@ -32,8 +32,9 @@ struct Measure {
   std::string text;  // as the user wrote it
   MeasureKind kind = MeasureKind::final;
   scene::CompiledExpression expression;
-  double argument = 0;  // SI: time of at(), bound of duration_above()
-  std::string unit;     // SI, of the measure; empty: a number
+  double argument = 0;     // SI: time of at(), bound of duration_above()
+  std::string unit;        // SI, of the measure; empty: a number
+  std::string variable{};  // the expression's only part, whose unit the measure has; empty: others than that
 };
 
 // Compiles an expression of a run's variables. option: that of the command line which the text belongs to. Throws

@@ -93,7 +93,7 @@ class ParameterSweeper {
     const std::vector<ElementVariable> variables = variables_of_run(base_, session::DirectSession(base_));
     for (const std::string& text : options_.job.measures) {
       const Measure measure = parse_measure(text, base_, variables);
-      result_.measures.push_back({measure.text, measure.unit});
+      result_.measures.push_back({measure.text, measure.unit, measure.variable});
     }
   }
 

@@ -33,6 +33,7 @@ struct ParameterSweepOptions {
 
 struct SweptMeasure {
   std::string text, unit;  // SI unit; empty: a number
+  std::string variable{};  // as in Measure
 };
 
 struct SweptRow {

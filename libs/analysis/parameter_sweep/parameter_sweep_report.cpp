@@ -32,6 +32,10 @@ std::string result_of(const SweptRow& row) {
   return text;
 }
 
+std::string text_in(const SweptMeasure& measure, double value) {
+  return quantity_text(value, measure.unit, measure.variable);
+}
+
 ReportTable rows_table(const ParameterSweep& sweep, const std::vector<std::size_t>& rows) {
   std::vector<ReportColumn> columns = {{"row", "row", "row"}};
   for (const Variation& variation : sweep.variations) {
@@ -56,8 +60,7 @@ ReportTable rows_table(const ParameterSweep& sweep, const std::vector<std::size_
     }
     for (std::size_t m = 0; m < sweep.measures.size(); ++m) {
       const std::optional<double> value = m < outcome.values.size() ? outcome.values[m] : std::nullopt;
-      cells.push_back(value ? ReportCell(quantity_text(*value, sweep.measures[m].unit), Json(*value))
-                            : ReportCell("-", Json()));
+      cells.push_back(value ? ReportCell(text_in(sweep.measures[m], *value), Json(*value)) : ReportCell("-", Json()));
     }
     cells.emplace_back(result_of(row));
     cells.emplace_back("", static_cast<int>(outcome.code));
@@ -89,9 +92,9 @@ std::vector<std::size_t> shown_rows(const ParameterSweep& sweep) {
   return rows;
 }
 
-std::string interval_text(const std::optional<Interval>& interval, const std::string& unit) {
+std::string interval_text(const std::optional<Interval>& interval, const SweptMeasure& measure) {
   if (!interval) return "-";
-  return fmt::format("{} .. {}", quantity_text(interval->low, unit), quantity_text(interval->high, unit));
+  return fmt::format("{} .. {}", text_in(measure, interval->low), text_in(measure, interval->high));
 }
 
 // statistics of a grid would describe the grid
@@ -101,9 +104,9 @@ std::string statistics_text(const ParameterSweep& sweep, std::size_t width) {
   for (std::size_t m = 0; m < sweep.measures.size(); ++m) {
     const SampleStatistics statistics = statistics_of(sweep, m);
     if (statistics.count == 0) continue;
-    const std::string& unit = sweep.measures[m].unit;
-    table.add({sweep.measures[m].text, std::to_string(statistics.count), quantity_text(statistics.mean, unit),
-               quantity_text(statistics.deviation, unit), interval_text(statistics.interval, unit)});
+    const SweptMeasure& measure = sweep.measures[m];
+    table.add({measure.text, std::to_string(statistics.count), text_in(measure, statistics.mean),
+               text_in(measure, statistics.deviation), interval_text(statistics.interval, measure)});
   }
   return '\n' + table.text("", width);
 }

@@ -19,7 +19,7 @@ std::string worst_text(const Simplification& result, const Trial& trial) {
   if (trial.was_interrupted || trial.changes.empty()) return "-";
   const std::size_t worst = worst_of(result.watched, trial);
   return fmt::format("{} by {}", result.watched[worst].name,
-                     quantity_text(trial.changes[worst], result.watched[worst].unit));
+                     quantity_text(trial.changes[worst], result.watched[worst].unit, result.watched[worst].name));
 }
 
 std::string verdict_text(const Simplification& result, const Trial& trial) {
@@ -57,8 +57,8 @@ std::string report_text(const Simplification& result, std::size_t width) {
   std::string text = fmt::format("{}, {} of its run; as it is {}\n", result.scene, duration_text(result.until), cost);
   ReportTable limits({"variable", "may change by", "range in the run"});
   for (const Watched& watched : result.watched) {
-    limits.add(
-        {watched.name, quantity_text(watched.tolerance, watched.unit), quantity_text(watched.range, watched.unit)});
+    limits.add({watched.name, quantity_text(watched.tolerance, watched.unit, watched.name),
+                quantity_text(watched.range, watched.unit, watched.name)});
   }
   text += limits.text("  ", width) + "\n";
   if (result.trials.empty() && !result.is_interrupted) text += "nothing in this scene could be left out\n";
@@ -74,7 +74,8 @@ std::string report_text(const Simplification& result, std::size_t width) {
                       100 * (1 - result.combined.cost / result.base_cost));
   ReportTable changes({"", ""});
   for (std::size_t i = 0; i < result.watched.size(); ++i) {
-    changes.add({result.watched[i].name, quantity_text(result.combined.changes[i], result.watched[i].unit)});
+    const Watched& watched = result.watched[i];
+    changes.add({watched.name, quantity_text(result.combined.changes[i], watched.unit, watched.name)});
   }
   return text + changes.text("  ", width);
 }

@@ -151,8 +151,8 @@ std::string variables_text(const Tradeoff& tradeoff) {
   std::string text;
   for (const TradeoffVariable& variable : tradeoff.variables) {
     if (!(variable.range > 0)) continue;
-    text +=
-        fmt::format("{}{} {}", text.empty() ? "" : ", ", variable.name, quantity_text(variable.range, variable.unit));
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", variable.name,
+                        quantity_text(variable.range, variable.unit, variable.name));
     if (variable.is_at_rest) {
       text += " (at rest, no error)";
     } else if (variable.spread)

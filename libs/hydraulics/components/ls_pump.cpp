@@ -62,6 +62,10 @@ constexpr Field kLsPumpFields[] = {
                                             .change = Change::live,
                                             .read_by = kReadByLs,
                                             .doc = "limit of the load-sensing pressure, above tank"}),
+    field<&LsPumpDef::maximum_torque>("maximum_torque", {.dimension = Dimension::torque,
+                                                         .range = kNotNegative,
+                                                         .change = Change::live,
+                                                         .doc = "torque at which the limiter swings back; 0: none"}),
     field<&LsPumpDef::leak_flow>("leak_flow", {.dimension = Dimension::volume_flow,
                                                .range = kNotNegative,
                                                .change = Change::live,
@@ -100,11 +104,11 @@ class LsPump final : public HydraulicComponent {
     drive_.add_load(view[alpha_], view[a_] - view[b_], rates);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    const ValueSlope u = command(view);
-    const double d_command = rate_ * u.slope * def_.controller_gain;
+    const Command u = command(view);
+    const double d_command = rate_ * u.over_error * def_.controller_gain, d_rise = d_command - rate_ * u.over_rise;
     jacobian.add(alpha_, alpha_, -rate_);
-    jacobian.add(alpha_, a_, -d_command);
-    jacobian.add(alpha_, b_, d_command);
+    jacobian.add(alpha_, a_, -d_rise);
+    jacobian.add(alpha_, b_, d_rise);
     if (ls_ >= 0) jacobian.add_ls(alpha_, ls_, d_command * set_point(view).slope);
     jacobian.move(b_, a_, alpha_, full_flow(view));
     jacobian.move(b_, a_, a_, -G_leak_);
@@ -133,6 +137,7 @@ class LsPump final : public HydraulicComponent {
     full_flow_ = def_.displacement * def_.speed * def_.volumetric_coefficient;
     G_leak_ = def_.leak_flow / def_.leak_pressure;
     rate_ = 1 / def_.time_constant;
+    full_torque_rise_ = def_.mechanical_coefficient * def_.maximum_torque / def_.displacement;
   }
 
  private:
@@ -143,9 +148,20 @@ class LsPump final : public HydraulicComponent {
     const ValueSlope set = smooth_max(limited.value + def_.set_pressure, def_.standby_pressure, kPumpSwitchWidth);
     return {set.value, set.slope * limited.slope};
   }
-  // swash command; slope with respect to the unlimited command
-  [[nodiscard]] ValueSlope command(const CircuitView& view) const noexcept {
-    return unit_clip(def_.controller_gain * (set_point(view).value - (view[a_] - view[b_])), kSwashClipWidth);
+  struct Command {
+    double value;
+    double over_error;     // slope with respect to K (p_set - rise)
+    double over_rise = 0;  // slope of the torque limiter over the rise [1/Pa]
+  };
+  // swash command
+  [[nodiscard]] Command command(const CircuitView& view) const noexcept {
+    const double rise = view[a_] - view[b_];
+    const ValueSlope u = unit_clip(def_.controller_gain * (set_point(view).value - rise), kSwashClipWidth);
+    // below half of the rise at which the full swash takes the torque the limit is far above the full swash
+    if (!(full_torque_rise_ > 0) || rise <= 0.5 * full_torque_rise_) return {u.value, u.slope};
+    const double limit = full_torque_rise_ / rise;
+    const ValueSlope least = smooth_min(u.value, limit, kSwashClipWidth);
+    return {least.value, least.slope * u.slope, -(1 - least.slope) * limit / rise};
   }
   [[nodiscard]] double flow(const CircuitView& view) const noexcept {
     return full_flow(view) * view[alpha_] - G_leak_ * (view[a_] - view[b_]);
@@ -161,6 +177,7 @@ class LsPump final : public HydraulicComponent {
   PumpDrive drive_;
   double per_speed_ = 0;  // m3/rad, flow per speed at full swash
   double full_flow_ = 0, G_leak_ = 0, rate_ = 0;
+  double full_torque_rise_ = 0;  // Pa, at which the full swash takes maximum_torque; 0: no limiter
 };
 
 void validate_pump(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {

@@ -3,13 +3,15 @@
 // (pump_drive.h).
 //
 //   p_set = max(p_standby, min(p_LS, p_LSmax) + p_margin)                     relative to port B (tank)
-//   T alpha' = clip(K (p_set - (p_A - p_B)), 0, 1) - alpha                    swash 0..1
+//   T alpha' = min(clip(K (p_set - (p_A - p_B)), 0, 1), alpha_T) - alpha      swash 0..1
+//   alpha_T = eta_m maximum_torque / (V_rad (p_A - p_B))                      torque limiter, 0: none
 //   Q_A = V_rad omega alpha eta_v - G (p_A - p_B),  Q_B = -Q_A                into the volumes
 //   torque = V_rad alpha (p_A - p_B) / eta_m,  power = torque omega
 // Steady droop: a flow Q lowers the outlet by alpha / K = Q / (V_rad omega eta_v K) below p_set.
 //
 // Source: the flexible-body tutorial thesis (Saimaa UAS 2017), table 21. Deviations: its controller gain 3.5e-5 is read
-// as % per Pa; the torque is not divided by the volumetric coefficient. Not covered: torque limiter.
+// as % per Pa; the torque is not divided by the volumetric coefficient. The limiter is the hyperbola that a regulator
+// with a lever or two springs holds; not covered: its springs' broken line, its change by the engine's speed.
 #pragma once
 
 #include "hydraulics/component_def.h"
@@ -31,6 +33,7 @@ struct LsPumpDef final : ComponentDef {
   double set_pressure = 25e5;          // Pa, LS margin
   double standby_pressure = 25e5;      // Pa above tank
   double maximum_ls_pressure = 230e5;  // Pa above tank
+  double maximum_torque = 0;           // Nm at the shaft; 0: none
   double leak_flow = 0;                // m3/s ...
   double leak_pressure = 100e5;        // Pa ... at this difference
 

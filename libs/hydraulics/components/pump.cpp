@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/pump.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
@@ -23,11 +25,17 @@ constexpr ReadBy kPumpReadByEngine[] = {{"engine", "an engine", [](const void* d
                                            return !static_cast<const PumpDef*>(def)->drive.engine.empty();
                                          }}};
 
+constexpr ReadBy kPumpReadByCase[] = {read_by_set<&PumpDef::port_c>("port_c", "a port_c")};
+constexpr Range kSwashRange{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
+constexpr Range kLeastSwash{.min = -1, .max = 0, .min_is_open = false, .max_is_open = false};
+
 constexpr Field kPumpFields[] = {
     field<&PumpDef::port_a>("port_a",
                             {.presence = Presence::required, .reference = "volume", .doc = "volume at the outlet"}),
     field<&PumpDef::port_b>(
         "port_b", {.presence = Presence::required, .reference = "volume", .doc = "volume at the inlet: tank"}),
+    field<&PumpDef::port_c>("port_c",
+                            {.reference = "volume", .doc = "volume of the case drain; absent: no leak to the case"}),
     field<&PumpDef::speed>("speed", {.dimension = Dimension::angular_velocity,
                                      .range = kNotNegative,
                                      .change = Change::live,
@@ -48,7 +56,9 @@ constexpr Field kPumpFields[] = {
                                             {.range = kFractionAboveZero, .doc = "volumetric efficiency"}),
     field<&PumpDef::swash>(
         "swash",
-        {.range = kFraction, .change = Change::live, .doc = "share of the displacement without a control signal"}),
+        {.range = kSwashRange, .change = Change::live, .doc = "share of the displacement without a control signal"}),
+    field<&PumpDef::minimum_swash>(
+        "minimum_swash", {.range = kLeastSwash, .doc = "least share; below 0: the pump delivers over centre too"}),
     field<&PumpDef::swash_per_signal>(
         "swash_per_signal",
         {.range = kFinite, .change = Change::live, .doc = "share of the displacement per unit of the control signal"}),
@@ -77,9 +87,14 @@ constexpr Field kPumpFields[] = {
                                              .range = kNotNegative,
                                              .change = Change::live,
                                              .doc = "leak from outlet to tank at leak_pressure"}),
+    field<&PumpDef::case_leak_flow>("case_leak_flow", {.dimension = Dimension::volume_flow,
+                                                       .range = kNotNegative,
+                                                       .change = Change::live,
+                                                       .read_by = kPumpReadByCase,
+                                                       .doc = "leak from either port to the case at leak_pressure"}),
     field<&PumpDef::leak_pressure>(
         "leak_pressure",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of leak_flow"}),
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of the leak flows"}),
 };
 
 constexpr double kSwashWidth = 0.01;  // share of the swash, smoothing of its limits
@@ -91,6 +106,7 @@ class Pump final : public HydraulicComponent {
         def_(def),
         a_(builder.volume(def.port_a)),
         b_(builder.volume(def.port_b)),
+        case_(def.port_c.empty() ? -1 : builder.volume(def.port_c)),
         control_(builder.add_control(def.name, SignalMoves::a_state)),
         alpha_(builder.add_state({.initial = def.swash, .scale = 1})),
         drive_(def.drive, def.displacement, def.mechanical_coefficient, builder) {
@@ -103,6 +119,7 @@ class Pump final : public HydraulicComponent {
   }
   void declare_dependencies(DependencyList& dependencies) const override {
     dependencies.add_restriction(a_, b_);
+    if (case_ >= 0) dependencies.add_restriction(a_, case_), dependencies.add_restriction(b_, case_);
     for (const StateIndex port : {a_, b_}) dependencies.add(port, alpha_), dependencies.add(alpha_, port);
     dependencies.add(alpha_, alpha_);
     drive_.declare_dependencies(a_, b_, alpha_, dependencies);
@@ -111,6 +128,8 @@ class Pump final : public HydraulicComponent {
     rates.set_rate(alpha_, swash_rate(view, limited(command(view), rise(view), speed(view)).value).value);
     rates.move(b_, a_, flow(view));
     drive_.add_load(view[alpha_], rise(view), rates);
+    if (case_ < 0) return;
+    for (const StateIndex port : {a_, b_}) rates.move(port, case_, G_case_ * (view[port] - view[case_]));
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
     const Swash least = limited(command(view), rise(view), speed(view));
@@ -123,32 +142,40 @@ class Pump final : public HydraulicComponent {
     jacobian.move(b_, a_, b_, G_leak_);
     drive_.stamp(a_, b_, alpha_, view, per_speed_, jacobian);
     drive_.stamp_speed(alpha_, rate * least.over_speed, jacobian);
+    if (case_ < 0) return;
+    for (const StateIndex port : {a_, b_}) {
+      jacobian.move(port, case_, port, G_case_);
+      jacobian.move(port, case_, case_, -G_case_);
+    }
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("swash", Dimension::none));
     variables.push_back(variable("flow", Dimension::volume_flow));
     variables.push_back(variable("torque", Dimension::torque));
     variables.push_back(variable("power", Dimension::power));
+    if (case_ >= 0) variables.push_back(variable("case_flow", Dimension::volume_flow));
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
-    const double torque = def_.displacement * view[alpha_] * rise(view) / def_.mechanical_coefficient;
+    const double torque = drive_.torque(view[alpha_], rise(view));
     *values++ = view[alpha_];
     *values++ = flow(view);
     *values++ = torque;
     *values++ = torque * speed(view);
+    if (case_ >= 0) *values++ = G_case_ * (view[a_] + view[b_] - 2 * view[case_]);
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
     per_speed_ = def_.displacement * def_.volumetric_coefficient;
     G_leak_ = def_.leak_flow / def_.leak_pressure;
+    G_case_ = def_.case_leak_flow / def_.leak_pressure;
   }
 
  private:
   [[nodiscard]] double rise(const CircuitView& view) const noexcept { return view[a_] - view[b_]; }
   // (3)
   [[nodiscard]] double command(const CircuitView& view) const noexcept {
-    return std::fmin(std::fmax(def_.swash + def_.swash_per_signal * view.control[control_], 0), 1);
+    return std::fmin(std::fmax(def_.swash + def_.swash_per_signal * view.control[control_], def_.minimum_swash), 1);
   }
   [[nodiscard]] double speed(const CircuitView& view) const noexcept { return drive_.speed(view, def_.speed); }
   // Rise at which the full swash takes the whole power at the speed n; 0: no limit.
@@ -158,22 +185,32 @@ class Pump final : public HydraulicComponent {
   }
   struct Swash {
     double value, over_rise, over_speed;
+    double over_command = 1;
   };
-  // the least command of (2), with its slopes over the pressure rise p and the speed n
+  // the command of (2) within its limits, with its slopes over the pressure rise p and the speed n
   [[nodiscard]] Swash limited(double command, double p, double n) const noexcept {
+    const Swash forth = limited_above(command, p, n);
+    if (def_.minimum_swash == 0) return forth;
+    const Swash back = limited_above(-forth.value, -p, n);
+    return {-back.value, back.over_command * forth.over_rise + back.over_rise,
+            back.over_command * forth.over_speed - back.over_speed, 1};
+  }
+  // for delivery out of port a
+  [[nodiscard]] Swash limited_above(double command, double p, double n) const noexcept {
     Swash alpha{command, 0, 0};
     if (def_.maximum_pressure > 0) {
       const double gain = def_.controller_gain;
       const ValueSlope u = unit_clip(gain * (def_.maximum_pressure - p), kSwashWidth);
       const ValueSlope least = smooth_min(alpha.value, u.value, kSwashWidth);
-      alpha = {least.value, -(1 - least.slope) * u.slope * gain, 0};
+      alpha = {least.value, -(1 - least.slope) * u.slope * gain, 0, least.slope};
     }
     // below half of that rise the limit is far above the full swash
     const double full = full_power_rise(n);
     if (full > 0 && p > 0.5 * full) {
       const double u = full / p;
       const ValueSlope least = smooth_min(alpha.value, u, kSwashWidth);
-      alpha = {least.value, least.slope * alpha.over_rise - (1 - least.slope) * u / p, -(1 - least.slope) * u / n};
+      alpha = {least.value, least.slope * alpha.over_rise - (1 - least.slope) * u / p, -(1 - least.slope) * u / n,
+               least.slope * alpha.over_command};
     }
     return alpha;
   }
@@ -188,26 +225,38 @@ class Pump final : public HydraulicComponent {
 
   PumpDef def_;
   StateIndex a_, b_;
+  StateIndex case_;  // -1: no case drain
   int control_;
-  StateIndex alpha_;  // swash 0..1
+  StateIndex alpha_;  // swash minimum_swash..1
   PumpDrive drive_;
-  double per_speed_ = 0, G_leak_ = 0;  // flow per speed at full swash [m3/rad], leak [m3/s/Pa]
+  double per_speed_ = 0;            // m3/rad, flow per speed at full swash
+  double G_leak_ = 0, G_case_ = 0;  // m3/s/Pa
 };
 
 void validate_plain_pump(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
   const PumpDef& def = static_cast<const PumpDef&>(component);
   check_distinct(def.name + ".port_b", def.port_a, def.port_b, errors);
+  if (!def.port_c.empty()) {
+    check_distinct(def.name + ".port_c", def.port_a, def.port_c, errors);
+    check_distinct(def.name + ".port_c", def.port_b, def.port_c, errors);
+  }
+  if (def.swash < def.minimum_swash) {
+    errors.push_back({def.name + ".swash", fmt::format("the swash {:g} lies below its least one", def.swash),
+                      "a swash of at least minimum_swash; below 0 for a pump over centre", ""});
+  }
   check_drive(circuit, def.name, def.drive, def.speed, errors);
 }
 
 }  // namespace
 
 void PumpDef::add_lines(PumpLines& lines) const {
-  lines.pumps.push_back(
-      {.name = name,
-       .outlet = port_a,
-       .flow = greatest_speed(drive, speed) * displacement * volumetric_coefficient,
-       .pressure = maximum_pressure > 0 ? maximum_pressure : std::numeric_limits<double>::infinity()});
+  const double flow = greatest_speed(drive, speed) * displacement * volumetric_coefficient;
+  const double pressure = maximum_pressure > 0 ? maximum_pressure : std::numeric_limits<double>::infinity();
+  lines.pumps.push_back({.name = name, .outlet = port_a, .flow = flow, .pressure = pressure});
+  if (minimum_swash < 0) {
+    lines.pumps.push_back(
+        {.name = name, .outlet = port_b, .key = "port_b", .flow = -minimum_swash * flow, .pressure = pressure});
+  }
 }
 
 ComponentType pump_type() {

@@ -4,15 +4,20 @@
 //
 //   Q = alpha D n eta_v - G_leak (p_a - p_b)       from port b into port a                                      (1)
 //   alpha' = sat((min(alpha_c, alpha_p, alpha_P) - alpha) / tau, swash_rate_limit)     displacement_servo.h     (2)
-//   alpha_c = clip(swash + swash_per_signal signal, 0, 1)                 command                               (3)
+//   alpha_c = clip(swash + swash_per_signal signal, minimum_swash, 1)     command                               (3)
 //   alpha_p = clip(controller_gain (maximum_pressure - (p_a - p_b)), 0, 1)          pressure cut-off            (4)
 //   alpha_P = eta_m maximum_power / (D n (p_a - p_b))                               power limit                 (5)
 //   T = alpha D (p_a - p_b) / eta_m,   P = T n                                      torque and power of the drive
+//   Q_ac = G_case (p_a - p_c),   Q_bc = G_case (p_b - p_c)                          into the case, with a port_c
 // D displacement, n speed, eta_v volumetric_coefficient, eta_m mechanical_coefficient. maximum_pressure and
 // maximum_power of 0 are no limits; a torque limit T is a power limit T n. Without limits and signal the pump is fixed.
 //
+// A pump over centre (minimum_swash < 0) delivers out of port b at a negative swash. Its limits then hold for both
+// directions of delivery: (2) bounds -alpha by (4) and (5) at the rise p_b - p_a as well. Oil that drives it gives
+// the torque alpha D (p_a - p_b) eta_m back to the drive.
+//
 // Source: Merritt 1967, section 4.2, for flow and torque; the limits are those of pump regulators in practice. Not
-// covered: ripple, negative swash (closed circuits), losses that follow pressure or speed.
+// covered: ripple, losses that follow pressure or speed, force of the swash plate's drive.
 #pragma once
 
 #include "hydraulics/component_def.h"
@@ -22,12 +27,14 @@ namespace slew::hydraulics {
 
 struct PumpDef final : ComponentDef {
   std::string port_a, port_b;  // volumes, outlet and tank
+  std::string port_c;          // volume of the case drain; empty: no leak to the case
   double speed = 0;            // n [rad/s], without an engine
   PumpDriveParameters drive;
   double displacement = 0;            // D [m3/rad], at full swash
   double mechanical_coefficient = 1;  // eta_m
   double volumetric_coefficient = 1;  // eta_v
   double swash = 1;                   // share of the displacement
+  double minimum_swash = 0;           // least share; below 0: over centre
   double swash_per_signal = 0;        // per unit of the control signal
   double time_constant = 0.1;         // tau [s]
   double swash_rate_limit = 0;        // 1/s, greatest rate of the swash; 0: none
@@ -35,6 +42,7 @@ struct PumpDef final : ComponentDef {
   double controller_gain = 3.5e-7;    // 1/Pa, of the cut-off
   double maximum_power = 0;           // W of the drive; 0: none
   double leak_flow = 0;               // m3/s from outlet to tank ...
+  double case_leak_flow = 0;          // m3/s from either port to the case ...
   double leak_pressure = 100e5;       // Pa ... at this difference
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "pump"; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shaft that turns a pump: at a given speed, or of an engine (engine.h) through a ratio.
 //
-//   n = r w,   load of the engine r T,   T = alpha D p / eta_m (p > 0),  alpha D p eta_m (p < 0)
+//   n = r w,   load of the engine r T,   T = alpha D p / eta_m (alpha p > 0),  alpha D p eta_m (alpha p < 0)
 // n speed of the pump, w of the engine, r speed_ratio, alpha swash, p pressure rise.
 #pragma once
 
@@ -44,13 +44,15 @@ class PumpDrive {
   }
   // alpha: swash; p: pressure rise [Pa]
   void add_load(double alpha, double p, Rates& rates) const noexcept {
-    if (has_engine()) rates.add_flow(shaft_, -rate_per_torque_ * alpha * D_ * p * factor(p));
+    if (has_engine()) rates.add_flow(shaft_, -rate_per_torque_ * alpha * D_ * p * factor(alpha, p));
   }
+  // T [Nm]
+  [[nodiscard]] double torque(double alpha, double p) const noexcept { return alpha * D_ * p * factor(alpha, p); }
   // a, b, alpha: outlet, inlet and state of the swash, full_slope: flow per speed at full swash [m3/rad]
   void stamp(StateIndex a, StateIndex b, StateIndex alpha, const CircuitView& view, double full_slope,
              JacobianStamp& jacobian) const noexcept {
     if (!has_engine()) return;
-    const double p = view[a] - view[b], load = rate_per_torque_ * D_ * factor(p);
+    const double p = view[a] - view[b], load = rate_per_torque_ * D_ * factor(view[alpha], p);
     jacobian.move(b, a, shaft_, full_slope * view[alpha] * speed_per_state_);
     jacobian.add(shaft_, alpha, -load * p);
     jacobian.add(shaft_, a, -load * view[alpha]);
@@ -63,7 +65,9 @@ class PumpDrive {
 
  private:
   // a pump that is driven by its oil loses on the other side
-  [[nodiscard]] double factor(double p) const noexcept { return p > 0 ? 1 / efficiency_ : efficiency_; }
+  [[nodiscard]] double factor(double alpha, double p) const noexcept {
+    return (alpha < 0 ? p < 0 : p > 0) ? 1 / efficiency_ : efficiency_;
+  }
 
   double D_, efficiency_;
   StateIndex shaft_ = -1;

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """What docs/machines/excavator.md states: digging forces by lever arms, and the end of the cycle.
 
-Usage: excavator_test.py PROJECT SLEWRING digging|cycle
+Usage: excavator_test.py PROJECT SLEWRING digging|cycle|chart|levers
 The lever arms are computed here from the pins of the scene, by plane geometry alone.
 """
 import csv
+import json
 import math
 import pathlib
 import subprocess
@@ -121,5 +122,50 @@ def cycle(folder):
     return good
 
 
+def loads(*options):
+    """Load of each limit [kg] at the start of the cycle, by name."""
+    chart = json.loads(output("loadchart", f"{PROJECT}/scenes/excavator_20t.yaml", "--over", "Boom_Foot=-18deg,-17deg",
+                              "--json", "--quiet", *options))
+    return chart["poses"][0]
+
+
+def chart(_):
+    """Changes of the loads: other masses than the load drop out of them, so that lever arms alone remain."""
+    boom, stick, bucket = map(math.radians, (-18, -100, -30))
+    tip, pin, teeth = pins(boom, stick, bucket)
+    along = boom + stick + bucket
+    load = plus(pin, (0.70 * math.cos(along) - 0.15 * math.sin(along), 0.70 * math.sin(along) + 0.15 * math.cos(along)))
+    foot = plus(FOOT, (0.82 * math.cos(math.radians(56)), -0.82 * math.sin(math.radians(56))))
+    boom_lever = 2 * arm(FOOT, foot, plus(FOOT, polar(2.35, boom + math.radians(27))))
+    low, high = (loads("--structure", f"Left_Cylinder={force}kN", "--structure", f"Stick_Cylinder={force}kN",
+                       "--tipping-line", f"{place} 0 -1, {place} 0 1") for force, place in ((400, 1.5), (500, 2)))
+    good = expect("the reach is that of the pins", abs(low["reach"] - load[0]) < 1e-6)
+    for name, lever, distance in (("Left_Cylinder structure", boom_lever, load[0] - FOOT[0]),
+                                  ("Stick_Cylinder structure", lever_of_stick_cylinder(stick), tip[0] - load[0])):
+        by_hand = 100e3 * lever / (9.81 * abs(distance))
+        good &= expect(f"{name}: {high[name] - low[name]:.2f} kg, by hand {by_hand:.2f} kg",
+                       abs((high[name] - low[name]) / by_hand - 1) < 1e-4)
+    # m (R - x) = M x - S: the slope is the mass of the machine without the load
+    mass = ((high["tipping"] * (load[0] - 2)) - (low["tipping"] * (load[0] - 1.5))) / 0.5
+    of_scene = 7500 + 9800 + 1700 + 700 + 847 + 60 + 80 + 190 + 135 + 115 + 75 + 2 * (125 + 85)
+    good &= expect(f"mass {mass:.3f} kg, by hand {of_scene} kg", abs(mass - of_scene) < 1e-3)
+    return good
+
+
+def levers(folder):
+    full = ", ".join(f"Input_{name}: [[0 s, 0], [1 s, 0], [1.5 s, {stick}]]" for name, stick in
+                     (("Lift", 1), ("Crowd", -1), ("Curl", -1), ("Slew", 1)))
+    good = True
+    for limit in 0, 560:
+        _, run = record("excavator_20t", f"{folder}/{limit}", "--duration", "4", "--set", f"Pump.maximum_torque={limit}Nm",
+                        "--set", f"script.inputs={{{full}, Input_Brake: [[0 s, 0], [0.5 s, 1]]}}")
+        stalls = max(run["Engine.is_stalled"]) > 0
+        good &= expect(f"with a limit of {limit} Nm the engine {'stalls' if stalls else 'keeps running'}", stalls == (limit == 0))
+        last = run["Pump.torque"][-100:]  # a second; the swash lags behind pressures that swing
+        torque = sum(last) / len(last)
+        good &= expect(f"the torque is {torque:.1f} Nm in the last second", limit == 0 or abs(torque - limit) < 0.03 * limit)
+    return good
+
+
 with tempfile.TemporaryDirectory() as work:
-    sys.exit(0 if {"digging": digging, "cycle": cycle}[WHAT](work) else 1)
+    sys.exit(0 if {"digging": digging, "cycle": cycle, "chart": chart, "levers": levers}[WHAT](work) else 1)

@@ -11,6 +11,7 @@
 #include "hydraulics/components/engine.h"
 #include "hydraulics/components/filter.h"
 #include "hydraulics/components/flow_divider.h"
+#include "hydraulics/components/flushing_valve.h"
 #include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
@@ -105,6 +106,11 @@ inline void add_sources(HydraulicsDef& circuit) {
   PumpDef& pump = add<PumpDef>(circuit, "Limited_Pump");
   pump.port_a = "Vol_C", pump.port_b = "Vol_T", pump.speed = 157, pump.displacement = 8e-6, pump.leak_flow = kLeak;
   pump.swash = 0.8, pump.swash_rate_limit = 3, pump.maximum_pressure = 190 * kBar, pump.maximum_power = 10e3;
+  PumpDef& over_centre = add<PumpDef>(circuit, "Over_Centre");
+  over_centre.port_a = "Vol_C", over_centre.port_b = "Vol_D", over_centre.port_c = "Vol_T", over_centre.speed = 157;
+  over_centre.displacement = 8e-6, over_centre.case_leak_flow = kLeak, over_centre.mechanical_coefficient = 0.9;
+  over_centre.minimum_swash = -1, over_centre.swash = -0.7, over_centre.swash_per_signal = 1e-3;
+  over_centre.maximum_pressure = 190 * kBar, over_centre.maximum_power = 10e3;
   FlowSourceDef& flow = add<FlowSourceDef>(circuit, "Flow_Source");
   flow.port_1 = "Vol_T", flow.port_2 = "Vol_P", flow.flow = 1e-4, flow.flow_per_signal = 1e-7;
   PressureSourceDef& pressure = add<PressureSourceDef>(circuit, "Pressure_Source");
@@ -123,7 +129,7 @@ inline void add_engine_and_filters(HydraulicsDef& circuit) {
   engine.friction_torque = 20, engine.viscous_friction = 0.05;
   LsPumpDef& ls_pump = add<LsPumpDef>(circuit, "Engine_Ls_Pump");
   ls_pump.port_a = "Vol_C", ls_pump.port_b = "Vol_T", ls_pump.displacement = 5e-6, ls_pump.drive = {"Engine", 0.8};
-  ls_pump.standby_pressure = 150 * kBar, ls_pump.mechanical_coefficient = 0.9;
+  ls_pump.standby_pressure = 150 * kBar, ls_pump.mechanical_coefficient = 0.9, ls_pump.maximum_torque = 50;
   FilterDef& filter = add<FilterDef>(circuit, "Filter");
   filter.port_1 = "Vol_A", filter.port_2 = "Vol_C", filter.nominal_flow = 1e-4, filter.clogging = 0.5;
   filter.nominal_pressure_drop = 5 * kBar, filter.bypass.nominal_flow = 5e-4;
@@ -221,6 +227,9 @@ inline HydraulicsDef divider_circuit() {
   GearFlowDividerDef& gears = add<GearFlowDividerDef>(circuit, "Gear_Divider");
   gears.port_1 = "Vol_P", gears.port_2 = "Vol_B", gears.port_3 = "Vol_T";
   gears.displacement_2 = 1e-6, gears.displacement_3 = 2e-6, gears.leak_flow = kLeak;
+  FlushingValveDef& flushing = add<FlushingValveDef>(circuit, "Flushing_Valve");
+  flushing.port_1 = "Vol_A", flushing.port_2 = "Vol_C", flushing.port_3 = "Vol_T", flushing.nominal_flow = 2e-4;
+  flushing.switching_pressure = 50 * kBar, flushing.opening_pressure_rise = 200 * kBar;
   ShuttleValveDef& shuttle = add<ShuttleValveDef>(circuit, "Shuttle_Valve");
   shuttle.port_1 = "Vol_A", shuttle.port_2 = "Vol_B", shuttle.port_3 = "Vol_C", shuttle.nominal_flow = 5e-4;
   shuttle.switching_pressure = 5 * kBar;

@@ -22,6 +22,19 @@ TEST(Display, ShowsQuantitiesInTheUnitsOfTheWorkshop) {
   EXPECT_EQ(quantity_text(-0.0, "N"), "0 kN");
 }
 
+// by their names: speeds of joints and bodies, of ports and of cylinders are no shafts
+TEST(Display, ShowsTheSpeedOfAShaftInRevolutionsPerMinute) {
+  constexpr double kSpeed = 1500 * 3.14159265358979323846 / 30;
+  EXPECT_EQ(quantity_text(kSpeed, "rad/s", "Engine.speed"), "1500 rpm");
+  EXPECT_EQ(quantity_text(kSpeed, "rad/s", "Engine.speed_setting"), "1500 rpm");
+  EXPECT_EQ(quantity_text(-kSpeed, "rad/s", "Left_Motor.speed"), "-1500 rpm");
+  EXPECT_EQ(quantity_text(kSpeed, "rad/s", "Ring.velocity"), "9000 deg/s");
+  EXPECT_EQ(quantity_text(kSpeed, "rad/s", "Slew_Axis.rate"), "9000 deg/s");
+  EXPECT_EQ(quantity_text(kSpeed, "rad/s", "Bag.angular_velocity.x"), "9000 deg/s");
+  EXPECT_EQ(quantity_text(kSpeed, "rad/s"), "9000 deg/s");
+  EXPECT_EQ(quantity_text(0.2, "m/s", "Cyl_Lift.speed"), "0.2 m/s");
+}
+
 TEST(Display, WritesAChosenValueAsAPersonWould) {
   EXPECT_EQ(chosen_text(30 * 3.14159265358979323846 / 180, "rad"), "30 deg");
   EXPECT_EQ(chosen_text(0.1 / 60000, "m3/s"), "0.1 l/min");

@@ -4,11 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "hydraulics/circuit_integrator.h"
+#include "hydraulics/components/ls_pump.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
+#include "tests/support/circuit_rig.h"
 
 namespace slew::hydraulics::test {
 namespace pump_test {
@@ -117,6 +120,91 @@ TEST(Pump, at_its_power_limit_settles_where_the_orifice_takes_its_flow) {
   for (int k = 0; k < 3000; ++k) integrator.step(1e-3, HeldSpeed(0));
   const double K = 5e-4 / std::sqrt(100 * kBar), p = std::pow(8e3 * 0.9 * 0.95 / K, 2.0 / 3);
   EXPECT_NEAR(integrator.state()[0] - 1 * kBar, p, 1e-4 * p);
+}
+
+// Over centre everything is mirrored: a pump at -alpha between exchanged pressures is one at alpha.
+TEST(Pump, over_centre_is_the_mirror_image_within_both_limits) {
+  for (const double command : {0.3, 0.9}) {
+    for (const double limit_bar : {0.0, 215.0}) {
+      for (const double power : {0.0, 15e3}) {
+        CircuitRig rig;
+        add_tank(rig.def, "High", 201 * kBar), add_tank(rig.def, "Low", 1 * kBar);
+        for (const double side : {1.0, -1.0}) {
+          PumpDef& pump = add<PumpDef>(rig.def, side > 0 ? "Forth" : "Back");
+          pump.port_a = side > 0 ? "High" : "Low", pump.port_b = side > 0 ? "Low" : "High";
+          pump.speed = 150, pump.displacement = 1e-5, pump.mechanical_coefficient = 0.9, pump.leak_flow = 1e-6;
+          pump.time_constant = 0.02, pump.minimum_swash = -1, pump.swash = side * command;
+          pump.maximum_pressure = limit_bar * kBar, pump.maximum_power = power;
+        }
+        rig.run(1);
+        const double swash = rig.variable("Forth.swash");
+        const double cut_off = limit_bar > 0 ? 3.5e-7 * 15e5 : 1, full = power > 0 ? 0.9 * power / (1.5e-3 * 200e5) : 1;
+        EXPECT_NEAR(swash, std::min({command, cut_off, full}), 5e-3);
+        EXPECT_NEAR(rig.variable("Back.swash"), -swash, 1e-9);
+        EXPECT_NEAR(rig.variable("Back.flow"), -rig.variable("Forth.flow"), 1e-12);
+        EXPECT_NEAR(rig.variable("Back.torque"), rig.variable("Forth.torque"), 1e-9);
+      }
+    }
+  }
+}
+
+// 200 bar at port b drive a pump that turns forwards: no limit acts, and its torque is that of a motor.
+TEST(Pump, oil_that_drives_it_gives_its_torque_less_the_losses) {
+  CircuitRig rig;
+  add_tank(rig.def, "Low", 1 * kBar), add_tank(rig.def, "High", 201 * kBar);
+  PumpDef& pump = add<PumpDef>(rig.def, "Pump");
+  pump.port_a = "Low", pump.port_b = "High", pump.speed = 150, pump.displacement = 1e-5;
+  pump.mechanical_coefficient = 0.9, pump.minimum_swash = -1, pump.swash = 0.8, pump.maximum_pressure = 100 * kBar;
+  pump.maximum_power = 1e3;
+  rig.run(1);
+  EXPECT_NEAR(rig.variable("Pump.swash"), 0.8, 1e-6);
+  EXPECT_NEAR(rig.variable("Pump.torque"), -0.8 * 1e-5 * 200e5 * 0.9, 1e-6);
+}
+
+TEST(Pump, leaks_into_its_case_from_both_ports) {
+  CircuitRig rig;
+  add_tank(rig.def, "High", 201 * kBar), add_tank(rig.def, "Low", 21 * kBar), add_tank(rig.def, "Case", 1 * kBar);
+  PumpDef& pump = add<PumpDef>(rig.def, "Pump");
+  pump.port_a = "High", pump.port_b = "Low", pump.port_c = "Case", pump.speed = 150, pump.displacement = 1e-5;
+  pump.case_leak_flow = 2e-6;
+  rig.run(0.01);
+  EXPECT_NEAR(rig.variable("Pump.case_flow"), 2e-6 * (200 + 20) / 100, 1e-12);
+}
+
+TEST(Pump, a_swash_below_its_least_one_is_refused) {
+  HydraulicsDef def;
+  add_tank(def, "A"), add_tank(def, "B");
+  PumpDef& pump = add<PumpDef>(def, "Pump");
+  pump.port_a = "A", pump.port_b = "B", pump.speed = 150, pump.displacement = 1e-5, pump.swash = -0.5;
+  Problems errors, warnings;
+  validate(def, errors, warnings);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].path, "Pump.swash");
+  pump.minimum_swash = -1;
+  errors.clear();
+  validate(def, errors, warnings);
+  EXPECT_TRUE(errors.empty());
+}
+
+// A controller that demands the full swash, against a line of constant pressure: alpha = eta_m T/(D p), at most 1.
+TEST(LsPump, its_torque_limiter_holds_the_torque_at_every_pressure) {
+  for (const double pressure : {20.0, 60.0, 120.0, 250.0}) {
+    CircuitRig rig;
+    add_tank(rig.def, "Line", (pressure + 1) * kBar), add_tank(rig.def, "Tank", 1 * kBar);
+    LsPumpDef& pump = add<LsPumpDef>(rig.def, "Pump");
+    pump.port_a = "Line", pump.port_b = "Tank", pump.speed = 150, pump.displacement = 1e-5;
+    pump.mechanical_coefficient = 0.9, pump.standby_pressure = 400 * kBar, pump.maximum_torque = 80;
+    rig.run(2);
+    const double full = 0.9 * 80 / (1e-5 * pressure * kBar);
+    EXPECT_NEAR(rig.variable("Pump.swash"), std::min(1.0, full), 2e-3) << pressure;
+    EXPECT_LT(rig.variable("Pump.torque"), 80.01);
+    rig.set("Pump.maximum_torque", 40);
+    rig.run(2);
+    EXPECT_NEAR(rig.variable("Pump.swash"), std::min(1.0, 0.5 * full), 2e-3) << pressure;
+    rig.set("Pump.maximum_torque", 0);
+    rig.run(2);
+    EXPECT_NEAR(rig.variable("Pump.swash"), 1, 2e-3) << pressure;
+  }
 }
 
 }  // namespace pump_test

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shuttle valve and unloading valve by hand.
+// Shuttle valve, flushing valve and unloading valve by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "hydraulics/components/accumulator.h"
 #include "hydraulics/components/check_valves.h"
+#include "hydraulics/components/flushing_valve.h"
 #include "hydraulics/components/restrictions.h"
 #include "hydraulics/components/shuttle_valve.h"
 #include "hydraulics/components/sources.h"
@@ -42,6 +43,23 @@ TEST(ShuttleValve, of_equal_inlets_stands_in_the_middle) {
   EXPECT_EQ(rig.variable("Shuttle.position"), 0.5);
   EXPECT_NEAR(rig.variable("Shuttle.flow_1"), 10 * kLitrePerMinute, 1e-5 * kLitrePerMinute);
   EXPECT_NEAR(rig.variable("Shuttle.flow_2"), 10 * kLitrePerMinute, 1e-5 * kLitrePerMinute);
+}
+
+// 20 l/min at 5 bar; edges open from 5 to 10 bar between the sides.
+TEST(FlushingValve, takes_oil_of_the_lower_side_alone) {
+  for (const auto& [one, two, flow_1, flow_2] : {std::tuple{25.0, 220.0, 20.0, 0.0},  // 5 bar to the outlet
+                                                 {220.0, 25.0, 0.0, 20.0},
+                                                 {25.0, 29.0, 0.0, 0.0},       // shut in the middle
+                                                 {25.0, 32.5, 10.0, 0.0},      // half open
+                                                 {40.0, 400.0, 40.0, 0.0}}) {  // 20 bar
+    CircuitRig rig;
+    rig.def.orifice_transition = 10, rig.def.start = StartState::table13;
+    add_tank(rig.def, "One", one * kBar), add_tank(rig.def, "Two", two * kBar), add_tank(rig.def, "Out", 20 * kBar);
+    FlushingValveDef& valve = add<FlushingValveDef>(rig.def, "Flushing");
+    valve.port_1 = "One", valve.port_2 = "Two", valve.port_3 = "Out", valve.nominal_flow = 20 * kLitrePerMinute;
+    EXPECT_NEAR(rig.variable("Flushing.flow_1"), flow_1 * kLitrePerMinute, 1e-4 * kLitrePerMinute) << one << two;
+    EXPECT_NEAR(rig.variable("Flushing.flow_2"), flow_2 * kLitrePerMinute, 1e-4 * kLitrePerMinute) << one << two;
+  }
 }
 
 // A pump of 20 l/min charges an accumulator over a check valve, a consumer empties it.

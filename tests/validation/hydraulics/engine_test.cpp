@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "hydraulics/components/ls_pump.h"
 #include "hydraulics/components/pump.h"
 #include "hydraulics/components/sources.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
@@ -158,6 +159,30 @@ TEST(ValidationEngine, without_a_pump_it_is_warned_about) {
   ASSERT_TRUE(errors.empty());
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(warnings[0].what, "no pump is driven by the engine");
+}
+
+// A load of 150 bar takes 450 Nm at full swash of an engine that has 400: without a limiter it stalls; with one of 320
+// Nm the torque is that, the swash 320/450, and the speed that of the droop.
+TEST(ValidationEngine, a_torque_limiter_keeps_it_from_stalling) {
+  constexpr double kLargePump = 30e-6, kLimit = 320;  // m3/rad, Nm
+  for (const double limit : {0.0, kLimit}) {
+    CircuitRig rig;
+    add_tank(rig.def, "Line", 151e5), add_tank(rig.def, "Tank", 1e5);
+    LsPumpDef& pump = add<LsPumpDef>(rig.def, "Pump");
+    pump.port_a = "Line", pump.port_b = "Tank", pump.displacement = kLargePump, pump.drive.engine = "Engine";
+    pump.standby_pressure = 300e5, pump.maximum_torque = limit;
+    EngineDef& engine = add<EngineDef>(rig.def, "Engine");
+    engine.torque_curve = "Full_Load", engine.inertia = kInertia, engine.speed = kSpeed, engine.stall_speed = kStall;
+    engine.droop = 0.08;
+    rig.def.curves.push_back({.name = "Full_Load", .points = {{0, kFull}, {300, kFull}}});
+    rig.run(20);
+    EXPECT_EQ(rig.variable("Engine.is_stalled"), limit > 0 ? 0 : 1);
+    if (limit <= 0) continue;
+    const double w = kSpeed * (1 + 0.08 * (1 - kLimit / kFull));
+    EXPECT_NEAR(rig.variable("Engine.speed"), w, 1e-3 * w);
+    EXPECT_NEAR(rig.variable("Pump.torque"), kLimit, 1e-3 * kLimit);
+    EXPECT_NEAR(rig.variable("Pump.swash"), kLimit / 450, 1e-3);
+  }
 }
 
 }  // namespace engine_test

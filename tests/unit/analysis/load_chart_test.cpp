@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Load charts: a crane of two bars by its lever arms, the excavator by those of its four-bar, tipping, refusals.
+#include "analysis/load_chart/load_chart.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "analysis/load_chart/tipping.h"
+#include "build_paths.h"
+#include "core/failure.h"
+#include "multibody/model/model.h"
+#include "multibody/model/observe.h"
+#include "scene/ports.h"
+
+namespace slew::analysis {
+namespace load_chart_test {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kGravity = 9.81;  // m/s2
+const std::string kTwoBars = SLEWRING_SOURCE_DIR "/tests/unit/analysis/two_bar_crane.yaml";
+
+LoadChart chart_of(const LoadChartOptions& options) {
+  return find_load_chart(options, [](std::string_view, double) { return true; });
+}
+
+// Loads [kg] of two_bar_crane.yaml by the balance of moments; a: boom above level, b: jib from the boom.
+struct ByHand {
+  double reach, height, lift, jib, structure, tipping;
+};
+
+double arm(double x1, double y1, double x2, double y2) {
+  // of the line from 1 to 2 about the origin
+  return (x1 * y2 - y1 * x2) / std::hypot(x2 - x1, y2 - y1);
+}
+
+double push(double bore, double rod) {
+  const double piston = 0.25 * std::numbers::pi * bore * bore;
+  return 201e5 * piston - 1e5 * (piston - 0.25 * std::numbers::pi * rod * rod);
+}
+
+ByHand two_bars(double a, double b, double structure, double tipping_x) {
+  const double jib_x = std::cos(a + b), boom_x = std::cos(a);
+  const double lift_arm = arm(0.3, -0.8, 0.9 * std::cos(a), 0.9 * std::sin(a));
+  // about the jib's pin, in axes of the boom
+  const double jib_arm = arm(-0.8, -0.3, 0.5 * std::cos(b), 0.5 * std::sin(b));
+  const double reach = 2 * boom_x + 1.5 * jib_x;
+  const double own = 200 * boom_x + 80 * (2 * boom_x + 0.7 * jib_x);  // kg m about the foot
+  const auto by_lift = [&](double F) { return (F * lift_arm / kGravity - own) / reach; };
+  const double stands = 1200 * (tipping_x + 0.5) - (own - 280 * tipping_x);
+  return {.reach = reach,
+          .height = 2 * std::sin(a) + 1.5 * std::sin(a + b),
+          .lift = by_lift(push(0.080, 0.045)),
+          .jib = (push(0.040, 0.025) * jib_arm / kGravity - 80 * 0.7 * jib_x) / (1.5 * jib_x),
+          .structure = by_lift(structure),
+          .tipping = stands / (reach - tipping_x)};
+}
+
+TEST(LoadChart, OfTwoBarsIsTheBalanceOfMoments) {
+  const LoadChart chart = chart_of({.scene = kTwoBars,
+                                    .over = {"Boom_Foot=5deg..55deg:6", "Jib_Pin=-60deg..-10deg:3"},
+                                    .lines = {"0.6 0 -1, 0.6 0 1"},
+                                    .structure = {"Lift=60kN"}});
+  ASSERT_EQ(chart.poses.size(), 18u);
+  ASSERT_EQ(chart.limits.size(), 4u);
+  EXPECT_EQ(chart.payload, "Load");
+  std::vector<int> limiting(4, 0);
+  for (std::size_t i = 0; i < chart.poses.size(); ++i) {
+    const ChartPose& pose = chart.poses[i];
+    const double a = (5 + 10 * static_cast<double>(i / 3)) * kDegree;
+    const double b = (-60 + 25 * static_cast<double>(i % 3)) * kDegree;
+    ASSERT_TRUE(pose.has_load()) << pose.refusal;
+    const ByHand hand = two_bars(a, b, 60e3, 0.6);
+    EXPECT_NEAR(pose.reach, hand.reach, 1e-9);
+    EXPECT_NEAR(pose.height, hand.height, 1e-9);
+    const double wanted[] = {hand.lift, hand.jib, hand.structure, hand.tipping};
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(pose.loads[k], wanted[k], 1e-5 * wanted[k]) << k << " " << i;
+    EXPECT_EQ(pose.load, pose.loads[pose.limiting]);
+    for (const double load : pose.loads) EXPECT_LE(pose.load, load);
+    ++limiting[pose.limiting];
+  }
+  EXPECT_GT(limiting[1], 0) << "the jib's cylinder limits near to the machine";
+  EXPECT_GT(limiting[3], 0) << "tipping far from it";
+}
+
+TEST(LoadChart, APoseBeyondAStrokeHasNoLoad) {
+  const LoadChart chart = chart_of({.scene = kTwoBars, .over = {"Boom_Foot=-40deg,30deg"}});
+  ASSERT_EQ(chart.poses.size(), 2u);
+  EXPECT_NE(chart.poses[0].refusal.find("Lift"), std::string::npos) << chart.poses[0].refusal;
+  EXPECT_TRUE(chart.poses[1].has_load());
+  EXPECT_NEAR(chart.poses[1].values[0], 30 * kDegree, 1e-9) << "a list is in SI";
+  EXPECT_EQ(chart.coordinates[0].unit, "rad");
+  EXPECT_EQ(chart.limits.size(), 2u) << "no tipping without lines or tyres, no structure without a force";
+}
+
+TEST(LoadChart, BadInputIsRefusedBeforeTheWork) {
+  const LoadChartOptions good{.scene = kTwoBars, .over = {"Boom_Foot=0deg..30deg:4"}};
+  const auto refuses = [](const LoadChartOptions& options, const std::string& text) {
+    try {
+      static_cast<void>(chart_of(options));
+      ADD_FAILURE() << text;
+    } catch (const Failure& failure) {
+      EXPECT_NE(std::string(failure.what()).find(text), std::string::npos) << failure.what();
+    }
+  };
+  LoadChartOptions bad = good;
+  bad.over = {"Bom_Foot=0deg,1deg"};
+  refuses(bad, "did you mean 'Boom_Foot'?");
+  bad.over = {};
+  refuses(bad, "one or two joints");
+  bad.over = {"Boom_Foot=up,down"};
+  refuses(bad, "'up' is no position");
+  bad.over = {"Boom_Foot=-60deg,-50deg"};
+  refuses(bad, "no position of --over has a load");
+  bad = good, bad.scene = SLEWRING_SOURCE_DIR "/scenes/truck_crane_segmented.yaml";
+  bad.over = {"Pillar_LiftBoom=0deg,10deg"};
+  refuses(bad, "flexible or segmented bodies");
+  bad = good, bad.lines = {"0 0 0, 0 0 0"};
+  refuses(bad, "two points of Ground");
+  bad = good, bad.structure = {"Lft=1kN"};
+  refuses(bad, "no cylinder 'Lft'");
+  bad = good, bad.structure = {"Lift=-1kN"};
+  refuses(bad, "not above 0");
+  bad = good, bad.from = "Absent";
+  refuses(bad, "no body 'Absent'");
+  bad = good, bad.overrides = {"mechanics.gravity=[0, 0, 0]"};
+  refuses(bad, "no gravity");
+}
+
+// four wheels 1 m before and behind the middle of the wagon, 0.8 m to either side
+TEST(LoadChart, TyresGiveTheTippingLines) {
+  const scene::Scene scene = scene::load_file(SLEWRING_SOURCE_DIR "/scenes/forces/tyres.yaml");
+  const multibody::Model model = multibody::build_model(scene.mechanics, scene::row_names(scene));
+  const multibody::State state = multibody::start_state(model);
+  multibody::Workspace ws(model);
+  multibody::observe(model, state, ws);
+  const std::vector<TippingLine> lines = lines_of_tyres(model, ws);
+  ASSERT_EQ(lines.size(), 4u);
+  double around = 0;
+  for (const TippingLine& line : lines) {
+    for (const math::Vec3& corner : {line.P, line.Q}) {
+      EXPECT_NEAR(std::fabs(corner.x()), 1, 1e-9);
+      EXPECT_NEAR(std::fabs(corner.z()), 0.8, 1e-9);
+    }
+    around += math::norm(line.Q - line.P);
+    EXPECT_TRUE(line.has_side);
+    EXPECT_NEAR(math::norm(math::Vec3(line.inside.x(), 0, line.inside.z())), 0, 1e-9);
+  }
+  EXPECT_NEAR(around, 2 * (2 + 1.6), 1e-9);
+}
+
+TEST(LoadChart, TheTippingLoadIsTheBalanceOfMoments) {
+  const TippingLine front{{1, 0, -0.8}, {1, 0, 0.8}, {0, 0, 0}, true};
+  const std::vector<Weight> weights = {{{0, 1, 0}, 480}};
+  const math::Vec3 gravity(0, -kGravity, 0);
+  EXPECT_NEAR(tipping_load(front, weights, {2.5, 1, 0}, gravity), 480 * 1.0 / 1.5, 1e-9);
+  EXPECT_TRUE(std::isinf(tipping_load(front, weights, {0.5, 1, 0}, gravity)));
+  EXPECT_EQ(tipping_load(front, std::vector<Weight>{{{1.2, 1, 0}, 480}}, {2.5, 1, 0}, gravity), 0)
+      << "tips without payload";
+}
+
+TEST(LoadChart, ReportsHaveEveryPose) {
+  const LoadChart chart = chart_of({.scene = kTwoBars, .over = {"Boom_Foot=-40deg..50deg:10"}});
+  const std::string csv = report_csv(chart), svg = report_svg(chart), text = report_text(chart);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 11);
+  EXPECT_NE(csv.find("Boom_Foot [deg],reach [m],height [m],load [kg],limited by,Lift [kg],Jib_Cylinder [kg]"),
+            std::string::npos)
+      << csv;
+  EXPECT_NE(text.find("outside of its limits"), std::string::npos);
+  EXPECT_NE(svg.find("reach [m]"), std::string::npos);
+}
+
+}  // namespace load_chart_test
+}  // namespace slew::analysis
