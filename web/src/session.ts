@@ -35,6 +35,7 @@ interface Description {
   is_recording: boolean;
   may_steer: boolean;
   scene_file?: string; // that this page may edit
+  recordings?: string[]; // of which the window has curves: the one that is played, and those beside it
   inputs: InputInfo[];
 }
 
