@@ -41,6 +41,10 @@ export class Machine {
     return [...this.#entities.keys()].filter((id) => id !== "Ground" && !id.includes("/"));
   }
 
+  hasFrame(name: string): boolean {
+    return this.#frames.has(name);
+  }
+
   frame(name: string): THREE.Group {
     let frame = this.#frames.get(name);
     if (!frame) {
