@@ -27,6 +27,7 @@ export interface LogEntry {
   level: number; // of foxglove.Log: 1 debug, 2 info, 3 warning, 4 error, 5 fatal
   source: string;
   text: string;
+  isEarlier?: boolean; // of the time before a reset
 }
 
 interface Description {
@@ -218,7 +219,7 @@ export class Session {
     if (isRestart) {
       if (isNew) this.#forgetMachine();
       this.samples.clear();
-      this.log.length = isNew ? 0 : this.log.length;
+      for (const entry of this.log) entry.isEarlier = true;
       this.restarted.emit();
     }
     if (isNew) {

@@ -179,7 +179,7 @@ export class OperatePanel {
     this.#recordTool.disabled = isPlaying;
     this.#playTool.disabled = isRecording;
     this.#tables.classList.toggle("is-on", isRecording || isPlaying);
-    const state = isRecording ? `recording ${seconds.toFixed(1)} s` : `playing ${seconds.toFixed(1)} of ${end.toFixed(1)} s`;
+    const state = `${seconds.toFixed(1)} ${isPlaying ? `of ${end.toFixed(1)} ` : ""}s`;
     setText(this.#recordNote, isRecording || isPlaying ? state : "");
   }
 

@@ -80,7 +80,7 @@ export class Chart {
     if (!this.#plot) return [];
     const at = this.#plot.valToPos(time, "x");
     return this.#context.session.log.filter(
-      (entry) => Math.abs(this.#plot!.valToPos(entry.time, "x") - at) <= kMarkPixels,
+      (entry) => !entry.isEarlier && Math.abs(this.#plot!.valToPos(entry.time, "x") - at) <= kMarkPixels,
     );
   }
 
@@ -244,7 +244,7 @@ export class Chart {
     ctx.save();
     for (const entry of session.log) {
       const x = at(entry.time);
-      if (!isVisible(x)) continue;
+      if (entry.isEarlier || !isVisible(x)) continue;
       ctx.strokeStyle = ctx.fillStyle = entry.level >= 3 ? bad : usual;
       ctx.lineWidth = scale;
       ctx.setLineDash([2 * scale, 3 * scale]);
