@@ -43,14 +43,14 @@ def take_domain():
     sys.exit("FAILED: all test domains are in use")
 
 
-def install_packages(source=HERE, files=("package.json", "package-lock.json", "client.mjs", "page.mjs")):
+def install_packages(source=HERE, files=None):
     if shutil.which("node") is None or shutil.which("npm") is None:
         skip("node and npm are needed for a client of the Foxglove protocol")
     with open(f"{source}/package-lock.json", "rb") as lock:
         wanted = hashlib.sha256(lock.read()).hexdigest()
     os.makedirs(PACKAGES, exist_ok=True)
     stamp = f"{PACKAGES}/installed.sha256"
-    for name in files:
+    for name in files or [one for one in os.listdir(HERE) if one.endswith((".mjs", ".json"))]:
         shutil.copy(f"{source}/{name}", PACKAGES)
     if os.path.exists(stamp) and text_of(stamp) == wanted:
         return
@@ -92,10 +92,10 @@ class Program:
             sys.exit("FAILED: a program does not end at SIGINT")
 
 
-def start_scene(folder, domain, *more, scene=f"{SOURCES}/scenes/truck_crane.yaml"):
+def start_scene(folder, domain, *more, scene=f"{SOURCES}/scenes/truck_crane.yaml", session=SESSION):
     """The crane with its window, from one command. A machine that is busy keeps up with 4 ms."""
     return Program(folder, "window", "window", scene, "--port", "0", "--json",
-                   "--session", SESSION, "--domain", domain, "--step", "4 ms", "--no-record", "--quiet",
+                   "--session", session, "--domain", domain, "--step", "4 ms", "--no-record", "--quiet",
                    "--set", "session.give_up_after=60 s", "--set", "session.controller_timeout=60 s", *more)
 
 
@@ -105,11 +105,11 @@ def run_client(*arguments):
     require(done.returncode == 0, f"the client ended with {done.returncode}:\n{done.stderr}")
 
 
-def run_page(case, address, *arguments):
+def run_page(case, address, *arguments, script="page.mjs"):
     chromium = shutil.which("chromium") or shutil.which("google-chrome")
     if chromium is None:
         skip("chromium is needed for the page of the window")
-    done = subprocess.run(["node", f"{PACKAGES}/page.mjs", case, address, SLEWRING, chromium, *arguments],
+    done = subprocess.run(["node", f"{PACKAGES}/{script}", case, address, SLEWRING, chromium, *arguments],
                           capture_output=True, text=True, timeout=280)
     print(done.stdout)
     require(done.returncode == 0, f"the page: {done.stderr}")
@@ -137,6 +137,10 @@ def page_edits(folder):
     domain = take_domain()
     shutil.copytree(f"{SOURCES}/scenes/meshes", f"{folder}/meshes")
     scene = shutil.copy(f"{SOURCES}/scenes/truck_crane.yaml", folder)
+    with open(scene) as file:
+        text = file.read()
+    with open(scene, "w") as file:
+        file.write(re.sub("^  Bag:.*$", "  Bag:\n    points: {top: [0, 0.1 m, 0]}", text, count=1, flags=re.MULTILINE))
     window = start_scene(folder, domain, scene=scene)
     try:
         run_page("edit", window.address(), scene, "--session", SESSION, "--domain", domain)
@@ -144,8 +148,47 @@ def page_edits(folder):
         window.end()
 
 
+def tutorial(folder):
+    """docs/tutorial/window.md. SLEWRING_PICTURES: folder that receives its pictures, packed."""
+    need_page()
+    domain = take_domain()
+    for name in os.listdir(f"{SOURCES}/scenes"):
+        if name.startswith("truck_crane_beam_hard"):
+            shutil.copy(f"{SOURCES}/scenes/{name}", folder)
+    shutil.copytree(f"{SOURCES}/scenes/meshes", f"{folder}/meshes")
+    scene = shutil.copy(f"{SOURCES}/scenes/truck_crane.yaml", folder)
+    pictures = f"{folder}/pictures"
+    os.mkdir(pictures)
+    window = start_scene(folder, domain, scene=scene, session="truck_crane")
+    try:
+        run_page("-", window.address(), scene, pictures, "--session", "truck_crane", "--domain", domain,
+                 script="tutorial.mjs")
+    finally:
+        window.end()
+    made = [one for one in os.listdir(pictures) if one.endswith(".png")]
+    require(len(made) == 7, f"pictures: {made}")
+    if kept := os.environ.get("SLEWRING_PICTURES"):
+        for name in made:
+            subprocess.run(["pngquant", "--force", "--speed", "1", "--output", f"{kept}/{name}", "64", f"{pictures}/{name}"],
+                           check=True)
+
+
 def page_inputs(folder):
     page_live(folder, "inputs")
+
+
+def page_phone(folder):
+    page_live(folder, "phone")
+
+
+def page_beside(folder):
+    need_page()
+    paths = [record(f"{folder}/{mass}", "--set", f"Bag.mass={mass} kg") for mass in (500, 900)]
+    window = Program(folder, "window", "window", paths[0], "--beside", paths[1], "--port", "0", "--json")
+    try:
+        run_page("beside", window.address(), *paths)
+    finally:
+        window.end()
 
 
 def page_recording(folder):
@@ -180,10 +223,11 @@ def live(folder):
         window.process.kill()
 
 
-def record(folder):
+def record(folder, *more):
     """Two seconds of the crane; the path of the run."""
+    os.makedirs(folder, exist_ok=True)
     subprocess.run([SLEWRING, "run", f"{SOURCES}/scenes/truck_crane.yaml", "--in-process", "--pace", "free", "--duration",
-                    "2 s", "--out", f"{folder}/runs", "--quiet"], check=True, capture_output=True, cwd=folder)
+                    "2 s", "--out", f"{folder}/runs", "--quiet", *more], check=True, capture_output=True, cwd=folder)
     return f"{folder}/runs/" + os.listdir(f"{folder}/runs")[0]
 
 
@@ -480,6 +524,7 @@ def door(folder):
         window.process.kill()
     for arguments, text in ((("--listen", "0.0.0.0"), "name a file with --token-file"),
                             (("--listen", "here"), "is no address"),
+                            (("--beside", "runs"), "is for the window of a recording"),
                             (("--token-file", "/dev/null"), "no token")):
         done = subprocess.run([SLEWRING, "window", "--session", "none", "--domain", domain, *arguments],
                               capture_output=True, text=True, timeout=DEADLINE)
@@ -490,8 +535,10 @@ CASES = {"AForeignClientWatchesAndChangesALiveSession": live, "ARecordingIsSough
          "TheDoorRefusesHostileRequests": door, "MeshesFilesAndTheWorkspaceComeByHttp": files,
          "ASessionTakesOverFromARecordingWithTheSameBits": take_over,
          "ThePageShowsChangesAndDrivesASession": page_live, "ThePageFollowsTheSliderOfARecording": page_recording,
-         "ASceneIsEditedSavedAndRestartedInThePageNightly": page_edits,
-         "ThePageOperatesAndPlots": page_inputs, "TheTypesOfThePageHold": types,
+         "ASceneIsEditedSavedAndRestartedInThePage": page_edits,
+         "ThePageOperatesAndPlots": page_inputs, "ThePageIsOperatedByTouch": page_phone,
+         "TheTutorialIsDoneInThePage": tutorial,
+         "TwoRecordingsAreShownBesideEachOther": page_beside, "TheTypesOfThePageHold": types,
          "ADesktopOpensThePageInItsBrowser": opens_browser}
 with tempfile.TemporaryDirectory(prefix="slewring_window_") as scratch:
     os.environ["XDG_STATE_HOME"] = f"{scratch}/state"  # workspaces
