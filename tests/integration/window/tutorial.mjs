@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does what docs/tutorial/window.md describes, checks it, and makes its pictures:
+// Does what docs/tutorial/in-the-window.md describes, checks it, and makes its pictures:
 //
 //   tutorial.mjs - ADDRESS SLEWRING CHROMIUM SCENE FOLDER ARGUMENT...
 //

@@ -149,7 +149,7 @@ def page_edits(folder):
 
 
 def tutorial(folder):
-    """docs/tutorial/window.md. SLEWRING_PICTURES: folder that receives its pictures, packed."""
+    """docs/tutorial/in-the-window.md. SLEWRING_PICTURES: folder that receives its pictures, packed."""
     need_page()
     domain = take_domain()
     for name in os.listdir(f"{SOURCES}/scenes"):
