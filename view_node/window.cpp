@@ -23,6 +23,7 @@
 #include "recording/run_directory.h"
 #include "session/recorded.h"
 #include "session/survey.h"
+#include "view_node/bent_bodies.h"
 #include "view_node/machine_meshes.h"
 #include "view_node/page_files.h"
 #include "view_node/recorded_curves.h"
@@ -241,12 +242,15 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
   MachineMeshes meshes = read_machine_meshes(scene, options.assets.empty() ? "." : options.assets);
   def.workspace = workspace_path(scene.name);
   def.circuit = draw_circuit(scene);
+  const Json bending =
+      bent_bodies_json(scene, view.session().scene_text, options.assets.empty() ? "." : options.assets);
   gateway::GatewayDef gateway_def = live_def(options, *observer, saved);
   gateway_def.assets = std::move(meshes.assets);
   gateway::Gateway gateway(std::move(gateway_def), std::move(scene));
   receiver.set_gateway(&gateway);
   def.description = [&] {
     Json description = gateway.description(view);
+    description["bending"] = bending;
     // the page offers to edit it
     if (!options.scene.empty() && !options.is_looking_only)
       description["scene_file"] = std::filesystem::path(options.scene).filename().string();
@@ -321,9 +325,11 @@ ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report&
   gateway_def.playback = &source;
   gateway_def.range = source.range();
   gateway_def.wire = source.wire_topics();
-  scene::Scene scene = scene::load_text(session::recorded_scene_text(*reader), identity.scene);
-  MachineMeshes meshes =
-      read_machine_meshes(scene, options.assets.empty() ? session::recorded_assets(options.recording) : options.assets);
+  const std::string text = session::recorded_scene_text(*reader);
+  const std::string assets = options.assets.empty() ? session::recorded_assets(options.recording) : options.assets;
+  scene::Scene scene = scene::load_text(text, identity.scene);
+  MachineMeshes meshes = read_machine_meshes(scene, assets);
+  const Json bending = bent_bodies_json(scene, text, assets);
   def.workspace = workspace_path(scene.name);
   def.circuit = draw_circuit(scene);
   gateway_def.assets = std::move(meshes.assets);
@@ -333,7 +339,11 @@ ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report&
   gateway_def.curves = &curves;
   gateway::Gateway gateway(std::move(gateway_def), std::move(scene));
   source.publish_names(gateway);
-  def.description = [&] { return gateway.description(source.view()); };
+  def.description = [&] {
+    Json description = gateway.description(source.view());
+    description["bending"] = bending;
+    return description;
+  };
   const std::string token = def.door.token;
   Server server(std::move(def), gateway);
   show_address(options, server, "recording '" + reader->path().string() + "'", token, report);

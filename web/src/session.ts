@@ -30,12 +30,19 @@ export interface LogEntry {
   isEarlier?: boolean; // of the time before a reset
 }
 
+// A body that bends, with the places of its nodes [m] in its frame; their deflections are variables.
+export interface BentBody {
+  body: string;
+  nodes: { id: number; position: [number, number, number] }[];
+}
+
 interface Description {
   session: string;
   scene: string;
   is_recording: boolean;
   may_steer: boolean;
   scene_file?: string; // that this page may edit
+  bending?: BentBody[];
   recordings?: string[]; // of which the window has curves: the one that is played, and those beside it
   inputs: InputInfo[];
 }

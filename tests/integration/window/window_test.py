@@ -201,11 +201,27 @@ def page_recording(folder):
         window.end()
 
 
-def types(folder):
-    """tsc over the sources of the page, with packages of their own."""
+def copy_page():
+    """The sources of the page, with packages of their own."""
     install_packages(f"{SOURCES}/web", ("package.json", "package-lock.json", "tsconfig.json"))
     shutil.rmtree(f"{PACKAGES}/src", ignore_errors=True)
     shutil.copytree(f"{SOURCES}/web/src", f"{PACKAGES}/src")
+
+
+def bending(folder):
+    """The parts of the page that compute, without a browser."""
+    copy_page()
+    subprocess.run(["node", "node_modules/esbuild/bin/esbuild", "src/view/bending.ts", "--bundle", "--format=esm",
+                    "--outfile=bending_parts.mjs", "--log-level=error"], cwd=PACKAGES, check=True)
+    shutil.copy(f"{HERE}/bending.mjs", PACKAGES)
+    done = subprocess.run(["node", "bending.mjs"], cwd=PACKAGES, capture_output=True, text=True, timeout=DEADLINE)
+    print(done.stdout)
+    require(done.returncode == 0, f"bending: {done.stderr}")
+
+
+def types(folder):
+    """tsc over the page."""
+    copy_page()
     done = subprocess.run(["npm", "run", "check"], cwd=PACKAGES, capture_output=True, text=True)
     require(done.returncode == 0, f"tsc:\n{done.stdout}{done.stderr}")
 
@@ -539,6 +555,7 @@ CASES = {"AForeignClientWatchesAndChangesALiveSession": live, "ARecordingIsSough
          "ThePageOperatesAndPlots": page_inputs, "ThePageIsOperatedByTouch": page_phone,
          "TheTutorialIsDoneInThePage": tutorial,
          "TwoRecordingsAreShownBesideEachOther": page_beside, "TheTypesOfThePageHold": types,
+         "AMeshBendsWithTheNodesOfItsBody": bending,
          "ADesktopOpensThePageInItsBrowser": opens_browser}
 with tempfile.TemporaryDirectory(prefix="slewring_window_") as scratch:
     os.environ["XDG_STATE_HOME"] = f"{scratch}/state"  # workspaces

@@ -5,6 +5,7 @@ import type { Context } from "../context";
 import { atMostEvery, download, h, setText } from "../dom";
 import type { NamedPoint } from "../edit/scene_file";
 import { panel, toolButton } from "../panels/panel";
+import { Bending } from "./bending";
 import { Camera, type CameraState, type Preset, presets } from "./camera";
 import { Machine } from "./machine";
 import { PointMarks, textOf } from "./points";
@@ -27,6 +28,7 @@ export class ViewPanel {
   #stage: Stage;
   #camera: Camera;
   #machine: Machine;
+  #bending: Bending;
   #points: PointMarks;
   #showsPoints = true;
   #pointsTool = toolButton("target", "Named points of bodies: a click puts one into the field that was used last", () => this.#togglePoints());
@@ -69,6 +71,7 @@ export class ViewPanel {
     this.#machine = new Machine(
       context.session,
       () => {
+        this.#bending.update();
         this.#camera.keepUp();
         if (!this.#isFramed) this.#frame();
         this.#stage.draw();
@@ -76,6 +79,7 @@ export class ViewPanel {
       () => this.#takeScene(),
     );
     this.#stage.scene.add(this.#machine.root);
+    this.#bending = new Bending(context.session, this.#machine);
     this.#points = new PointMarks(this.#machine);
     context.scene.changed.on(() => this.#showPoints());
     this.#showPoints();
@@ -122,6 +126,7 @@ export class ViewPanel {
   }
 
   #takeScene(): void {
+    this.#bending.rebuild();
     this.#offerBodies();
     this.#highlight();
     if (this.#isFramed) this.#setExtent();
