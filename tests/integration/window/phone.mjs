@@ -48,7 +48,7 @@ export async function phone({ browser, page: desktop }) {
   await touch("touchStart", [on(sticks[0], 0, 0), on(sticks[1], 0, 0)]);
   await touch("touchMove", [on(sticks[0], 0.5, 0), on(sticks[1], 0, -0.5)]);
   await waitFor("both inputs", async () => Math.abs((await raw(page, "Input_Slew")) - 0.5) < 0.05 && Math.abs((await raw(page, "Input_Jib")) + 0.5) < 0.05);
-  await touch("touchMove", [on(sticks[0], 0.5, 0)]); // without the other finger
+  await touch("touchMove", [on(sticks[0], 0.5, 0), on(sticks[1], 0, 0)]);
   await waitFor("neutral of one stick", async () => (await raw(page, "Input_Jib")) === 0);
   await waitFor("the value of the other stick", async () => Math.abs((await raw(page, "Input_Slew")) - 0.5) < 0.05);
   await touch("touchEnd", []);
