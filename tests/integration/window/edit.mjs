@@ -22,6 +22,19 @@ async function picksAPoint(page) {
   console.log("a named point was picked into a field");
 }
 
+// An included file names the hook.
+async function refusesARename(page) {
+  await select(page, "Truck_Hook");
+  await page.click('[aria-label="Rename the element (F2)"]');
+  await page.fill('.dialog [aria-label="Name"]', "Hook");
+  await page.locator('.dialog button:text-is("Rename")').click();
+  await waitFor("the line of the included file", async () =>
+    /included files name 'Truck_Hook'.*: Hook\.variables \(.*side\.yaml:2\)/.test(await page.locator(".dialog .note").textContent()),
+  );
+  await page.locator('.dialog button:text-is("Cancel")').click();
+  await select(page, "Bag");
+}
+
 // A field with an error and without, an element copied and taken back, the file, and the session that begins again.
 export async function edit({ page }) {
   const [file, ...ofSession] = rest;
@@ -41,6 +54,7 @@ export async function edit({ page }) {
   await waitFor("the refusal", async () => (await field.locator(".note").textContent()).includes("needs quotes"));
   await field.locator("input").fill("650 kg");
   await waitFor("no problem", async () => (await count.textContent()) === "No problems");
+  await refusesARename(page);
   await page.click('[aria-label="Copy the element"]');
   await page.locator('.dialog button:text-is("Copy")').click();
   await page.waitForSelector('.row.is-new[data-element="Bag_2"]');

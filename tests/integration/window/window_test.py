@@ -43,7 +43,10 @@ def page_edits(folder):
     with open(scene) as file:
         text = file.read()
     with open(scene, "w") as file:
-        file.write(re.sub("^  Bag:.*$", "  Bag:\n    points: {top: [0, 0.1 m, 0]}", text, count=1, flags=re.MULTILINE))
+        file.write("include: side.yaml\n" +
+                   re.sub("^  Bag:.*$", "  Bag:\n    points: {top: [0, 0.1 m, 0]}", text, count=1, flags=re.MULTILINE))
+    with open(f"{folder}/side.yaml", "w") as file:
+        file.write("plots:\n  Hook: {title: Hook, variables: [Truck_Hook.position.y]}\n")
     window = start_scene(folder, domain, scene=scene)
     try:
         run_page("edit", window.address(), scene, "--session", SESSION, "--domain", domain)
