@@ -26,6 +26,8 @@ interface CurvesAnswer extends ServiceAnswer {
 }
 
 const kRequestAfterMs = 40; // names and ranges of this time make one request
+const kRetryAfterMs = 2000; // when the window did not answer
+const kMostNames = 32; // of a request
 const kMostValues = 4000; // of a curve in a picture
 const kMostExact = 200_000; // of a curve in a file
 const kCoarsest = 4; // a thinned part serves ranges of its length down to this fraction
@@ -40,6 +42,7 @@ export class CurveStore {
   #range: [number, number] = [0, 0]; // of what is wanted
   #timer?: ReturnType<typeof setTimeout>;
   #isReading = false;
+  #notBefore = 0; // ms, of the next request
   showsBeside = true; // curves of the other recordings too
 
   constructor(session: Session) {
@@ -121,7 +124,7 @@ export class CurveStore {
     if (!names) this.#wanted.set(recording, (names = new Set()));
     names.add(name);
     this.#range = [from, to];
-    if (!this.#isReading) this.#timer ??= setTimeout(() => void this.#readWanted(), kRequestAfterMs);
+    if (!this.#isReading && performance.now() >= this.#notBefore) this.#timer ??= setTimeout(() => void this.#readWanted(), kRequestAfterMs);
   }
 
   async #readWanted(): Promise<void> {
@@ -132,27 +135,39 @@ export class CurveStore {
     this.#wanted.clear();
     if (!whole) return;
     this.#isReading = true;
-    for (const [recording, names] of wanted) {
-      const isFirst = [...names].some((name) => !this.#parts.has(keyOf({ name, recording })));
-      const margin = isFirst ? Infinity : (to - from) / 2; // the whole curve first; then moving the range needs nothing new
-      const range = [Math.max(whole.from, from - margin), Math.min(whole.to, to + margin)] as const;
-      const read = await this.#read(recording, [...names], ...range, kMostValues);
-      for (const name of names) {
-        const part = read.get(name) ?? { ...nothing, from: range[0], to: range[1] }; // the recording has no such variable
-        const key = keyOf({ name, recording });
-        this.#parts.set(key, isFirst ? [part] : [this.#parts.get(key)![0]!, part]);
-      }
-      this.changed.emit();
+    try {
+      for (const [recording, names] of wanted) await this.#readParts(recording, [...names], from, to, whole);
+    } catch {
+      this.#notBefore = performance.now() + kRetryAfterMs; // there was a notice; what is drawn next asks again
     }
     this.#isReading = false;
     if (this.#wanted.size > 0) this.#timer ??= setTimeout(() => void this.#readWanted(), kRequestAfterMs);
   }
 
+  // The whole curves first, then a range with margins, so that moving it needs nothing new.
+  async #readParts(recording: number, names: string[], from: number, to: number, whole: { from: number; to: number }): Promise<void> {
+    const isFirst = names.some((name) => !this.#parts.has(keyOf({ name, recording })));
+    const margin = isFirst ? Infinity : (to - from) / 2;
+    const range = [Math.max(whole.from, from - margin), Math.min(whole.to, to + margin)] as const;
+    const read = await this.#read(recording, names, ...range, kMostValues);
+    for (const name of names) {
+      const part = read.get(name) ?? { ...nothing, from: range[0], to: range[1] }; // the recording has no such variable
+      const key = keyOf({ name, recording });
+      this.#parts.set(key, isFirst ? [part] : [this.#parts.get(key)![0]!, part]);
+    }
+    this.changed.emit();
+  }
+
+  // Throws an error with the reason of a refusal.
   async #read(recording: number, names: string[], from: number, to: number, most: number): Promise<Map<string, Part>> {
-    const answer = await this.#session.call<CurvesAnswer>("curves", { recording, names, from, to, most });
     const parts = new Map<string, Part>();
-    for (const { name, times, values } of answer.curves ?? [])
-      parts.set(name, { from, to, isThinned: answer.samples > 1, times, values });
+    for (let i = 0; i < names.length; i += kMostNames) {
+      const request = { recording, names: names.slice(i, i + kMostNames), from, to, most };
+      const answer = await this.#session.call<CurvesAnswer>("curves", request);
+      if (!answer.accepted) throw new Error(answer.reason);
+      for (const { name, times, values } of answer.curves)
+        parts.set(name, { from, to, isThinned: answer.samples > 1, times, values });
+    }
     return parts;
   }
 }
