@@ -147,6 +147,7 @@ export class Chart {
         stroke: curve.color,
         dash: dashes[curve.recording % dashes.length],
         width: 1.5,
+        pxAlign: false, // whole pixels make stairs of a slow curve
         spanGaps: !this.#context.session.isRecording, // there a gap has an empty sample
         points: { show: false },
       })),
