@@ -52,6 +52,11 @@ ExitCode open_window(Options options, const options::Command& verb) {
     options.window.recording = options.source;
     become_window(options.window);
   }
+  if (!options.window.beside.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  "--beside is for the window of a recording; nothing was started; name a "
+                  "recording in the place of the scene, or leave it out");
+  }
   options.run.scene.file = scene::find_scene(options.source);
   if (!verb.has("--duration")) options.run.scene.duration = "0";
   if (!verb.has("--input")) options.run.scene.input = "none";
@@ -104,7 +109,7 @@ void add_window(options::Command& program) {
       "Examples:\n"
       "  slewring window scenes/truck_crane.yaml\n"
       "  slewring window --session truck_crane --view-only\n"
-      "  slewring window runs/truck_crane-20260501-102030");
+      "  slewring window runs/truck_crane-20260501-102030 --beside runs/truck_crane-20260501-112233");
   verb.action([options, verb] { return open_window(*options, verb); });
 }
 

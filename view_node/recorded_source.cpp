@@ -53,13 +53,17 @@ RecordedSource::RecordedSource(const recording::Reader& reader) : reader_(reader
     ++blocks;
     return recording::Reader::Visit::stop;
   }));
-  // names first: a message of the directory may be filed behind the first values
-  for (const Topic topic : {Topic::session, Topic::variable_directory}) {
+  const auto keep = [&reader](Topic topic, std::vector<KeptMessage>& kept) {
     require(reader.for_each(session::only({topic}), [&](const recording::RecordedMessage& message) {
-      view_.take(topic_of(*message.channel), message.payload);
+      kept.push_back({topic, {message.payload.begin(), message.payload.end()}, message.log_time_ns});
       return recording::Reader::Visit::go_on;
     }));
-  }
+  };
+  // names first: a message of the directory may be filed behind the first values
+  keep(Topic::session, names_);
+  keep(Topic::variable_directory, names_);
+  keep(Topic::node_status, states_);
+  forget_later(0);
   if (blocks == 0 || !view_.has_session()) {
     throw Failure(ExitCode::bad_input, reader.path().string() +
                                            ": the recording has no values of variables; nothing was started; record "
@@ -142,12 +146,20 @@ bool RecordedSource::read_until(std::uint64_t time_ns, observer::Receiver* recei
   }
 }
 
+void RecordedSource::forget_later(std::uint64_t time_ns) {
+  view_ = observer::SessionView();
+  for (const KeptMessage& name : names_) view_.take(name.topic, name.bytes);
+  for (const KeptMessage& state : states_)
+    if (state.time_ns <= time_ns) view_.take(state.topic, state.bytes, seconds_of(state.time_ns));
+}
+
 void RecordedSource::jump(std::uint64_t time_ns, gateway::Gateway& gateway) {
   recording::MessageFilter filter;
   if (!reads_wire_) filter = session::only({Topic::node_status, Topic::health, Topic::variables});
   filter.from_ns = time_ns > kLookBackNs ? time_ns - kLookBackNs : 0;
   cursor_.emplace(reader_, filter);
   next_.reset();
+  forget_later(time_ns);
   gateway.forget_values();
   ValuesAlone values(gateway);
   static_cast<void>(read_until(time_ns, &values));

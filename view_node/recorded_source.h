@@ -4,8 +4,10 @@
 // Times are those of the recording, from 0: after a reset of the session they go on (recording/writer.h).
 #pragma once
 
-#include <memory>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "gateway/gateway.h"
 #include "observer/session_view.h"
@@ -33,12 +35,21 @@ class RecordedSource final : public gateway::Playback {
 
  private:
   [[nodiscard]] std::uint64_t time_at(std::int64_t now_ns) const noexcept;
+  // What an observer at the time has received: names, and the last state of each node.
+  void forget_later(std::uint64_t time_ns);
   // Reads from so early that every variable has a value at the time.
   void jump(std::uint64_t time_ns, gateway::Gateway& gateway);
   // Takes the messages up to the time. False: the recording cannot be read further.
   bool read_until(std::uint64_t time_ns, observer::Receiver* receiver);
 
+  struct KeptMessage {
+    wire::Topic topic;
+    std::vector<std::byte> bytes;
+    std::uint64_t time_ns;
+  };
+
   const recording::Reader& reader_;
+  std::vector<KeptMessage> names_, states_;  // session and directories; states of nodes, in the order of time
   observer::SessionView view_;
   gateway::DataRange range_;
   std::optional<recording::MessageCursor> cursor_;

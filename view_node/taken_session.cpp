@@ -72,6 +72,7 @@ void TakenSession::start(const gateway::ContinuationRequest& request, Done done)
   WindowOptions window = options_;
   if (window.assets.empty()) window.assets = session::recorded_assets(options_.recording);
   window.recording.clear();
+  window.beside.clear();
   window.session.session = name_;
   window.session_timeout = kLongestReplay;
   window.port = 0;

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -19,10 +20,13 @@
 #include "gateway/gateway.h"
 #include "node/driver.h"
 #include "node/identity.h"
+#include "recording/run_directory.h"
 #include "session/recorded.h"
 #include "session/survey.h"
+#include "view_node/bent_bodies.h"
 #include "view_node/machine_meshes.h"
 #include "view_node/page_files.h"
+#include "view_node/recorded_curves.h"
 #include "view_node/recorded_source.h"
 #include "view_node/saved_files.h"
 #include "view_node/scene_editing.h"
@@ -238,12 +242,15 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
   MachineMeshes meshes = read_machine_meshes(scene, options.assets.empty() ? "." : options.assets);
   def.workspace = workspace_path(scene.name);
   def.circuit = draw_circuit(scene);
+  const Json bending =
+      bent_bodies_json(scene, view.session().scene_text, options.assets.empty() ? "." : options.assets);
   gateway::GatewayDef gateway_def = live_def(options, *observer, saved);
   gateway_def.assets = std::move(meshes.assets);
   gateway::Gateway gateway(std::move(gateway_def), std::move(scene));
   receiver.set_gateway(&gateway);
   def.description = [&] {
     Json description = gateway.description(view);
+    description["bending"] = bending;
     // the page offers to edit it
     if (!options.scene.empty() && !options.is_looking_only)
       description["scene_file"] = std::filesystem::path(options.scene).filename().string();
@@ -285,6 +292,29 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
 // ---- a recording
 // ------------------------------------------------------------------------------------------------------
 
+// A run's folder names its recording, or the file does.
+std::string name_of(const recording::Reader& reader) {
+  const std::filesystem::path& file = reader.path();
+  return file.filename() == recording::kRecordingFileName ? std::filesystem::absolute(file).parent_path().filename()
+                                                          : file.filename();
+}
+
+// The one that is played once more, for the thread that reads curves, and those beside it.
+std::vector<RecordedCurves::Recording> recordings_of(const recording::Reader& played,
+                                                     const std::vector<std::string>& beside) {
+  std::vector<RecordedCurves::Recording> recordings(1);
+  require(recording::Reader::open(played.path(), recordings[0].reader));
+  recordings[0].name = name_of(played);
+  for (const std::string& path : beside) {
+    std::unique_ptr<recording::Reader> reader = session::open_recording(path);
+    std::string name = name_of(*reader);
+    const auto is_taken = [&](const auto& one) { return one.name == name; };
+    if (std::ranges::any_of(recordings, is_taken)) name += fmt::format(" #{}", recordings.size() + 1);
+    recordings.push_back({std::move(name), std::move(reader)});
+  }
+  return recordings;
+}
+
 ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report& report) {
   const auto reader = session::open_recording(options.recording);
   RecordedSource source(*reader);
@@ -295,17 +325,25 @@ ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report&
   gateway_def.playback = &source;
   gateway_def.range = source.range();
   gateway_def.wire = source.wire_topics();
-  scene::Scene scene = scene::load_text(session::recorded_scene_text(*reader), identity.scene);
-  MachineMeshes meshes =
-      read_machine_meshes(scene, options.assets.empty() ? session::recorded_assets(options.recording) : options.assets);
+  const std::string text = session::recorded_scene_text(*reader);
+  const std::string assets = options.assets.empty() ? session::recorded_assets(options.recording) : options.assets;
+  scene::Scene scene = scene::load_text(text, identity.scene);
+  MachineMeshes meshes = read_machine_meshes(scene, assets);
+  const Json bending = bent_bodies_json(scene, text, assets);
   def.workspace = workspace_path(scene.name);
   def.circuit = draw_circuit(scene);
   gateway_def.assets = std::move(meshes.assets);
   TakenSession taken(options, identity.session_name);
   if (!options.is_looking_only) gateway_def.continuation = &taken;
+  RecordedCurves curves(recordings_of(*reader, options.beside));
+  gateway_def.curves = &curves;
   gateway::Gateway gateway(std::move(gateway_def), std::move(scene));
   source.publish_names(gateway);
-  def.description = [&] { return gateway.description(source.view()); };
+  def.description = [&] {
+    Json description = gateway.description(source.view());
+    description["bending"] = bending;
+    return description;
+  };
   const std::string token = def.door.token;
   Server server(std::move(def), gateway);
   show_address(options, server, "recording '" + reader->path().string() + "'", token, report);
@@ -315,6 +353,7 @@ ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report&
     gateway.poll(source.view(), now_ns);
     source.poll(gateway, now_ns);
     for (const std::string& line : taken.poll()) report(line);
+    curves.poll();
     server.poll(kRound);
   }
   end(gateway, server, "the window was closed", report);
@@ -324,6 +363,10 @@ ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report&
 }  // namespace
 
 ExitCode run_window(const WindowOptions& options, const Report& report) {
+  if (options.recording.empty() && !options.beside.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  "--beside is for the window of a recording; nothing was started; name a recording, or leave it out");
+  }
   ServerDef def = server_def(options);
   return options.recording.empty() ? run_live(options, std::move(def), report)
                                    : run_recorded(options, std::move(def), report);

@@ -39,6 +39,11 @@ void add_window_options(options::Command& verb, WindowOptions& options) {
               "folder with the scene's meshes for the eye; without it that of the scene or recording, else this one")
       .value_name("DIR")
       .group("Window");
+  verb.option("--beside", options.beside,
+              "with a recording: show the curves of this one as well in its plots; repeat for more")
+      .one_value_each()
+      .value_name("REC")
+      .group("Window");
   verb.option("--web", options.web, "folder of the page; without it the installed one")
       .value_name("DIR")
       .group("Window");
@@ -54,6 +59,7 @@ std::vector<std::string> window_arguments(const WindowOptions& options) {
   add("--token-file", options.token_file);
   for (const std::string& host : options.hosts) add("--host", host);
   for (const std::string& origin : options.origins) add("--allow-origin", origin);
+  for (const std::string& recording : options.beside) add("--beside", recording);
   add("--web", options.web);
   add("--saves", options.saves);
   add("--assets", options.assets);

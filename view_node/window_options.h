@@ -18,9 +18,10 @@ inline constexpr std::string_view kRestartLine = "the page requests a restart wi
 inline constexpr std::uint32_t kDefaultPort = 8765;  // the one that Foxglove and Lichtblick propose
 
 struct WindowOptions {
-  node::SessionOptions session;  // a live one
-  std::string recording;         // in its place; empty: none
-  double session_timeout = 30;   // s
+  node::SessionOptions session;     // a live one
+  std::string recording;            // in its place; empty: none
+  std::vector<std::string> beside;  // recordings whose curves are shown beside those of the recording
+  double session_timeout = 30;      // s
   std::uint32_t port = kDefaultPort;
   std::string listen = "127.0.0.1";
   std::string token_file;            // its first line is the token; empty: none

@@ -190,10 +190,16 @@ void Gateway::publish_playback(std::int64_t now_ns) {
   }
 }
 
+void Gateway::forget_values() {
+  snapshot_.forget_values();
+  seen_.is_other_time = revision_ > 0;
+}
+
 void Gateway::watch_nodes(const observer::SessionView& view) {
+  const bool is_other_time = std::exchange(seen_.is_other_time, false);
   if (const bool is_paused = view.is_paused(); is_paused != std::exchange(seen_.is_paused, is_paused)) {
     seen_.has_changed = true;
-    add_event(LogLevel::info, "io", is_paused ? "the session is paused" : "the session goes on");
+    if (!is_other_time) add_event(LogLevel::info, "io", is_paused ? "the session is paused" : "the session goes on");
   }
   std::uint32_t roles = 0;
   for (const wire::Role role : wire::kNodeRoles) roles |= view.node(role).is_known ? bit(role) : 0;
@@ -204,6 +210,7 @@ void Gateway::watch_nodes(const observer::SessionView& view) {
     if (!node.is_known || node.status.state == state) continue;
     state = node.status.state;
     seen_.has_changed = true;
+    if (is_other_time) continue;
     const bool is_bad = state == wire::NodeState::fault || (state == wire::NodeState::holding && !seen_.is_paused);
     add_event(is_bad ? LogLevel::warning : LogLevel::info, std::string(node::to_text(role)),
               fmt::format("{}{}{}", node::to_text(state), node.status.reason.empty() ? "" : ": ", node.status.reason));

@@ -96,6 +96,31 @@ class Continuation {
   virtual void start(const ContinuationRequest& request, Done done) = 0;
 };
 
+// Variables of recordings over their whole time.
+struct CurvesRequest {
+  std::vector<std::string> names;
+  double from = 0, to = 0;         // s
+  std::size_t most_values = 4000;  // of a curve; a longer one is thinned out to the least and the largest ones
+  std::size_t recording = 0;       // 0: the one that is played, then those beside it
+};
+class RecordedCurves {
+ public:
+  RecordedCurves() = default;
+  RecordedCurves(const RecordedCurves&) = delete;
+  RecordedCurves& operator=(const RecordedCurves&) = delete;
+  virtual ~RecordedCurves() = default;
+  // Names of the recordings for the user, the one that is played first.
+  [[nodiscard]] virtual std::vector<std::string> names() const = 0;
+  struct Answer {
+    std::string problem{};        // of a refusal; empty: it was read
+    Json curves = Json::array();  // [{name, unit, times [s], values}]; without variables that the recording lacks
+    std::size_t samples = 1;      // from which two values were kept; 1: all are there
+  };
+  // done is called once.
+  using Done = std::function<void(Answer)>;
+  virtual void read(CurvesRequest request, Done done) = 0;
+};
+
 struct GatewayDef {
   std::string name;             // of the session
   std::string session_id;       // text
@@ -107,6 +132,7 @@ struct GatewayDef {
   Playback* playback = nullptr;              // of a recording; outlives the gateway
   std::optional<DataRange> range{};          // of a recording
   Continuation* continuation = nullptr;      // of a recording; outlives the gateway; null: none is started
+  RecordedCurves* curves = nullptr;          // of a recording; outlives the gateway
   Assets assets{};                           // meshes for the eye
   std::vector<WireChannelDef> wire{};        // topics that are passed on
 };
@@ -138,8 +164,8 @@ class Gateway final : public observer::Receiver {
   void poll(const observer::SessionView& view, std::int64_t now_ns);
   // The time of a recording has changed.
   void show(const observer::SessionView& view, std::uint64_t time_ns);
-  // Values of a recording so far belong to another time.
-  void forget_values() { snapshot_.forget_values(); }
+  // Values of a recording so far belong to another time. States of nodes at the new one are no events.
+  void forget_values();
   // The state of the playback has changed without a request.
   void publish_playback(std::int64_t now_ns);
   void add_event(LogLevel level, const std::string& source, const std::string& text);
@@ -226,6 +252,7 @@ class Gateway final : public observer::Receiver {
   void keep(const CallPlace& place, Call call, const std::string& name);
   void control(const CallPlace& place, wire::ControlAction action, double value, std::int64_t now_ns);
   void take_over(const CallPlace& place, const Json& request);
+  void read_curves(const CallPlace& place, const Json& request);
   void play(const CallPlace& place, const PlaybackControl& request, std::int64_t now_ns);
   void respond(const CallPlace& place, const Json& response);
   void respond(const CallPlace& place, const std::string& problem, StepIndex step);
@@ -264,6 +291,7 @@ class Gateway final : public observer::Receiver {
     std::uint32_t roles = 0;                       // bits of the nodes that take part
     std::map<std::string, std::string> holders{};  // by input
     bool has_changed = false;                      // since the last values
+    bool is_other_time = false;                    // states belong to another time of a recording
   } seen_;                                         // what the events have stated
 };
 

@@ -14,6 +14,8 @@ namespace {
 constexpr double kLongestChange = 3600;  // s
 constexpr double kLongestSession = 1e9;  // s
 constexpr std::int64_t kMostSteps = 1'000'000'000;
+constexpr std::size_t kMostCurves = 32;  // of a request
+constexpr std::int64_t kMostValues = 200'000;
 
 const char* to_text(PlaybackStatus status) noexcept {
   switch (status) {
@@ -122,9 +124,39 @@ void Gateway::run_call(const CallPlace& place, Call call, const Json& request, s
       wanted.seek_ns = static_cast<std::uint64_t>(std::llround(seconds * 1e9));
       return play(place, wanted, now_ns);
     }
+    case Call::curves:
+      return read_curves(place, request);
     case Call::take_over:
       return take_over(place, request);
   }
+}
+
+void Gateway::read_curves(const CallPlace& place, const Json& request) {
+  if (def_.curves == nullptr) return fail(place, "this window has no curves of its recording; nothing was read");
+  CurvesRequest wanted;
+  wanted.names = request.at("names").texts();
+  wanted.from = request.at("from").number();
+  wanted.to = request.at("to").number();
+  if (wanted.names.empty() || wanted.names.size() > kMostCurves)
+    return fail(place, "'names' are not 1 to 32 variables; nothing was read");
+  if (!(wanted.from >= 0 && wanted.from <= wanted.to && wanted.to <= kLongestSession))
+    return fail(place, "'from' and 'to' are no times of a recording; nothing was read");
+  if (const Json* most = request.find("most")) {
+    if (most->integer() < 2 || most->integer() > kMostValues)
+      return fail(place, "'most' is not from 2 to 200000; nothing was read");
+    wanted.most_values = static_cast<std::size_t>(most->integer());
+  }
+  if (const Json* recording = request.find("recording")) {
+    if (recording->integer() < 0 || recording->integer() >= static_cast<std::int64_t>(def_.curves->names().size()))
+      return fail(place, "'recording' is no number of a recording of this window; nothing was read");
+    wanted.recording = static_cast<std::size_t>(recording->integer());
+  }
+  def_.curves->read(std::move(wanted), [this, place](RecordedCurves::Answer answer) {
+    respond(place, Json({{"accepted", answer.problem.empty()},
+                         {"reason", answer.problem},
+                         {"samples", answer.samples},
+                         {"curves", std::move(answer.curves)}}));
+  });
 }
 
 void Gateway::take_over(const CallPlace& place, const Json& request) {
@@ -208,6 +240,7 @@ Json Gateway::description(const observer::SessionView& view) const {
   return {{"session", def_.name},
           {"scene", scene_.name},
           {"is_recording", def_.playback != nullptr},
+          {"recordings", def_.curves != nullptr ? Json(def_.curves->names()) : Json::array()},
           {"may_steer", is_steering()},
           {"variables", std::move(variables)},
           {"inputs", std::move(inputs)},

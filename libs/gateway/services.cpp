@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::array kSessionCalls = {Call::pause, Call::resume, Call::step,  Call::reset,  Call::set_parameter,
                                       Call::save,  Call::load,   Call::lease, Call::release};
-constexpr std::array kContinuedCalls = {Call::play, Call::pause, Call::speed, Call::seek, Call::take_over};
+constexpr std::array kContinuedCalls = {Call::play, Call::pause,  Call::speed,
+                                        Call::seek, Call::curves, Call::take_over};
 
 Json member(const char* type, const char* description) {
   return {{"type", type}, {"description", description}};
@@ -37,6 +38,23 @@ Json continuation_schema() {
                         {"session", member("string", "name of the live session")},
                         {"page", member("string", "address of its window")},
                         {"foxglove", member("string", "the same for the protocol")}});
+}
+
+Json curves_schema() {
+  const Json numbers = {{"type", "array"}, {"items", {{"type", "number"}}}};
+  Json curve = object_schema({{"name", member("string", "of the variable")},
+                              {"unit", member("string", "SI")},
+                              {"times", numbers},
+                              {"values", numbers}});
+  return object_schema({{"accepted", member("boolean", "")},
+                        {"reason", member("string", "of a refusal")},
+                        {"samples", member("integer", "whose least and largest values are there; 1: all samples are")},
+                        {"curves", {{"type", "array"}, {"items", std::move(curve)}}}});
+}
+
+Json response_schema(Call call) {
+  if (call == Call::take_over) return continuation_schema();
+  return call == Call::curves ? curves_schema() : playback_schema();
 }
 
 ServiceInfo info_of(Call call) {
@@ -74,6 +92,15 @@ ServiceInfo info_of(Call call) {
       return make("speed", object_schema({{"factor", member("number", "over real time, 0.01 to 100")}}, {"factor"}));
     case Call::seek:
       return make("seek", object_schema({{"time", member("number", "s")}}, {"time"}));
+    case Call::curves:
+      return make(
+          "curves",
+          object_schema({{"names", {{"type", "array"}, {"items", member("string", "of a variable")}}},
+                         {"from", member("number", "s")},
+                         {"to", member("number", "s")},
+                         {"most", member("integer", "values of a curve, 2 to 200000; 4000 without it")},
+                         {"recording", member("integer", "number among the recordings of the window; 0 without it")}},
+                        {"names", "from", "to"}));
     case Call::take_over:
       return make(
           "take_over",
@@ -111,7 +138,7 @@ std::vector<ServiceInfo> service_infos(std::span<const Call> calls) {
   const bool is_recording = calls.data() == kContinuedCalls.data();
   for (const Call call : calls) {
     infos.push_back(info_of(call));
-    if (is_recording) infos.back().response = call == Call::take_over ? continuation_schema() : playback_schema();
+    if (is_recording) infos.back().response = response_schema(call);
   }
   return infos;
 }

@@ -24,6 +24,7 @@ enum class Call : std::uint32_t {
   play,
   speed,
   seek,
+  curves,
   take_over,
 };
 

@@ -263,7 +263,7 @@ std::optional<Node> read_with_includes(const std::string& path, Report& report, 
 }
 
 bool expand(Node& root, const Overrides& overrides, Report& report, std::vector<std::string>* warnings,
-            std::vector<ParameterText>& values) {
+            std::vector<ParameterText>& values, std::vector<NamedPoint>* points) {
   std::vector<Setting> settings;
   for (const std::string& text : overrides) {
     std::optional<Setting> setting = parse_setting(text, kSetting, report);
@@ -282,7 +282,8 @@ bool expand(Node& root, const Overrides& overrides, Report& report, std::vector<
   values = scope.own_values();
   for (Setting& setting : settings) set_value(root, std::move(setting), scope, report);
   problems = report.size();
-  place_named_points(root, report);
+  std::vector<NamedPoint> placed = place_named_points(root, report);
+  if (points != nullptr) *points = std::move(placed);
   is_sound = is_sound && report.size() == problems;
   return is_sound;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/named_points.h"
 #include "scene/scene.h"
 #include "scene/yaml_tree.h"
 
@@ -45,9 +46,9 @@ enum class Includes : std::uint8_t { plain, with_prefix };
 
 // The scene's tree without parameters, expressions, templates, groups and named points. overrides: "PARAMETER=VALUE" is
 // set before, "PATH=VALUE" after instances are made; their problems have the label "--set PATH=VALUE". warnings: those
-// of instances.h. values: receives the scene's own parameters. False: problems were reported that leave the tree
-// unfinished.
+// of instances.h. values: receives the scene's own parameters; points, unless null, its named points. False: problems
+// were reported that leave the tree unfinished.
 [[nodiscard]] bool expand(Node& root, const Overrides& overrides, Report& report, std::vector<std::string>* warnings,
-                          std::vector<ParameterText>& values);
+                          std::vector<ParameterText>& values, std::vector<NamedPoint>* points = nullptr);
 
 }  // namespace slew::scene

@@ -21,11 +21,6 @@ namespace {
 
 constexpr const char* kExpectedPoint = "[x, y, z], or {position: [x, y, z], orientation: [a, b, c]}";
 
-struct Point {
-  Node position;     // list
-  Node orientation;  // list, or empty
-};
-
 Node name_node(std::string_view text, const Mark& mark) {
   Node node;
   node.kind = Node::Kind::scalar;
@@ -77,6 +72,11 @@ class Placement {
       for (Node::Entry& element : entry->value.entries) place_in(section, element);
     }
   }
+  [[nodiscard]] std::vector<NamedPoint> take_points() {
+    std::vector<NamedPoint> points;
+    for (auto& [name, point] : points_) points.push_back(std::move(point));
+    return points;
+  }
 
  private:
   void collect(Node& bodies) {
@@ -105,7 +105,7 @@ class Placement {
       report_.add(entry.mark, path, {"is not a name", "letters, digits and _, beginning with a letter", ""});
       return;
     }
-    Point point;
+    NamedPoint point{.name = body + "." + entry.key, .body = body, .position = {}, .orientation = {}};
     if (entry.value.kind == Node::Kind::map) {
       report_duplicates(entry.value, path, report_);
       for (const Node::Entry& key : entry.value.entries) {
@@ -149,7 +149,7 @@ class Placement {
   }
 
   void place_one(Node::Entry& element, Node::Entry& entry, const std::string& body_key, const std::string& path) {
-    const Point* point = find(entry.value, body_key, path);
+    const NamedPoint* point = find(entry.value, body_key, path);
     if (point == nullptr) return;
     const std::string body = body_of(entry.value);
     const Mark mark = entry.value.mark;
@@ -163,7 +163,7 @@ class Placement {
     const Mark mark = entry.value.mark;
     for (Node& item : entry.value.items) {
       if (!is_name_of_point(item)) continue;
-      const Point* point = find(item, body_key, path);
+      const NamedPoint* point = find(item, body_key, path);
       if (point == nullptr) return;
       bodies.push_back(name_node(body_of(item), item.mark));
       item = point->position;
@@ -207,7 +207,7 @@ class Placement {
         report_.add(frame->mark, path, {"'" + other + "' is given as well", "one of them", ""});
         is_given = true;
       }
-      const Point* point = is_given ? nullptr : find(frame->value, "body" + suffix, path);
+      const NamedPoint* point = is_given ? nullptr : find(frame->value, "body" + suffix, path);
       if (point == nullptr) continue;
       element.value.entries.push_back({"point" + suffix, frame->mark, point->position});
       if (point->orientation.kind != Node::Kind::empty) {
@@ -220,7 +220,7 @@ class Placement {
   static std::string body_of(const Node& name) { return name.text.substr(0, name.text.find('.')); }
 
   // null after a reported problem
-  const Point* find(const Node& name, const std::string& body_key, const std::string& path) {
+  const NamedPoint* find(const Node& name, const std::string& body_key, const std::string& path) {
     if (!is_name_of_point(name) || body_key.empty()) {
       const char* expected = body_key.empty() ? "a list of three, [x, y, z]" : "the name of a point, such as Boom.tip";
       report_.add(name.mark, path, {"is " + describe(name), expected, ""});
@@ -251,13 +251,15 @@ class Placement {
   }
 
   Report& report_;
-  std::map<std::string, Point, std::less<>> points_;
+  std::map<std::string, NamedPoint, std::less<>> points_;
 };
 
 }  // namespace
 
-void place_named_points(Node& root, Report& report) {
-  Placement(report).place(root);
+std::vector<NamedPoint> place_named_points(Node& root, Report& report) {
+  Placement placement(report);
+  placement.place(root);
+  return placement.take_points();
 }
 
 }  // namespace slew::scene

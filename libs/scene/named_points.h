@@ -10,12 +10,23 @@
 // point is that of a joint's frame. `Ground` may have points too, and nothing else.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "scene/diagnostic.h"
 #include "scene/yaml_tree.h"
 
 namespace slew::scene {
 
-// Replaces all names of points in the tree, and removes `points` from its bodies. Problems go to the report.
-void place_named_points(Node& root, Report& report);
+struct NamedPoint {
+  std::string name;  // "Boom.tip"
+  std::string body;
+  Node position;     // list of three lengths in the body's frame
+  Node orientation;  // list of three angles, or empty
+};
+
+// Replaces all names of points in the tree, and removes `points` from its bodies. Problems go to the report. Returns
+// the points in the order of their names.
+std::vector<NamedPoint> place_named_points(Node& root, Report& report);
 
 }  // namespace slew::scene

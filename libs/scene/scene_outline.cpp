@@ -13,8 +13,10 @@
 #include "scene/element_table.h"
 #include "scene/expand.h"
 #include "scene/field_reader.h"
+#include "scene/graphics.h"
 #include "scene/scene_text.h"
 #include "scene/sections.h"
+#include "scene/text_references.h"
 
 namespace slew::scene {
 namespace {
@@ -104,11 +106,12 @@ std::string place_of(const Report& report, const Mark& mark) {
 struct WrittenOut {
   Report report{};
   std::optional<Node> root{};
+  std::vector<NamedPoint> points{};
 
   WrittenOut(const std::string& path, const std::string& text) {
     root = read_with_includes(path, report, Includes::with_prefix, &text);
     std::vector<ParameterText> values;
-    if (root && !expand(*root, {}, report, nullptr, values)) root.reset();
+    if (root && !expand(*root, {}, report, nullptr, values, &points)) root.reset();
   }
   [[nodiscard]] const Node::Entry* find(std::string_view section, std::string_view name) const {
     const Node::Entry* found = root ? root->find(section) : nullptr;
@@ -188,6 +191,25 @@ class Outline {
   Json elements_ = Json::array();
 };
 
+// A point whose position has a problem is left out: the loader reports it. report: of the points' sources.
+Json points_json(const std::vector<NamedPoint>& points, Report report) {
+  Json list = Json::array();
+  if (points.empty()) return list;
+  const std::span<const Field> fields = graphic_fields();
+  const auto position = std::ranges::find(fields, "position", &Field::key);
+  UnitSystem units;
+  PlaceMap places;
+  std::vector<Reference> references;
+  for (const NamedPoint& point : points) {
+    const std::size_t problems = report.size();
+    GraphicDef at;  // has a position in a body's frame as well
+    read_value(point.position, *position, &at, point.name, {units, report, places, references});
+    if (report.size() == problems)
+      list.push_back({{"name", point.name}, {"body", point.body}, {"position", Json(at.position)}});
+  }
+  return list;
+}
+
 void put_problems(Json& json, const LoadError& error) {
   for (const Diagnostic& diagnostic : error.diagnostics()) {
     json["problems"].push_back({{"file", diagnostic.file},
@@ -199,6 +221,29 @@ void put_problems(Json& json, const LoadError& error) {
                                 {"suggestion", diagnostic.suggestion}});
   }
   json["omitted"] = error.omitted();
+}
+
+// Where included files name an element, or have a part of it: "J.body1 (side.yaml:12)". Files with a prefix name their
+// own elements alone.
+std::vector<std::string> places_in_included_files(const std::string& path, const std::string& text,
+                                                  std::string_view name) {
+  Report report;
+  const std::optional<Node> root = read_with_includes(path, report, Includes::with_prefix, &text);
+  std::vector<std::string> places;
+  if (!root) return places;
+  const auto add = [&](const std::string& what, const Mark& mark) {
+    const Diagnostic at = report.at(mark, "", {});
+    if (at.file != path) places.push_back(fmt::format("{} ({}:{})", what, at.file, at.line));
+  };
+  for (const std::string_view section : element_sections()) {
+    const Node::Entry* found = root->find(section);
+    const Node::Entry* element = found == nullptr ? nullptr : found->value.find(name);
+    if (element == nullptr) continue;
+    for (const Node::Entry& field : element->value.entries)
+      add(fmt::format("{}.{}", name, field.key), field.value.mark);
+  }
+  for (const TextReference& reference : references_to(*root, name)) add(reference.path, reference.mark());
+  return places;
 }
 
 std::optional<SceneText> read_text(const std::string& path, const std::string& text) {
@@ -253,15 +298,22 @@ Json kinds_json() {
 }
 
 Json outline_json(const std::string& path, const std::string& text, const Overrides& overrides) {
-  Json json = {{"elements", Json::array()}, {"problems", Json::array()}, {"omitted", 0}, {"warnings", Json::array()}};
+  Json json = {{"elements", Json::array()},
+               {"points", Json::array()},
+               {"problems", Json::array()},
+               {"omitted", 0},
+               {"warnings", Json::array()}};
   try {
     const Scene scene = load_edited(path, text, overrides);
     for (const std::string& warning : scene.warnings) json["warnings"].push_back(warning);
   } catch (const LoadError& error) {
     put_problems(json, error);
   }
-  if (const std::optional<SceneText> own = read_text(path, text))
-    json["elements"] = Outline(*own, WrittenOut(path, text)).json();
+  if (const std::optional<SceneText> own = read_text(path, text)) {
+    const WrittenOut whole(path, text);
+    json["elements"] = Outline(*own, whole).json();
+    json["points"] = points_json(whole.points, whole.report);
+  }
   return json;
 }
 
@@ -270,6 +322,15 @@ EditedText edit_text(const std::string& path, const std::string& text, const Jso
   const std::optional<SceneText> own = read_text(path, text);
   if (!own) return {text, "the text cannot be read as YAML: put that right first; nothing was changed", {}};
   TextEdit edit = edit_of(*own, request);
+  if (request.find("rename") != nullptr && edit.refusal.empty()) {
+    if (std::vector<std::string> places = places_in_included_files(path, text, element); !places.empty()) {
+      return {text,
+              fmt::format("included files name '{}' as well, and this page does not change them; nothing was changed; "
+                          "rename it there and here with an editor",
+                          element),
+              std::move(places)};
+    }
+  }
   if (!edit.refusal.empty() && !element.empty() && own->find(element).entry == nullptr &&
       own->root().find(element) == nullptr) {
     const std::string place = WrittenOut(path, text).place_of_element(element);

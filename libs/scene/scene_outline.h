@@ -18,13 +18,16 @@ namespace slew::scene {
 //   elements  [{name, section, type, line, fields: {key: {text, line, column}}, given: {key: {text, place}}, place}] in
 //             the order of the sections. text: as written; given: by a template or an included file; place: "file:line"
 //             of an element that the text does not have: an included file's, or an instance's
+//   points    [{name, body, position}] named points of bodies, position [m] in the body's frame; none where the scene
+//             cannot be written out
 //   problems  [{file, line, column, path, what, expected, suggestion}] of the loader, omitted: number of further ones
 //   warnings  of the loader
 // A text that is no YAML has problems alone. Does not throw for faults of the text.
 [[nodiscard]] Json outline_json(const std::string& path, const std::string& text, const Overrides& overrides);
 
 // A change of a text: {"set": path, "value": text}, {"add": name, "section", "type"}, {"copy": name, "to": name},
-// {"rename": name, "to": name}, {"remove": name}, or {}, which changes nothing.
+// {"rename": name, "to": name}, {"remove": name}, or {}, which changes nothing. A rename is refused while included
+// files name the element, which are not edited; the notes list their places.
 struct EditedText {
   std::string text;                  // after a refusal as before
   std::string refusal{};             // with the place where it can be changed, if there is one

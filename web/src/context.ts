@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What all parts of the page share: the session, the selected element, and how things are shown.
 import { Emitter } from "./dom";
-import { SceneFile } from "./edit/scene_file";
+import { type NamedPoint, SceneFile } from "./edit/scene_file";
 import type { Session } from "./session";
 import { displayUnit, type DisplayUnit, type UnitSystem } from "./units";
 
@@ -15,6 +15,7 @@ export class Context {
   readonly unitsChanged = new Emitter();
   readonly workspaceChanged = new Emitter(); // something that a workspace keeps
   readonly fieldWanted = new Emitter<{ element: string; key: string }>(); // of the scene's text, to be edited
+  readonly pointPicked = new Emitter<NamedPoint>();
   readonly plotWanted = new Emitter<string>(); // a variable, for the plot that was used last
 
   selected?: string;

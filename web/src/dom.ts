@@ -63,7 +63,8 @@ export function atMostEvery(milliseconds: number, action: () => void): () => voi
 export function followPointer(event: PointerEvent, moved: (event: PointerEvent) => void, ended?: () => void): void {
   const target = event.currentTarget as HTMLElement;
   target.setPointerCapture(event.pointerId);
-  const end = () => {
+  const end = (next: Event) => {
+    if ((next as PointerEvent).pointerId !== event.pointerId) return; // another finger
     target.removeEventListener("pointermove", move);
     for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) target.removeEventListener(name, end);
     ended?.();

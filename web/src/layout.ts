@@ -45,6 +45,7 @@ export class Layout {
   readonly centerChanged = new Emitter<Center>();
   readonly tabBar: HTMLElement;
   #sizes = new Map<string, number>();
+  #center: Center = "view";
   #changed: () => void;
 
   constructor(panels: Panels, changed: () => void) {
@@ -87,8 +88,13 @@ export class Layout {
       button.setAttribute("aria-selected", String((button as HTMLElement).dataset["tab"] === name));
   }
 
+  get center(): Center {
+    return this.#center;
+  }
+
   // What stands above the plots.
   showCenter(name: Center): void {
+    this.#center = name;
     document.documentElement.dataset["center"] = name;
     this.centerChanged.emit(name);
   }
@@ -101,10 +107,15 @@ export class Layout {
     const button = ([name, text]: [Center, string]) =>
       h(
         "button",
-        { type: "button", "data-center": name, title: `Show: ${text}`, onclick: () => this.showCenter(name) },
+        { type: "button", "data-center": name, title: `Show: ${text}`, onclick: () => this.#chooseCenter(name) },
         text,
       );
     return h("div", { class: "segments center-switch", role: "group", "aria-label": "Picture" }, ...names.map(button));
+  }
+
+  #chooseCenter(name: Center): void {
+    this.showCenter(name);
+    this.#changed();
   }
 
   #border(border: Border): HTMLElement {

@@ -69,6 +69,7 @@ function workspace(): Workspace {
     units: context.units,
     layout: layout.sizes,
     closedGroups: tree.closed,
+    center: layout.center,
     view: view.state,
     plots: plots.state,
     gamepad: operate.map,
@@ -80,6 +81,7 @@ function show(wanted: Workspace): void {
   context.units = wanted.units;
   layout.sizes = wanted.layout;
   tree.closed = wanted.closedGroups;
+  layout.showCenter(wanted.center ?? "view");
   view.state = wanted.view;
   plots.state = wanted.plots;
   operate.map = wanted.gamepad;
@@ -136,6 +138,7 @@ const menu = menuOf(context, {
     context.units = "engineering";
     layout.sizes = {};
     tree.closed = usualClosed;
+    layout.showCenter("view");
     view.state = { follow: "", graphics: "auto" };
     plots.state = usualPlots();
     operate.map = {};

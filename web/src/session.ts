@@ -27,6 +27,13 @@ export interface LogEntry {
   level: number; // of foxglove.Log: 1 debug, 2 info, 3 warning, 4 error, 5 fatal
   source: string;
   text: string;
+  isEarlier?: boolean; // of the time before a reset
+}
+
+// A body that bends, with the places of its nodes [m] in its frame; their deflections are variables.
+export interface BentBody {
+  body: string;
+  nodes: { id: number; position: [number, number, number] }[];
 }
 
 interface Description {
@@ -35,6 +42,8 @@ interface Description {
   is_recording: boolean;
   may_steer: boolean;
   scene_file?: string; // that this page may edit
+  bending?: BentBody[];
+  recordings?: string[]; // of which the window has curves: the one that is played, and those beside it
   inputs: InputInfo[];
 }
 
@@ -217,7 +226,7 @@ export class Session {
     if (isRestart) {
       if (isNew) this.#forgetMachine();
       this.samples.clear();
-      this.log.length = isNew ? 0 : this.log.length;
+      for (const entry of this.log) entry.isEarlier = true;
       this.restarted.emit();
     }
     if (isNew) {

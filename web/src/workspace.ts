@@ -2,6 +2,7 @@
 // What a person arranged, as JSON with a version.
 import type { GamepadMap } from "./operate/gamepad";
 import type { Theme } from "./context";
+import type { Center } from "./layout";
 import type { PlotsState } from "./plots/plots_panel";
 import type { UnitSystem } from "./units";
 import type { ViewState } from "./view/view_panel";
@@ -15,6 +16,7 @@ export interface Workspace {
   units: UnitSystem;
   layout: Record<string, number>; // sizes [px] by name
   closedGroups: string[];
+  center?: Center; // the view without it
   view: ViewState;
   plots: PlotsState;
   gamepad: GamepadMap;
@@ -67,6 +69,7 @@ export function parseWorkspace(text: string): Workspace {
     ["units", ["engineering", "si"].includes(json["units"] as string)],
     ["layout", isObject(json["layout"]) && Object.values(json["layout"]).every(isNumber)],
     ["closedGroups", isTexts(json["closedGroups"])],
+    ["center", json["center"] === undefined || ["view", "circuit"].includes(json["center"] as string)],
     ["view", isView(json["view"])],
     ["plots", isPlots(json["plots"])],
     ["gamepad", isMap(json["gamepad"])],

@@ -255,7 +255,23 @@ async function recording() {
   await waitFor("the end of the recording", () => client.playback.some((state) => state.getUint8(1) === 3));
   require((await client.call("seek", { time: 0.5 })).status === "paused", "the service does not seek");
   require((await client.call("seek", { time: 1e6 })).failure.includes("not in the recording"), "a seek beyond the end");
+  await readsCurves(client, rows);
   console.log("values at four times equal those of the recording");
+}
+
+// All samples of a variable, and the least and the largest ones of many. rows: [time, stroke] of the recording.
+async function readsCurves(client, rows) {
+  const request = { names: ["Cyl_Lift.stroke", "Nothing.here"], from: 0, to: 2 };
+  const { curves, samples } = await client.call("curves", request);
+  require(curves.length === 1 && samples === 1, `${curves.length} curves, of ${samples} samples a value`);
+  const read = curves[0].times.map((time, i) => [time, curves[0].values[i]]);
+  require(JSON.stringify(read) === JSON.stringify(rows), "the curve is not that of the recording");
+  const thin = await client.call("curves", { ...request, most: 20 });
+  const { values } = thin.curves[0];
+  require(thin.samples > 1 && values.length <= 20, `${values.length} values of ${thin.samples} samples`);
+  const strokes = rows.map(([, stroke]) => stroke);
+  require(Math.max(...values) === Math.max(...strokes) && Math.min(...values) === Math.min(...strokes), "an extreme is lost");
+  require((await client.call("curves", { ...request, recording: 1 })).failure.includes("no number"), "another recording");
 }
 
 try {

@@ -97,6 +97,43 @@ TEST(SceneOutline, ElementsOfOtherFilesAndInstancesAreRefusedWithTheirPlace) {
   EXPECT_EQ(edit_text(path, text + joints, {{"set", "A.mass"}, {"value", "5 kg"}}).refusal, "");
 }
 
+TEST(SceneOutline, ARenameIsRefusedWhileIncludedFilesNameTheElement) {
+  const TemporaryFolder folder;
+  folder.write("side.yaml",
+               "joints:\n  Side: {type: revolute, body2: Arm}\n\nbodies:\n  Base: {mass: 3 kg, inertia: [1, 1, 1]}\n");
+  const std::string text =
+      "include: side.yaml\nbodies:\n  Arm: {mass: 1 kg, inertia: [1, 1, 1]}\n  Own: {mass: 1 kg, inertia: [1, 1, 1]}\n"
+      "  Base: {mass: 4 kg}\njoints:\n  J: {type: revolute, body1: Arm, body2: Own}\n  K: {type: revolute, body2: "
+      "Base}\n";
+  const std::string path = folder.write("scene.yaml", text);
+  ASSERT_TRUE(outline_json(path, text, {}).at("problems").items().empty()) << outline_json(path, text, {}).dump(2);
+  const EditedText refused = edit_text(path, text, {{"rename", "Arm"}, {"to", "Boom"}});
+  EXPECT_NE(refused.refusal.find("included files name 'Arm'"), std::string::npos) << refused.refusal;
+  EXPECT_EQ(refused.notes, std::vector<std::string>{"Side.body2 (" + folder.path() + "/side.yaml:2)"});
+  EXPECT_EQ(refused.text, text);
+  // a part of the element itself
+  const EditedText overlay = edit_text(path, text, {{"rename", "Base"}, {"to", "Foot"}});
+  ASSERT_FALSE(overlay.notes.empty()) << overlay.refusal;
+  EXPECT_NE(overlay.notes[0].find("side.yaml:5"), std::string::npos) << overlay.notes[0];
+  const EditedText done = edit_text(path, text, {{"rename", "Own"}, {"to", "Boom"}});
+  EXPECT_EQ(done.refusal, "");
+  EXPECT_TRUE(outline_json(path, done.text, {}).at("problems").items().empty());
+}
+
+TEST(SceneOutline, HasTheNamedPointsOfBodiesInMetres) {
+  const TemporaryFolder folder;
+  const std::string text =
+      "parameters: {reach: 2.5 m}\nbodies:\n  Arm:\n    mass: 1 kg\n    inertia: [1, 1, 1]\n"
+      "    points: {tip: [\"${reach}\", 0, -20 mm], eye: {position: [1, 2, 3]}, wrong: [1 kg, 0, 0]}\n"
+      "joints:\n  J: {type: revolute, body2: Arm}\n";
+  const Json points = outline_json(folder.write("scene.yaml", text), text, {}).at("points");
+  ASSERT_EQ(points.items().size(), 2u) << points.dump(2);
+  EXPECT_EQ(points.items()[0].at("name").text(), "Arm.eye");
+  EXPECT_EQ(points.items()[1].at("name").text(), "Arm.tip");
+  EXPECT_EQ(points.items()[1].at("body").text(), "Arm");
+  EXPECT_EQ(points.items()[1].at("position").dump(), "[2.5,0.0,-0.02]");
+}
+
 TEST(SceneOutline, RequestsOfAnotherFormAreRefused) {
   for (const Json& request : {Json{{"set", 5}}, Json{{"set", "Bag.mass"}}, Json{{"copy", "Bag"}}, Json{{"add", "X"}}})
     EXPECT_THROW(static_cast<void>(edit_text(kCrane, text_of_crane(), request)), Failure);

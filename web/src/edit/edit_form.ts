@@ -11,6 +11,7 @@ export class EditForm {
   #context: Context;
   #editors: FieldEditor[] = [];
   #problems = h("div", { class: "note is-bad" });
+  #last?: FieldEditor; // that was used last
   #shape = ""; // of the form: what it was built for
 
   constructor(context: Context, element: string) {
@@ -47,8 +48,16 @@ export class EditForm {
     editor?.focus();
   }
 
+  // Puts the name of a point into the field that was used last. False: that one takes no point.
+  putPoint(name: string): boolean {
+    if (!this.#last?.takesPoint) return false;
+    this.#last.put(name);
+    return true;
+  }
+
   #build(element: SceneElement, kind: KindInfo | undefined): void {
     this.#editors = [];
+    this.#last = undefined;
     if (element.place) {
       const rows = Object.entries(element.given).map(([key, { text, place }]) =>
         h("tr", { title: place }, h("td", {}, key), h("td", { class: "written" }, text)),
@@ -66,6 +75,7 @@ export class EditForm {
     const rowOf = (info: FieldInfo) => {
       const editor = new FieldEditor(this.#context.scene, element, info);
       this.#editors.push(editor);
+      editor.root.addEventListener("focusin", () => (this.#last = editor));
       return editor.root;
     };
     const first = infos.filter(isFirst).map(rowOf);

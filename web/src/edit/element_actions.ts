@@ -16,6 +16,8 @@ function list(notes: string[]): string {
   return notes.slice(0, most).join(", ") + more;
 }
 
+const placesOf = (notes: string[]) => (notes.length > 0 ? `: ${list(notes)}` : "");
+
 export class ElementActions {
   #context: Context;
 
@@ -65,14 +67,13 @@ export class ElementActions {
       this.#context.select(undefined);
       session.noticed.emit({ level: 0, message: `${element} is removed from the text` });
     } else {
-      const places = notes.length > 0 ? `: ${list(notes)}` : "";
-      session.noticed.emit({ level: 1, message: refusal + places });
+      session.noticed.emit({ level: 1, message: refusal + placesOf(notes) });
     }
   }
 
   async #apply(name: string, edit: Promise<EditAnswer>, textOf: (notes: string[]) => string): Promise<string> {
     const { refusal, notes } = await edit;
-    if (refusal !== "") return refusal;
+    if (refusal !== "") return refusal + placesOf(notes);
     const text = textOf(notes);
     if (text !== "") this.#context.session.noticed.emit({ level: 0, message: text });
     this.#context.select(name);

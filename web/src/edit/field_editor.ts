@@ -74,6 +74,16 @@ export class FieldEditor {
     this.#showProblems();
   }
 
+  // The name of a point may stand here.
+  get takesPoint(): boolean {
+    return (this.#info.type === "triple" && this.#info.unit === "m") || /^frame[12]?$/.test(this.key);
+  }
+
+  put(value: string): void {
+    this.#input.value = value;
+    void this.#send();
+  }
+
   focus(): void {
     this.#input.focus();
     this.#input.scrollIntoView({ block: "center" });

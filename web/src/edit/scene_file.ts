@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene's text as this page edits it: its elements and problems as the window reads them, undo and redo, saving, and
-// the restart of the session. Nothing is written before it is saved.
+// the restart of the session. Nothing is written before it is saved. A reload of the page keeps the text and its undo.
 import { Emitter } from "../dom";
 import type { Session } from "../session";
+import { History, type HistoryState } from "./history";
 
 export interface FieldInfo {
   key: string;
@@ -48,8 +49,15 @@ export interface Problem {
   suggestion: string;
 }
 
+export interface NamedPoint {
+  name: string; // Boom.tip
+  body: string;
+  position: [number, number, number]; // m, in the body's frame
+}
+
 interface Outline {
   elements: SceneElement[];
+  points: NamedPoint[];
   problems: Problem[];
   omitted: number;
   warnings: string[];
@@ -70,8 +78,17 @@ export interface EditAnswer {
   notes: string[];
 }
 
-const kMostUndo = 100;
 const kSameEditMs = 2000; // keys typed into one field within this time are one step of undo
+
+const kKeptKey = "slewring.scene"; // in the storage of this tab
+
+interface Kept {
+  path: string;
+  text: string;
+  savedText: string;
+  tag: string;
+  history: HistoryState;
+}
 
 export const textOf = (problem: Problem) =>
   [
@@ -93,17 +110,18 @@ export class SceneFile {
   known = new Set<string>(); // elements of the file when the session began, or the editing
 
   #session: Session;
-  #now: Snapshot = { text: "", elements: [], problems: [], omitted: 0, warnings: [] };
+  #now: Snapshot = { text: "", elements: [], points: [], problems: [], omitted: 0, warnings: [] };
   #savedText = "";
   #tag = "";
-  #past: Snapshot[] = [];
-  #future: Snapshot[] = [];
+  #history = new History();
   #last = { place: "", time: 0 }; // of the last step of undo
   #queue: Promise<unknown> = Promise.resolve();
   #waiting = 0;
 
   constructor(session: Session) {
     this.#session = session;
+    session.changed.on(() => this.#openAgain());
+    window.addEventListener("pagehide", () => this.#keep());
     window.addEventListener("beforeunload", (event) => {
       if (this.isChanged) event.preventDefault();
     });
@@ -121,14 +139,17 @@ export class SceneFile {
   get omitted(): number {
     return this.#now.omitted;
   }
+  get points(): NamedPoint[] {
+    return this.isOpen ? this.#now.points : [];
+  }
   get isChanged(): boolean {
     return this.isOpen && this.#now.text !== this.#savedText;
   }
   get mayUndo(): boolean {
-    return this.#past.length > 0;
+    return this.#history.mayUndo;
   }
   get mayRedo(): boolean {
-    return this.#future.length > 0;
+    return this.#history.mayRedo;
   }
 
   kindOf(element: SceneElement): KindInfo | undefined {
@@ -165,8 +186,7 @@ export class SceneFile {
     this.kinds = file.kinds;
     this.#savedText = file.text;
     this.#tag = file.tag;
-    this.#past = [];
-    this.#future = [];
+    this.#history = new History();
     this.isOpen = true;
     this.known = new Set(file.elements.map((one) => one.name));
     this.#show(file);
@@ -175,6 +195,7 @@ export class SceneFile {
 
   close(): void {
     this.isOpen = false;
+    sessionStorage.removeItem(kKeptKey);
     this.elements = new Map();
     this.changed.emit();
   }
@@ -188,10 +209,10 @@ export class SceneFile {
   }
 
   undo(): void {
-    this.#step(this.#past, this.#future);
+    void this.#enqueue(() => this.#goTo(this.#history.before(this.text), () => this.#history.undo()));
   }
   redo(): void {
-    this.#step(this.#future, this.#past);
+    void this.#enqueue(() => this.#goTo(this.#history.after(this.text), () => this.#history.redo()));
   }
 
   // False: it was refused, with a notice.
@@ -238,21 +259,51 @@ export class SceneFile {
     const edited = (await answer.json()) as Snapshot & Partial<EditAnswer>;
     if (edited.text !== this.text) {
       const isSame = place !== "" && place === this.#last.place && Date.now() - this.#last.time < kSameEditMs;
-      if (!isSame) this.#past.push(this.#now);
-      if (this.#past.length > kMostUndo) this.#past.shift();
-      this.#future = [];
+      this.#history.add(this.text, edited.text, isSame);
       this.#last = { place, time: Date.now() };
       this.#show(edited);
     }
     return { refusal: edited.refusal ?? "", notes: edited.notes ?? [] };
   }
 
-  #step(from: Snapshot[], to: Snapshot[]): void {
-    const next = from.pop();
-    if (!next) return;
-    to.push(this.#now);
+  // Shows a text of the history when the window has read it.
+  async #goTo(text: string | undefined, done: () => void): Promise<void> {
+    if (text === undefined) return;
+    const answer = await this.#request("scene.json", "POST", JSON.stringify({ text }));
+    if (!answer?.ok) return;
+    done();
     this.#last.place = "";
-    this.#show(next);
+    this.#show((await answer.json()) as Snapshot);
+  }
+
+  // ---- a reload of the page
+
+  #keep(): void {
+    if (!this.isOpen) return;
+    const { path, text } = this;
+    const kept: Kept = { path, text, savedText: this.#savedText, tag: this.#tag, history: this.#history.state };
+    try {
+      sessionStorage.setItem(kKeptKey, JSON.stringify(kept));
+    } catch {
+      sessionStorage.removeItem(kKeptKey); // too large for the browser: the reload begins with the file
+    }
+  }
+
+  // The text as it was before the reload. A file that has changed meanwhile is not replaced: saving is refused.
+  #openAgain(): void {
+    if (this.isOpen || this.#session.description?.scene_file === undefined) return;
+    const text = sessionStorage.getItem(kKeptKey);
+    sessionStorage.removeItem(kKeptKey);
+    if (text === null) return;
+    const kept = JSON.parse(text) as Kept;
+    void this.open().then((isOpen) => {
+      if (!isOpen || kept.path !== this.path) return;
+      this.#savedText = kept.savedText;
+      this.#tag = kept.tag;
+      this.#history = new History(kept.history);
+      if (kept.text === this.text) this.changed.emit();
+      else void this.#enqueue(() => this.#goTo(kept.text, () => undefined));
+    });
   }
 
   #show(snapshot: Snapshot): void {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The values that this page sends to the inputs, and the holders of the inputs.
 //
-// Each source (pointer, keyboard, gamepad) has a wish for an input; the one farthest from neutral counts. An input is
+// Each source (pointer, keyboard, gamepad, a table of recorded values) has a wish for an input; the one farthest from neutral counts. An input is
 // leased when it first leaves neutral. While it is away from neutral, and for kTailMs after, its value is sent every
 // kSendEveryMs. A page that is hidden or suspended sends nothing more: the window then puts the input to neutral.
 import { Emitter } from "../dom";
@@ -10,7 +10,7 @@ import type { Session } from "../session";
 const kSendEveryMs = 30; // the window goes to neutral after 150 ms
 const kTailMs = 400; // neutral is sent for so long, so that the last value cannot be a lost one
 
-export type Source = "pointer" | "keyboard" | "gamepad";
+export type Source = "pointer" | "keyboard" | "gamepad" | "table";
 export type Lease = "free" | "requested" | "mine" | "other";
 
 interface Driven {

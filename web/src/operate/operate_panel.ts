@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The inputs of the machine: the holder and the value of each, and the controls of this page.
 import type { Context } from "../context";
-import { atMostEvery, h, setText } from "../dom";
+import { atMostEvery, download, h, setText } from "../dom";
 import { panel, toolButton } from "../panels/panel";
 import type { InputInfo } from "../session";
 import { formatNumber } from "../units";
 import { Driver } from "./driver";
 import { Gamepad, type GamepadMap } from "./gamepad";
 import { gamepadTable } from "./gamepad_table";
+import { csvOf, InputRecord, parseInputs } from "./input_record";
 import { Keyboard } from "./keyboard";
 import { digitalButton, neutralSlider, showPresent, stick } from "./stick";
 
@@ -27,6 +28,8 @@ export class OperatePanel {
   #context: Context;
   #driver: Driver;
   #keyboard: Keyboard;
+  #record: InputRecord;
+  #driven: string[] = []; // names of the inputs that this page may drive
   #rows: Row[] = [];
   #list = h("div", { class: "inputs" });
   #sticks = h("div", { class: "sticks", hidden: true });
@@ -34,6 +37,11 @@ export class OperatePanel {
   #keys = toolButton("list", "Operate by the keyboard", () => (this.#keyboard.isOn = !this.#keyboard.isOn), "Keys");
   #pads = toolButton("stick", "Sticks on the screen", () => this.#toggle(this.#sticks, this.#pads), "Sticks");
   #gear = toolButton("gear", "Axes of the gamepad", () => this.#toggle(this.#map, this.#gear));
+  #recordTool = h("button", { type: "button", onclick: () => this.#toggleRecord() });
+  #playTool = h("button", { type: "button", onclick: () => this.#togglePlay() });
+  #recordNote = h("span", { class: "number", role: "status" });
+  #file = h("input", { type: "file", accept: ".csv,text/csv", hidden: true, onchange: () => void this.#play() });
+  #tables = h("div", { class: "tables" }, this.#recordTool, this.#playTool, this.#recordNote, this.#file);
   #names = ""; // of the inputs in the list
 
   constructor(context: Context) {
@@ -43,7 +51,9 @@ export class OperatePanel {
     this.#keyboard = new Keyboard(this.#driver);
     this.#keys.classList.add("keys");
     this.gamepad = new Gamepad(this.#driver);
-    this.root = panel("operate", "Operate", [this.#keys, this.#pads, this.#gear], this.#sticks, this.#list, this.#map);
+    this.root = panel("operate", "Operate", [this.#keys, this.#pads, this.#gear], this.#sticks, this.#list, this.#tables, this.#map);
+    this.#record = new InputRecord(session, this.#driver);
+    this.#record.changed.on(() => this.#showRecord());
     const show = atMostEvery(kShowEveryMs, () => this.#show());
     session.changed.on(() => this.#build());
     session.valuesChanged.on(show);
@@ -54,6 +64,7 @@ export class OperatePanel {
     });
     this.gamepad.changed.on(() => context.workspaceChanged.emit());
     this.#build();
+    this.#showRecord();
   }
 
   get map(): GamepadMap {
@@ -84,6 +95,8 @@ export class OperatePanel {
     this.#list.replaceChildren();
     const driven = session.maySteer ? inputs.filter((input) => !input.is_lockstep) : [];
     const analog = driven.filter((input) => !input.is_digital).map((input) => input.name);
+    this.#driven = driven.map((input) => input.name);
+    this.#tables.hidden = driven.length === 0;
     this.#keyboard.inputs = analog;
     this.gamepad.inputs = analog;
     this.#sticks.replaceChildren(
@@ -130,8 +143,49 @@ export class OperatePanel {
     else await this.#driver.acquire(input, lease === "other");
   }
 
+  // ---- the inputs as a table
+
+  #toggleRecord(): void {
+    if (!this.#record.isRecording) return this.#record.startRecording(this.#driven);
+    const table = this.#record.stopRecording();
+    if (table) download(`${this.#context.session.description?.scene ?? "session"}-input.csv`, csvOf(table));
+  }
+
+  #togglePlay(): void {
+    if (this.#record.isPlaying) this.#record.stopPlaying();
+    else this.#file.click();
+  }
+
+  async #play(): Promise<void> {
+    const chosen = this.#file.files?.[0];
+    if (!chosen) return;
+    try {
+      this.#record.play(parseInputs(await chosen.text(), this.#driven));
+    } catch (error) {
+      const message = `${chosen.name} was not played: ${(error as Error).message}`;
+      this.#context.session.noticed.emit({ level: 2, message });
+    }
+    this.#file.value = "";
+  }
+
+  #showRecord(): void {
+    const { isRecording, isPlaying, seconds, end } = this.#record;
+    setText(this.#recordTool, isRecording ? "Stop and save" : "Record input");
+    setText(this.#playTool, isPlaying ? "Stop" : "Play input");
+    this.#recordTool.title = isRecording
+      ? "End the recording and save it as a table of `slewring run --input`"
+      : "Record the inputs from now on, whoever moves them";
+    this.#playTool.title = isPlaying ? "End the playback; the inputs go to neutral" : "Play a recorded table from now on";
+    this.#recordTool.disabled = isPlaying;
+    this.#playTool.disabled = isRecording;
+    this.#tables.classList.toggle("is-on", isRecording || isPlaying);
+    const state = `${seconds.toFixed(1)} ${isPlaying ? `of ${end.toFixed(1)} ` : ""}s`;
+    setText(this.#recordNote, isRecording || isPlaying ? state : "");
+  }
+
   #show(): void {
     const { session } = this.#context;
+    this.#showRecord();
     for (const { input, track, value, holder, button } of this.#rows) {
       const present = session.values.get(`${input.name}.raw`) ?? 0;
       setText(value, formatNumber(Math.round(present * 1000) / 1000));

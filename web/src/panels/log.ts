@@ -50,13 +50,16 @@ export class LogPanel {
   }
 }
 
-// Notices stand above the page for some seconds.
+// Notices stand above the page for some seconds; a later one of the same subject takes the place.
 export function noticesOf(context: Context): HTMLElement {
   const root = h("div", { class: "notices", role: "alert" });
   context.session.noticed.on((status) => {
-    const present = [...root.children].find((one) => one.textContent === status.message) as HTMLElement | undefined;
+    const subject = status.id ?? status.message;
+    const present = [...root.children].find((one) => (one as HTMLElement).dataset["subject"] === subject) as HTMLElement | undefined;
     const kind = status.level >= 2 ? "error" : status.level === 1 ? "warning" : "info";
     const notice = present ?? h("p", { class: kind, onclick: () => notice.remove() }, status.message);
+    notice.textContent = status.message;
+    notice.dataset["subject"] = subject;
     clearTimeout(Number(notice.dataset["timer"]));
     notice.dataset["timer"] = String(setTimeout(() => notice.remove(), kNoticeMs));
     root.append(notice);

@@ -38,6 +38,12 @@ export class ObjectPanel {
       context.select(element);
       this.#form?.focus(key);
     });
+    context.pointPicked.on((point) => {
+      if (this.#form?.putPoint(point.name)) return;
+      context.select(point.body);
+      const message = `${point.name} is a point of ${point.body}; to use it, click into a field for a point, then on it`;
+      context.session.noticed.emit({ level: 0, message });
+    });
     context.session.parametersChanged.on((names) => {
       for (const name of names) this.#fields.get(name)?.take(context.session.parameters.get(name)!);
     });

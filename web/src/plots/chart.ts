@@ -5,10 +5,10 @@ import type { Context } from "../context";
 import { Emitter } from "../dom";
 import type { LogEntry } from "../session";
 import type { CursorLines } from "./cursor_lines";
+import type { CurveId, CurveStore } from "./curves";
 import type { TimeAxis } from "./time_axis";
 
-export interface Curve {
-  name: string; // of the variable
+export interface Curve extends CurveId {
   color: string;
 }
 
@@ -17,21 +17,24 @@ const kWheelZoom = 1.0015; // for each unit of the wheel
 const kMarkPixels = 5; // distance at which an event is shown
 const kLeft = 3;
 const kRight = 1; // sides of uPlot
+export const dashes: number[][] = [[], [7, 4], [2, 3], [10, 3, 2, 3]]; // by recording
 
 export class Chart {
   readonly hovered = new Emitter();
   hoverTime?: number;
   #context: Context;
   #axis: TimeAxis;
+  #store: CurveStore;
   #host: HTMLElement;
   #cursors: CursorLines;
   #plot?: uPlot;
   #curves: Curve[] = [];
   #yRanges = new Map<string, [number, number]>(); // by scale; chosen by hand
 
-  constructor(context: Context, axis: TimeAxis, cursors: CursorLines, host: HTMLElement) {
+  constructor(context: Context, axis: TimeAxis, store: CurveStore, cursors: CursorLines, host: HTMLElement) {
     this.#context = context;
     this.#axis = axis;
+    this.#store = store;
     this.#cursors = cursors;
     this.#host = host;
     new ResizeObserver(() => this.#resize()).observe(host);
@@ -40,8 +43,10 @@ export class Chart {
   get canvas(): HTMLCanvasElement | undefined {
     return this.#plot?.ctx.canvas;
   }
-  get hasChosenY(): boolean {
-    return this.#yRanges.size > 0;
+  // The range of values that a curve's axis shows.
+  rangeOf(curve: Curve): [number, number] {
+    const { min, max } = this.#plot?.scales[this.#scaleOf(curve)] ?? {};
+    return [min ?? -1, max ?? 1];
   }
 
   setCurves(curves: Curve[]): void {
@@ -75,7 +80,7 @@ export class Chart {
     if (!this.#plot) return [];
     const at = this.#plot.valToPos(time, "x");
     return this.#context.session.log.filter(
-      (entry) => Math.abs(this.#plot!.valToPos(entry.time, "x") - at) <= kMarkPixels,
+      (entry) => !entry.isEarlier && Math.abs(this.#plot!.valToPos(entry.time, "x") - at) <= kMarkPixels,
     );
   }
 
@@ -84,14 +89,16 @@ export class Chart {
   }
 
   #data(): uPlot.AlignedData {
-    const { samples } = this.#context.session;
-    const [first, last] = samples.rows(...this.#axis.range);
-    const columns = this.#curves.map((curve) => {
-      const { factor } = this.#unitOf(curve);
-      const column = (samples.columns.get(curve.name) ?? []).slice(first, last);
-      return factor === 1 ? column : column.map((value) => (value === null ? null : value * factor));
+    const [times, ...columns] = this.#store.table(this.#curves, ...this.#axis.range);
+    const shown = columns.map((column, i) => {
+      const { factor } = this.#unitOf(this.#curves[i]!);
+      return factor === 1 ? column : Array.from(column, (value) => (typeof value === "number" ? value * factor : value));
     });
-    return [samples.times.slice(first, last), ...columns];
+    return [times, ...shown];
+  }
+
+  #scaleOf(curve: Curve): string {
+    return `y:${this.#unitOf(curve).text}`;
   }
 
   #options(): uPlot.Options {
@@ -136,10 +143,12 @@ export class Chart {
       {},
       ...this.#curves.map((curve) => ({
         label: curve.name,
-        scale: `y:${this.#unitOf(curve).text}`,
+        scale: this.#scaleOf(curve),
         stroke: curve.color,
+        dash: dashes[curve.recording % dashes.length],
         width: 1.5,
-        spanGaps: true,
+        pxAlign: false, // whole pixels make stairs of a slow curve
+        spanGaps: !this.#context.session.isRecording, // there a gap has an empty sample
         points: { show: false },
       })),
     ];
@@ -236,7 +245,7 @@ export class Chart {
     ctx.save();
     for (const entry of session.log) {
       const x = at(entry.time);
-      if (!isVisible(x)) continue;
+      if (entry.isEarlier || !isVisible(x)) continue;
       ctx.strokeStyle = ctx.fillStyle = entry.level >= 3 ? bad : usual;
       ctx.lineWidth = scale;
       ctx.setLineDash([2 * scale, 3 * scale]);

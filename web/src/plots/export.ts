@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plot as a file: the visible samples as CSV in SI units, or the picture as PNG.
-import type { Samples } from "../samples";
-import type { Session } from "../session";
-
-// Rows of all times from `from` to `to` [s]; an empty field where a variable has no value.
-export function csvOf(session: Session, variables: string[], from: number, to: number): Blob {
-  const samples: Samples = session.samples;
-  const unitOf = (name: string) => session.variables.get(name)?.unit ?? "1";
-  const lines = [["time [s]", ...variables.map((name) => `${name} [${unitOf(name)}]`)].join(",")];
-  const columns = variables.map((name) => samples.columns.get(name) ?? []);
-  samples.times.forEach((time, row) => {
-    if (time < from || time > to) return;
-    lines.push([time, ...columns.map((column) => column[row] ?? "")].join(","));
-  });
-  return new Blob([`${lines.join("\n")}\n`], { type: "text/csv" });
-}
+// A plot as a file: the visible samples as CSV in SI units, the picture as PNG or SVG.
+import type uPlot from "uplot";
 
 export interface Caption {
   text: string;
   color: string;
+  dash: number[];
 }
+
+// heads: of the columns behind the time. An empty field where a variable has no value.
+export function csvOf(heads: string[], table: uPlot.AlignedData): Blob {
+  const [times, ...columns] = table;
+  const lines = [["time [s]", ...heads].map(fieldOf).join(",")];
+  Array.from(times, (time, row) => lines.push([time, ...columns.map((column) => column[row] ?? "")].join(",")));
+  return new Blob([`${lines.join("\n")}\n`], { type: "text/csv" });
+}
+
+const fieldOf = (text: string) => (/[",\n]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
 
 // The canvas of the plot under a line of captions.
 export async function pictureOf(
@@ -38,10 +35,15 @@ export async function pictureOf(
   draw.fillRect(0, 0, picture.width, picture.height);
   draw.font = `${12 * scale}px system-ui, sans-serif`;
   draw.textBaseline = "middle";
+  draw.lineWidth = 2.5 * scale;
   let x = 10 * scale;
   for (const caption of captions) {
-    draw.fillStyle = caption.color;
-    draw.fillRect(x, head / 2 - scale, 14 * scale, 2.5 * scale);
+    draw.strokeStyle = caption.color;
+    draw.setLineDash(caption.dash.map((one) => one * scale));
+    draw.beginPath();
+    draw.moveTo(x, head / 2);
+    draw.lineTo(x + 14 * scale, head / 2);
+    draw.stroke();
     draw.fillStyle = text;
     draw.fillText(caption.text, x + 19 * scale, head / 2);
     x += 34 * scale + draw.measureText(caption.text).width;

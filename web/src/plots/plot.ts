@@ -6,9 +6,11 @@ import { icon } from "../icons";
 import { kDragType } from "../panels/object";
 import { toolButton } from "../panels/panel";
 import { formatNumber } from "../units";
-import { Chart } from "./chart";
+import { Chart, type Curve, dashes } from "./chart";
 import { CursorLines } from "./cursor_lines";
-import { csvOf, pictureOf } from "./export";
+import type { CurveId, CurveStore } from "./curves";
+import { type Caption, csvOf, pictureOf } from "./export";
+import { svgOf } from "./svg";
 import type { TimeAxis } from "./time_axis";
 
 const kColors = 8; // --curve-0 to --curve-7
@@ -18,7 +20,7 @@ interface Line {
   color: number;
   stop: () => void;
   root: HTMLElement;
-  value: Element;
+  values: HTMLElement; // a number for each recording that is shown
   unit: Element;
 }
 
@@ -30,6 +32,7 @@ export class Plot {
   readonly noted = new Emitter<string>(); // what stands at the pointer and the cursors
   #context: Context;
   #axis: TimeAxis;
+  #store: CurveStore;
   #lines: Line[] = [];
   #cursors = new CursorLines();
   #chart: Chart;
@@ -37,10 +40,11 @@ export class Plot {
   #host = h("div", { class: "chart" });
   #empty = h("p", { class: "empty" }, "Drag variables here, or add one by its name.");
 
-  constructor(context: Context, axis: TimeAxis) {
+  constructor(context: Context, axis: TimeAxis, store: CurveStore) {
     this.#context = context;
     this.#axis = axis;
-    this.#chart = new Chart(context, axis, this.#cursors, this.#host);
+    this.#store = store;
+    this.#chart = new Chart(context, axis, store, this.#cursors, this.#host);
     const entry = h("input", {
       class: "add-variable",
       type: "text",
@@ -57,8 +61,9 @@ export class Plot {
     const tools = [
       toolButton("cursors", "Two cursors with differences", () => this.#cursors.toggle()),
       toolButton("fit", "Show the whole range of values", () => this.#chart.freeY()),
-      toolButton("download", "Save the visible samples as CSV", () => this.#saveCsv()),
-      toolButton("image", "Save the picture as PNG", () => void this.#savePicture()),
+      fileButton("CSV", "Save the visible samples as CSV", () => void this.#saveCsv()),
+      fileButton("SVG", "Save the visible window as SVG", () => this.#saveSvg()),
+      fileButton("PNG", "Save the picture as PNG", () => void this.#savePicture()),
       toolButton("close", "Remove this plot", () => this.removed.emit()),
     ];
     this.root = h(
@@ -99,7 +104,7 @@ export class Plot {
     const used = new Set(this.#lines.map((line) => line.color));
     let color = 0;
     while (used.has(color) && color < kColors - 1) ++color;
-    const value = h("span", { class: "number" });
+    const values = h("span", { class: "numbers" });
     const unit = h("span", { class: "unit" });
     const remove = h(
       "button",
@@ -111,7 +116,7 @@ export class Plot {
       { class: "curve", style: `--color: var(--curve-${color})`, "data-variable": name },
       h("i", {}),
       h("b", {}, name),
-      value,
+      values,
       unit,
       remove,
     );
@@ -120,7 +125,7 @@ export class Plot {
       color,
       stop: this.#context.session.record(name.slice(0, name.indexOf("."))),
       root,
-      value,
+      values,
       unit,
     });
     this.#legend.append(root);
@@ -146,12 +151,18 @@ export class Plot {
     this.root.remove();
   }
 
-  // After a change of variables, units or colours.
+  // After a change of variables, units, colours or recordings.
   rebuild(): void {
     this.#empty.hidden = this.#lines.length > 0;
-    this.#chart.setCurves(
-      this.#lines.map((line) => ({ name: line.name, color: this.#context.color(`--curve-${line.color}`) })),
-    );
+    const recordings = this.#store.shown;
+    for (const line of this.#lines) {
+      line.values.replaceChildren(
+        ...recordings.map((recording) =>
+          h("span", { class: "number", title: this.#store.nameOf(recording), "data-recording": String(recording) }),
+        ),
+      );
+    }
+    this.#chart.setCurves(this.#curves);
     this.#showValues();
   }
 
@@ -160,22 +171,33 @@ export class Plot {
     this.#showValues();
   }
 
+  get #curves(): Curve[] {
+    return this.#lines.flatMap(({ name, color }) =>
+      this.#store.shown.map((recording) => ({ name, recording, color: this.#context.color(`--curve-${color}`) })),
+    );
+  }
+
   // At the pointer the last sample before it, else the newest; between two cursors their difference.
   #showValues(): void {
     const { session } = this.#context;
     const times = this.#cursors.times;
+    const now = this.#axis.isFollowing ? session.time : this.#axis.range[1];
     const hover = this.#chart.hoverTime;
     for (const line of this.#lines) {
       const unit = this.#context.unitOf(line.name);
-      const at = (time: number) => session.samples.valueAt(line.name, time)?.value;
       const shown = (value: number | undefined) => formatNumber(value === undefined ? value : value * unit.factor);
-      if (times) {
-        const [a, b] = times.map(at);
-        const difference = a === undefined || b === undefined ? undefined : b - a;
-        setText(line.value, `A ${shown(a)}  B ${shown(b)}  Δ ${shown(difference)}`);
-      } else {
-        setText(line.value, shown(at(hover ?? (this.#axis.isFollowing ? session.time : this.#axis.range[1]))));
-      }
+      this.#store.shown.forEach((recording, i) => {
+        const at = (time: number) => this.#store.valueAt({ name: line.name, recording }, time)?.value;
+        const place = line.values.children[i];
+        if (!place) return;
+        if (times) {
+          const [a, b] = times.map(at);
+          const difference = a === undefined || b === undefined ? undefined : b - a;
+          setText(place, `A ${shown(a)}  B ${shown(b)}  Δ ${shown(difference)}`);
+        } else {
+          setText(place, shown(at(hover ?? now)));
+        }
+      });
       setText(line.unit, unit.text);
     }
   }
@@ -189,8 +211,10 @@ export class Plot {
       parts.push(`A ${a.toFixed(3)} s  B ${b.toFixed(3)} s  Δ ${(b - a).toFixed(3)} s`);
     }
     if (hover !== undefined && this.#lines[0]) {
-      const sample = this.#context.session.samples.valueAt(this.#lines[0].name, hover);
-      if (sample) parts.push(`sample at ${sample.time.toFixed(3)} s`);
+      const curve: CurveId = { name: this.#lines[0].name, recording: 0 };
+      const sample = this.#store.valueAt(curve, hover);
+      const isThinned = this.#store.isThinned(curve, ...this.#axis.range);
+      if (sample) parts.push(`sample at ${sample.time.toFixed(3)} s${isThinned ? " (zoom in for all samples)" : ""}`);
       for (const entry of this.#chart.eventsNear(hover)) parts.push(`${entry.source}: ${entry.text}`);
     }
     return parts.join("   ");
@@ -205,18 +229,56 @@ export class Plot {
     );
   }
 
-  #saveCsv(): void {
-    download(`${this.#fileName}.csv`, csvOf(this.#context.session, this.variables, ...this.#axis.range));
+  async #saveCsv(): Promise<void> {
+    const { session } = this.#context;
+    const curves = this.#curves;
+    try {
+      const table = await this.#store.exactTable(curves, ...this.#axis.range);
+      const heads = curves.map(({ name, recording }) => {
+        const of = this.#store.shown.length > 1 ? ` (${this.#store.nameOf(recording)})` : "";
+        return `${name}${of} [${session.variables.get(name)?.unit ?? "1"}]`;
+      });
+      download(`${this.#fileName}.csv`, csvOf(heads, table));
+    } catch (error) {
+      session.noticed.emit({ level: 2, message: `no file was saved: ${(error as Error).message}` });
+    }
+  }
+
+  #captionOf(curve: Curve): Caption {
+    const unit = this.#context.unitOf(curve.name).text;
+    const of = this.#store.shown.length > 1 ? ` (${this.#store.nameOf(curve.recording)})` : "";
+    return {
+      text: `${curve.name}${of}${unit ? ` [${unit}]` : ""}`,
+      color: curve.color,
+      dash: dashes[curve.recording % dashes.length]!,
+    };
+  }
+
+  #saveSvg(): void {
+    const curves = this.#curves;
+    if (curves.length === 0) return;
+    const { range } = this.#axis;
+    const [times, ...columns] = this.#store.table(curves, ...range);
+    // of a live session a time without a value is one of another node
+    const isLive = !this.#context.session.isRecording;
+    const parted = columns.map((column) => (isLive ? Array.from(column, (value) => value ?? undefined) : column));
+    const drawn = curves.map((curve) => {
+      const { text: unit, factor } = this.#context.unitOf(curve.name);
+      return { ...this.#captionOf(curve), unit, factor, range: this.#chart.rangeOf(curve) };
+    });
+    const text = svgOf(drawn, [times, ...parted], range);
+    download(`${this.#fileName}.svg`, new Blob([text], { type: "image/svg+xml" }));
   }
 
   async #savePicture(): Promise<void> {
     if (!this.#chart.canvas) return;
-    const captions = this.#lines.map((line) => {
-      const unit = this.#context.unitOf(line.name).text;
-      return { text: unit ? `${line.name} [${unit}]` : line.name, color: this.#context.color(`--curve-${line.color}`) };
-    });
+    const captions = this.#curves.map((curve) => this.#captionOf(curve));
     const [background, text] = [this.#context.color("--panel"), this.#context.color("--text")];
     const picture = await pictureOf(this.#chart.canvas, captions, background, text);
     if (picture) download(`${this.#fileName}.png`, picture);
   }
+}
+
+function fileButton(text: string, title: string, onclick: () => void): HTMLElement {
+  return h("button", { class: "tool file", type: "button", title, "aria-label": title, onclick }, text);
 }

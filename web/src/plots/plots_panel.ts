@@ -4,6 +4,7 @@ import type { Context } from "../context";
 import { h, setText } from "../dom";
 import { icon } from "../icons";
 import { panel, toolButton } from "../panels/panel";
+import { CurveStore } from "./curves";
 import { Plot } from "./plot";
 import { TimeAxis } from "./time_axis";
 
@@ -27,6 +28,7 @@ export class PlotsPanel {
   readonly root: HTMLElement;
   #context: Context;
   #axis: TimeAxis;
+  #store: CurveStore;
   #plots: Plot[] = [];
   #last?: Plot; // the one that was used last
   #list = h("div", { class: "plots" });
@@ -34,6 +36,7 @@ export class PlotsPanel {
   #length = h("select", { title: "Time that is shown", "aria-label": "Time that is shown" });
   #pause = toolButton("pause", "Hold the plots; samples go on", () => this.#togglePause());
   #note = h("span", { class: "plot-note number" });
+  #recordings = h("div", { class: "recordings", hidden: true });
   #isWaiting = false;
   #isStale = false; // something changed while waiting
 
@@ -41,6 +44,7 @@ export class PlotsPanel {
     this.#context = context;
     const { session } = context;
     this.#axis = new TimeAxis(session);
+    this.#store = new CurveStore(session);
     for (const [value, text] of lengths) this.#length.append(h("option", { value: String(value) }, text));
     this.#length.onchange = () => {
       this.#axis.length = Number(this.#length.value);
@@ -50,14 +54,16 @@ export class PlotsPanel {
       "plots",
       "Plots",
       [this.#note, this.#length, this.#pause, toolButton("plus", "Add a plot", () => this.#addPlot())],
+      this.#recordings,
       this.#list,
       this.#names,
     );
+    this.#store.changed.on(() => this.draw());
     this.#axis.changed.on(() => this.#showAxis());
     session.valuesChanged.on(() => this.draw());
     session.changed.on(() => {
       this.#offerNames();
-      this.#showNote("");
+      this.#offerRecordings();
     });
     context.themeChanged.on(() => this.#rebuild());
     context.unitsChanged.on(() => this.#rebuild());
@@ -99,10 +105,10 @@ export class PlotsPanel {
   }
 
   #addPlot(): Plot {
-    const plot = new Plot(this.#context, this.#axis);
+    const plot = new Plot(this.#context, this.#axis, this.#store);
     plot.used.on(() => (this.#last = plot));
     plot.changed.on(() => this.#context.workspaceChanged.emit());
-    plot.noted.on((text) => this.#showNote(text));
+    plot.noted.on((text) => setText(this.#note, text));
     plot.removed.on(() => {
       this.#removePlot(plot);
       if (this.#plots.length === 0) this.#addPlot();
@@ -136,8 +142,22 @@ export class PlotsPanel {
     this.draw();
   }
 
-  #showNote(text: string): void {
-    setText(this.#note, text === "" && this.#context.session.isRecording ? "shows what has been played" : text);
+  // Which curve is of which recording.
+  #offerRecordings(): void {
+    const names = this.#context.session.description?.recordings ?? [];
+    this.#recordings.hidden = names.length < 2;
+    if (this.#recordings.childElementCount === names.length || names.length < 2) return;
+    const isShown = h("input", {
+      type: "checkbox",
+      checked: this.#store.showsBeside,
+      onchange: () => {
+        this.#store.showsBeside = isShown.checked;
+        this.#rebuild();
+      },
+    });
+    const keys = names.map((name, i) => h("span", { class: `recording dash-${i % 4}` }, h("i", {}), name));
+    this.#recordings.replaceChildren(keys[0]!, ...keys.slice(1, -1), h("label", {}, isShown, keys.at(-1)!));
+    this.#rebuild();
   }
 
   #offerNames(): void {

@@ -41,6 +41,19 @@ export class Machine {
     return [...this.#entities.keys()].filter((id) => id !== "Ground" && !id.includes("/"));
   }
 
+  // Meshes and edges of a body.
+  solidsOf(body: string): THREE.Object3D[] {
+    const solids: THREE.Object3D[] = [];
+    this.#entities.get(body)?.traverse((object) => {
+      if (object instanceof THREE.Mesh || object instanceof THREE.LineSegments) solids.push(object);
+    });
+    return solids;
+  }
+
+  hasFrame(name: string): boolean {
+    return this.#frames.has(name);
+  }
+
   frame(name: string): THREE.Group {
     let frame = this.#frames.get(name);
     if (!frame) {

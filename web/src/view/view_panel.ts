@@ -3,13 +3,17 @@
 import * as THREE from "three";
 import type { Context } from "../context";
 import { atMostEvery, download, h, setText } from "../dom";
+import type { NamedPoint } from "../edit/scene_file";
 import { panel, toolButton } from "../panels/panel";
+import { Bending } from "./bending";
 import { Camera, type CameraState, type Preset, presets } from "./camera";
 import { Machine } from "./machine";
+import { PointMarks, textOf } from "./points";
 import { type Graphics, Stage } from "./stage";
 
 const kClickPixels = 5; // a longer way of the pointer turns the view
 const kHoverEveryMs = 60;
+const none: NamedPoint[] = [];
 const presetNames: Record<Preset, string> = { iso: "Iso", front: "Front", side: "Side", top: "Top" };
 
 export interface ViewState {
@@ -24,6 +28,10 @@ export class ViewPanel {
   #stage: Stage;
   #camera: Camera;
   #machine: Machine;
+  #bending: Bending;
+  #points: PointMarks;
+  #showsPoints = true;
+  #pointsTool = toolButton("target", "Named points of bodies: a click puts one into the field that was used last", () => this.#togglePoints());
   #follow = h("select", { title: "Body that the camera follows", "aria-label": "Follow a body" });
   #followed = "";
   #quality = h("select", { title: "Quality of the picture", "aria-label": "Graphics" });
@@ -51,6 +59,7 @@ export class ViewPanel {
             ),
           ),
         ),
+        this.#pointsTool,
         this.#follow,
         this.#quality,
         toolButton("image", "Save the picture as PNG", () => void this.#save()),
@@ -62,6 +71,7 @@ export class ViewPanel {
     this.#machine = new Machine(
       context.session,
       () => {
+        this.#bending.update();
         this.#camera.keepUp();
         if (!this.#isFramed) this.#frame();
         this.#stage.draw();
@@ -69,6 +79,10 @@ export class ViewPanel {
       () => this.#takeScene(),
     );
     this.#stage.scene.add(this.#machine.root);
+    this.#bending = new Bending(context.session, this.#machine);
+    this.#points = new PointMarks(this.#machine);
+    context.scene.changed.on(() => this.#showPoints());
+    this.#showPoints();
     for (const [value, text] of [
       ["auto", "Graphics: auto"],
       ["high", "Graphics: high"],
@@ -86,7 +100,11 @@ export class ViewPanel {
     this.#offerBodies();
     this.#takeClicks(canvas);
     this.#camera.controls.addEventListener("end", () => context.workspaceChanged.emit());
-    context.themeChanged.on(() => this.#stage.setTheme(context.isDark));
+    context.themeChanged.on(() => {
+      this.#stage.setTheme(context.isDark);
+      this.#points.color = new THREE.Color(context.color("--accent"));
+    });
+    this.#points.color = new THREE.Color(context.color("--accent"));
     context.selectionChanged.on(() => this.#highlight());
     this.#stage.setTheme(context.isDark);
   }
@@ -108,6 +126,7 @@ export class ViewPanel {
   }
 
   #takeScene(): void {
+    this.#bending.rebuild();
     this.#offerBodies();
     this.#highlight();
     if (this.#isFramed) this.#setExtent();
@@ -158,7 +177,20 @@ export class ViewPanel {
     this.#stage.draw();
   }
 
-  #pick(event: PointerEvent): string | undefined {
+  // Those of the scene's text while it is edited.
+  #showPoints(): void {
+    const { points } = this.#context.scene;
+    this.#pointsTool.hidden = points.length === 0;
+    this.#pointsTool.setAttribute("aria-pressed", String(this.#showsPoints));
+    if (this.#points.show(this.#showsPoints ? points : none)) this.#stage.draw();
+  }
+
+  #togglePoints(): void {
+    this.#showsPoints = !this.#showsPoints;
+    this.#showPoints();
+  }
+
+  #rayAt(event: PointerEvent): THREE.Raycaster {
     const box = this.#stage.canvas.getBoundingClientRect();
     const point = new THREE.Vector2(
       ((event.clientX - box.left) / box.width) * 2 - 1,
@@ -166,18 +198,30 @@ export class ViewPanel {
     );
     const ray = new THREE.Raycaster();
     ray.setFromCamera(point, this.#stage.camera);
-    return Machine.elementOf(ray.intersectObject(this.#machine.root, true)[0]?.object ?? null);
+    return ray;
+  }
+
+  #elementAt(ray: THREE.Raycaster): string | undefined {
+    return Machine.elementOf(ray.intersectObject(this.#machine.root, true).find((hit) => !(hit.object instanceof THREE.Sprite))?.object ?? null);
   }
 
   #takeClicks(canvas: HTMLCanvasElement): void {
-    let start: PointerEvent | undefined;
+    let start: PointerEvent | undefined; // of a click, with one finger
     let last: PointerEvent | undefined;
+    const down = new Set<number>(); // pointers
     const hover = atMostEvery(kHoverEveryMs, () => {
-      const element = last && this.#pick(last);
-      setText(this.#hover, element ?? "");
-      canvas.style.cursor = element === undefined ? "" : "pointer";
+      const ray = last && this.#rayAt(last);
+      const point = ray && this.#points.pick(ray);
+      const text = point ? textOf(point) : ray && this.#elementAt(ray);
+      setText(this.#hover, text ?? "");
+      canvas.style.cursor = text === undefined ? "" : "pointer";
     });
-    canvas.addEventListener("pointerdown", (event) => (start = event));
+    canvas.addEventListener("pointerdown", (event) => {
+      down.add(event.pointerId);
+      start = down.size === 1 ? event : undefined;
+    });
+    for (const name of ["pointerup", "pointercancel"] as const)
+      canvas.addEventListener(name, (event) => down.delete(event.pointerId));
     canvas.addEventListener("pointermove", (event) => {
       last = event.buttons === 0 && event.pointerType === "mouse" ? event : undefined;
       if (last) hover();
@@ -190,10 +234,16 @@ export class ViewPanel {
       if (!start || event.button !== 0) return;
       const way = Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY);
       start = undefined;
-      if (way > kClickPixels) return;
-      const element = this.#pick(event);
-      this.#context.select(element === "Ground" ? undefined : element);
+      if (way <= kClickPixels) this.#click(event);
     });
+  }
+
+  #click(event: PointerEvent): void {
+    const ray = this.#rayAt(event);
+    const point = this.#points.pick(ray);
+    if (point) return this.#context.pointPicked.emit(point);
+    const element = this.#elementAt(ray);
+    this.#context.select(element === "Ground" ? undefined : element);
   }
 
   async #save(): Promise<void> {
