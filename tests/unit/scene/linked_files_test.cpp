@@ -32,7 +32,7 @@ std::vector<Named> every_key() {
   return {
       {"part.yaml", "session: {duration: 3 s}\n", "include: part.yaml\n" + kBody},
       {"part.yaml", kBody.c_str(), "include: [{file: part.yaml, prefix: Left_}]\n"},
-      {"part.yaml", "Stick: [[0 s, 0], [1 s, 1]]\n", kBody + "script: {file: part.yaml}\n"},
+      {"part.yaml", "inputs: {Stick: [[0 s, 0], [1 s, 1]]}\n", kBody + "script: {file: part.yaml}\n"},
       {"part.csv", "time,Stick\n0,0\n1,1\n", kBody + "script: {file: part.csv}\n"},
       {"part.csv", "time [s],F [N]\n0,0\n1,1\n",
        "bodies: {B: {mass: 1, inertia: [1, 1, 1]}}\njoints: {J: {type: prismatic, body2: B}}\n"
