@@ -238,7 +238,7 @@ TEST(ExtremeCases, ReliefsOfEveryKindBoundThePressures) {
 }
 
 // the tipper swings at 8 Hz and decays with 1.7 1/s by its monolith (docs/extremes.md); as the note has it
-TEST(ExtremeCases, OfLateSamplesKnowTheTippersOwnDamping) {
+TEST(ExtremeCases, OfLateSamplesIncludeTheTippersOwnDamping) {
   scene::SceneOptions options;
   options.file = SLEWRING_SOURCE_DIR "/scenes/tipper.yaml";
   const CaseOutcome late = run_case(options, "delay_1");

@@ -63,11 +63,11 @@ TEST(LinkedFiles, OutOfTheFolderAreRefusedWhicheverKeyNamesThem) {
     const std::string target = elsewhere.write(named.file, named.content);
     const std::string scene = folder.write("scene.yaml", named.scene);
     fs::create_symlink(target, fs::path(folder.path()) / named.file);
-    const std::string told = refusal(scene);
-    EXPECT_NE(told.find("'" + std::string(named.file) + "' is a link to '" + target +
-                        "', outside of the scene's folder, and was not read"),
+    const std::string message = refusal(scene);
+    EXPECT_NE(message.find("'" + std::string(named.file) + "' is a link to '" + target +
+                           "', outside of the scene's folder, and was not read"),
               std::string::npos)
-        << told;
+        << message;
     // without the link
     fs::remove(fs::path(folder.path()) / named.file);
     folder.write(named.file, named.content);
@@ -125,8 +125,8 @@ TEST(LinkedFiles, OfFlexibleBodiesStayInTheFolder) {
     const fs::path file = flex::flexible_file({elsewhere.path(), "crane", "beam"}, matrix);
     fs::create_symlink(file, fs::path(folder.path()) / file.filename());
   }
-  const std::string told = refusal(folder.write("scene.yaml", scene));
-  EXPECT_NE(told.find("outside of the scene's folder"), std::string::npos) << told;
+  const std::string message = refusal(folder.write("scene.yaml", scene));
+  EXPECT_NE(message.find("outside of the scene's folder"), std::string::npos) << message;
   EXPECT_EQ(refusal(elsewhere.write("scene.yaml", scene)), "");
 }
 
