@@ -154,8 +154,8 @@ const std::vector<Setting>& settings() {
       {"RK4 0.02 ms", Solver::rk4, 1e-4, 2e-5},
       {"impl. Euler 1 ms", Solver::implicit_euler, 1e-4, 1e-3},
       {"impl. Euler 0.1 ms", Solver::implicit_euler, 1e-4, 1e-4},
+      {"CVODE 1e-2", Solver::cvode, 1e-2},
       {"CVODE 1e-4", Solver::cvode, 1e-4},
-      {"CVODE 1e-6", Solver::cvode, 1e-6},
   };
   return list;
 }

@@ -16,6 +16,10 @@ constexpr double kLimitLookAhead = 4;
 // micro-step of the port problem: resolves an oil spring of 300 rad/s to 1e-3 of its phase
 constexpr double kMicroStep = 0.25e-3;
 
+// micro-steps from which the force that answers a jump of the load moves the mechanism as far as it does (slope_of() of
+// port_dynamics.cpp)
+constexpr int kStepsOfBlow = 3;
+
 // depth of the divisions of a sub-step near a stop: 4^5 = 1024 parts
 constexpr std::size_t kDivisions = 5;
 
@@ -146,6 +150,16 @@ void PortProblem::take_row_forces() noexcept {
   }
 }
 
+// True if the viscous friction of a joint takes the speed of its row within delta [s].
+bool PortProblem::damps_within(double delta) noexcept {
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    if (is_port(active_[k])) continue;
+    const double viscous = multibody::law_of(mechanism_.model(), active_[k]).viscous;
+    if (viscous * dynamics_.W()[k * active_.size() + k] * delta > 1) return true;
+  }
+  return false;
+}
+
 coupling::PortStep PortProblem::advance(const Step& step, double h, bool is_first_substep) noexcept {
   select_rows(h);
   timed_loads_.look_ahead(mechanism_, h);
@@ -157,7 +171,8 @@ coupling::PortStep PortProblem::advance(const Step& step, double h, bool is_firs
   if (is_first_substep) {
     partner_.remember(step.n, dynamics_.x().first(ports_.size()), dynamics_.z().first(ports_.size()));
   }
-  const int micro_steps = std::max(1, static_cast<int>(std::ceil(h / kMicroStep - 1e-9)));
+  int micro_steps = std::max(1, static_cast<int>(std::ceil(h / kMicroStep - 1e-9)));
+  if (damps_within(h / micro_steps)) micro_steps = std::max(micro_steps, kStepsOfBlow);
   coupling::PortStep solved = dynamics_.solve(h, micro_steps, laws_);
   take_row_forces();
   const bool is_closed = mechanism_.advance(h, force_mean_, force_slope_);

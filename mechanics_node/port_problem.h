@@ -94,6 +94,7 @@ class PortProblem {
   void load_rows(double h) noexcept;
   void load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept;
   void take_row_forces() noexcept;
+  [[nodiscard]] bool damps_within(double delta) noexcept;
   [[nodiscard]] coupling::PortStep advance(const Step& step, double h, bool is_first_substep) noexcept;
   void finish_substep(const Step& step) noexcept;
 

@@ -19,8 +19,8 @@ MachineMeshes read_machine_meshes(const scene::Scene& scene, const std::string& 
   };
   for (const scene::GraphicDef& graphic : scene.graphics) {
     // the scene may come from another machine
-    if (!scene::is_inside_folder(graphic.file)) {
-      leave_out(graphic, "'" + graphic.file + "' lies outside of the folder of the scene's files");
+    if (const auto refusal = scene::LoadContext{true, folder}.refusal_of(graphic.file)) {
+      leave_out(graphic, refusal->what);
       continue;
     }
     Problems problems;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/mesh_overlap.h"
 #include "math/vector3.h"
 
 namespace slew::contact {
@@ -21,6 +22,8 @@ using math::Vec3;
 constexpr double kConvexTolerance = 1e-6;
 // triangles whose area is below this share of the size squared are lines
 constexpr double kAreaTolerance = 1e-12;
+// share of the volume that may count twice: a tenth of the accuracy at which a mass is known
+constexpr double kMostDoubled = 1e-3;
 
 constexpr const char* kTurning = "triangles that all turn counter-clockwise seen from outside";
 
@@ -185,6 +188,18 @@ std::vector<Part> parts_of(const MeshDef& mesh) {
   return parts;
 }
 
+// solids that share more than kMostDoubled of the volume
+std::optional<MeshFault> find_overlap_fault(const MeshDef& mesh) {
+  const DoubledVolume doubled = find_doubled_volume(mesh);
+  const double share = doubled.volume / (volume_of(mesh) / 6);
+  if (share <= kMostDoubled) return std::nullopt;
+  return MeshFault{fmt::format("its solids overlap, or one lies in another: about {:.2g} % of the volume counts twice, "
+                               "such as that at ({:.4g}, {:.4g}, {:.4g}) m",
+                               100 * share, doubled.place[0], doubled.place[1], doubled.place[2]),
+                   "solids that touch at most: unite them in the program that made the file, or cut one out of the "
+                   "other"};
+}
+
 }  // namespace
 
 std::optional<MeshFault> find_solid_fault(const MeshDef& mesh) {
@@ -221,7 +236,7 @@ std::optional<MeshFault> find_solid_fault(const MeshDef& mesh) {
         fmt::format("the part with triangle {} is inside out, and no other part surrounds it", part.triangle),
         kTurning};
   }
-  return std::nullopt;
+  return find_overlap_fault(mesh);
 }
 
 std::optional<MeshFault> find_convex_fault(const MeshDef& mesh) {

@@ -32,7 +32,8 @@ struct MeshFault {
 
 // A surface that encloses a volume for mass properties, with weaker conditions than for contact: solids may touch at
 // vertices, edges and faces, and triangles may have no area. Each edge must have equal numbers of triangles in both
-// directions. A separate part may be a hole: turned inside out within another part.
+// directions. A separate part may be a hole: turned inside out within another part. At most a thousandth of the volume
+// may lie in two solids at once (mesh_overlap.h).
 [[nodiscard]] std::optional<MeshFault> find_solid_fault(const MeshDef& mesh);
 
 // A convex closed surface: it lies behind the planes of all its triangles.

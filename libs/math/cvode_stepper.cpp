@@ -16,7 +16,9 @@ namespace slew::math {
 namespace {
 
 constexpr std::uint32_t kMostSteps = 100'000;  // within one interval
-constexpr double kJump = 1e-3;                 // share of a state's size above which a move of y is an event
+// Share of the tolerance that the error of one step may have: those of BDF add up to ten to a hundred times as much.
+constexpr double kShareOfTolerance = 0.01;
+constexpr double kJump = 1e-3;  // share of a state's size above which a move of y is an event
 
 void ignore_message(int, const char*, const char*, char*, void*) {}
 
@@ -82,7 +84,7 @@ struct CvodeStepper::Memory {
     realtype* const weight = N_VGetArrayPointer(out);
     for (std::size_t i = 0; i < m.y.size(); ++i) {
       const double size = options.size_of(i, values[i] + m.offset[i]);
-      weight[i] = 1 / (options.relative_tolerance * size);
+      weight[i] = 1 / (kShareOfTolerance * options.relative_tolerance * size);
     }
     return 0;
   }

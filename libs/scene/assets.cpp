@@ -21,8 +21,10 @@ struct Measured {
   std::string problem;
 };
 
-Measured measure(const std::string& name, const std::string& path) {
+Measured measure(const std::string& name, const LoadContext& load_context) {
+  if (const auto refusal = load_context.refusal_of(name)) return {std::nullopt, refusal->what};
   std::string bytes;
+  const std::string path = load_context.path_of(name);
   if (const auto fault = read_input(path, kMaxAssetBytes, bytes)) return {std::nullopt, fault->text()};
   return {Asset{.name = name, .size = bytes.size(), .sha256 = sha256_of(bytes)}, ""};
 }
@@ -54,8 +56,8 @@ std::optional<Sha256> read_sha256(std::string_view text) {
   return sum;
 }
 
-std::optional<Asset> measure_asset(const std::string& name, const std::string& path, std::string& fault) {
-  Measured measured = measure(name, path);
+std::optional<Asset> measure_asset(const std::string& name, const LoadContext& load_context, std::string& fault) {
+  Measured measured = measure(name, load_context);
   fault = measured.problem;
   return std::move(measured.asset);
 }
@@ -92,7 +94,7 @@ void read_assets(const Node& section, const LoadContext& load_context, Scene& sc
       scene.assets.push_back({.name = item.text});
       continue;
     }
-    Measured measured = measure(item.text, load_context.path_of(item.text));
+    Measured measured = measure(item.text, load_context);
     if (measured.asset) {
       scene.assets.push_back(std::move(*measured.asset));
     } else {
@@ -105,7 +107,7 @@ Status check_assets(std::span<const Asset> manifest, const std::string& folder) 
   const LoadContext load_context{true, folder};
   std::string differences;
   for (const Asset& wanted : manifest) {
-    const Measured found = measure(wanted.name, load_context.path_of(wanted.name));
+    const Measured found = measure(wanted.name, load_context);
     if (found.asset == wanted) continue;
     differences += differences.empty() ? "" : "; ";
     differences += "asset '" + wanted.name + "' ";

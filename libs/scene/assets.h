@@ -15,7 +15,8 @@ namespace slew::scene {
 
 inline constexpr std::size_t kMaxAssets = 256;
 
-// Names stay inside the scene's folder, so that they are valid on every machine.
+// Names stay inside the scene's folder, so that they are valid on every machine. Links are not followed: a file that is
+// to be opened is checked by LoadContext::refusal_of.
 [[nodiscard]] bool is_inside_folder(const std::string& name);
 
 [[nodiscard]] Sha256 sha256_of(std::string_view bytes);
@@ -23,8 +24,9 @@ inline constexpr std::size_t kMaxAssets = 256;
 [[nodiscard]] std::string hex_text(const Sha256& sum);
 [[nodiscard]] std::optional<Sha256> read_sha256(std::string_view text);
 
-// Size and hash of a file; empty with the reason in `fault`, phrased about the file.
-[[nodiscard]] std::optional<Asset> measure_asset(const std::string& name, const std::string& path, std::string& fault);
+// Size and hash of a file in the load context's folder; empty with the reason in `fault`, phrased about the file.
+[[nodiscard]] std::optional<Asset> measure_asset(const std::string& name, const LoadContext& load_context,
+                                                 std::string& fault);
 
 // Reads the section `assets: [file, ...]`; with a load context every file is measured.
 void read_assets(const Node& section, const LoadContext& load_context, Scene& scene, Report& report);

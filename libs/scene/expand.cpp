@@ -241,6 +241,22 @@ void set_value(Node& root, Setting setting, Scope& scope, Report& report) {
 
 }  // namespace
 
+namespace {
+
+// Where a name in a folder leads by symbolic links, if that is outside of the folder; empty: it stays inside, or a part
+// of the path is not there or cannot be searched, so that nothing can be opened either.
+std::string link_out_of(const std::string& folder, const std::string& file) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path base = fs::canonical(folder.empty() ? fs::path(".") : fs::path(folder), error);
+  if (error) return {};
+  const fs::path target = fs::canonical(base / file, error);
+  if (error || is_inside_folder(target.lexically_relative(base).generic_string())) return {};
+  return target.string();
+}
+
+}  // namespace
+
 std::string LoadContext::path_of(const std::string& file) const {
   return (std::filesystem::path(folder) / file).string();
 }
@@ -250,9 +266,18 @@ std::string LoadContext::asset_path_of(const std::string& file) const {
 }
 
 std::optional<ValueProblem> LoadContext::refusal_of(const std::string& file) const {
-  if (!is_confined || is_inside_folder(file)) return std::nullopt;
-  return ValueProblem{"'" + file + "' lies outside of the scene's folder and was not read",
-                      "a file in that folder or below", ""};
+  if (!is_confined) return std::nullopt;
+  const std::string expected = "a file in that folder or below";
+  if (!is_inside_folder(file)) {
+    return ValueProblem{"'" + file + "' lies outside of the scene's folder and was not read", expected, ""};
+  }
+  for (const auto& [is_read, from] : {std::pair(has_folder, &folder), std::pair(has_assets, &asset_folder)}) {
+    const std::string target = is_read ? link_out_of(*from, file) : "";
+    if (target.empty()) continue;
+    return ValueProblem{"'" + file + "' is a link to '" + target + "', outside of the scene's folder, and was not read",
+                        expected + ": copy it there", ""};
+  }
+  return std::nullopt;
 }
 
 std::optional<Node> read_with_includes(const std::string& path, Report& report, Includes includes,

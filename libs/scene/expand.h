@@ -28,7 +28,8 @@ struct LoadContext {
 
   [[nodiscard]] std::string path_of(const std::string& file) const;
   [[nodiscard]] std::string asset_path_of(const std::string& file) const;
-  // The fault of a file's name; nothing: the file lies in the folder.
+  // The one check of every file that a scene names, before it is opened: its name and, where there is a folder, the
+  // file behind symbolic links lie in the folder (which itself may be reached by a link). Nothing: it may be read.
   [[nodiscard]] std::optional<ValueProblem> refusal_of(const std::string& file) const;
 };
 

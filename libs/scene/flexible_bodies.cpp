@@ -147,6 +147,12 @@ class FlexibleReader {
                      "names of files in that folder");
       return nullptr;
     }
+    for (const std::string& matrix : flex::flexible_matrices()) {
+      if (auto refusal = load_context_.refusal_of(flex::flexible_file(files, matrix).filename().string())) {
+        report_problem(body, "flex_file_prefix", std::move(refusal->what), std::move(refusal->expected));
+        return nullptr;
+      }
+    }
     try {
       set = std::make_unique<flex::Reduction>(flex::read_flexible_files(files));
     } catch (const std::exception& error) {
@@ -159,13 +165,12 @@ class FlexibleReader {
   }
 
   void add_asset(const BodyDef& body, const flex::FlexibleFileSet& files, const std::string& matrix) {
-    const std::string path = flex::flexible_file(files, matrix).string();
     const std::string name = flex::flexible_file(files, matrix).filename().string();
     const auto known = std::find_if(scene_.assets.begin(), scene_.assets.end(),
                                     [&](const Asset& asset) { return asset.name == name; });
     if (known != scene_.assets.end()) return;
     std::string fault;
-    if (std::optional<Asset> asset = measure_asset(name, path, fault)) {
+    if (std::optional<Asset> asset = measure_asset(name, LoadContext{true, load_context_.asset_folder}, fault)) {
       scene_.assets.push_back(std::move(*asset));
     } else {
       report_problem(body, "flex_file_prefix", "'" + name + "' " + fault, "");

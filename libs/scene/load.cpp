@@ -352,6 +352,10 @@ class SceneReader {
         multibody::find_unlikely_inertia(scene_.mechanics, warnings);
         multibody::find_start_changes(scene_.mechanics, warnings);
         multibody::find_unlikely_contacts(scene_.mechanics, warnings);
+        if (scene_.session.solution == Solution::split) {
+          multibody::find_lost_rebounds(scene_.mechanics, mechanics_substep(scene_.session, scene_.mechanics),
+                                        warnings);
+        }
       }
     });
     if (scene_.session.contact == ContactUse::off) scene_.mechanics.contacts.clear();

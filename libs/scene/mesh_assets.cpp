@@ -28,7 +28,9 @@ bool is_complete(const LoadContext& load_context, const ShapeDef& shape, Problem
   }
   if (!shape.vertices.empty()) add("vertices", "the shape has a file already", "either a file or vertices");
   if (!load_context.has_folder) add("file", "a scene without a folder cannot read a file", "vertices and triangles");
-  if (!is_inside_folder(shape.file)) add("file", "'" + shape.file + "' is elsewhere", "a file in the scene's folder");
+  if (auto refusal = load_context.refusal_of(shape.file)) {
+    add("file", std::move(refusal->what), std::move(refusal->expected));
+  }
   if (!std::isfinite(shape.file_unit))
     add("unit", "the unit of the file is missing", "the length of one unit, such as '1 mm'");
   if (shape.file_up != "y" && shape.file_up != "z") {

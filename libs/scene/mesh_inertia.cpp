@@ -136,8 +136,8 @@ class MeshBodyReader {
                      {"a scene without a folder cannot name a file", "mass, center_of_mass and inertia", ""});
       return std::nullopt;
     }
-    if (!is_inside_folder(def_.mesh)) {
-      report_problem(mark, "mesh", {"is '" + def_.mesh + "'", "a file in the scene's folder", ""});
+    if (auto refusal = load_context_.refusal_of(def_.mesh)) {
+      report_problem(mark, "mesh", std::move(*refusal));
       return std::nullopt;
     }
     const std::filesystem::path path = load_context_.path_of(def_.mesh);

@@ -135,8 +135,8 @@ std::vector<Face> faces_of(const scene::GraphicDef& graphic, const std::string& 
                            std::vector<std::string>& left_out) {
   Problems problems;
   contact::MeshDef mesh;
-  if (!scene::is_inside_folder(graphic.file)) {
-    left_out.push_back(graphic.name + ": '" + graphic.file + "' lies outside of the folder of the scene's files");
+  if (const auto refusal = scene::LoadContext{true, folder}.refusal_of(graphic.file)) {
+    left_out.push_back(graphic.name + ": " + refusal->what);
     return {};
   }
   mesh = contact::read_mesh(graphic.name,

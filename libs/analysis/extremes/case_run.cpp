@@ -8,6 +8,7 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include "analysis/coupling_check.h"
@@ -36,6 +37,8 @@ constexpr double kLift = 0.1, kMostLift = 5, kFineLift = 5e-3;  // m, of the gro
 constexpr int kFineLifts = 40;
 constexpr double kSmallHose = 1e-6;  // m3
 constexpr StepIndex kStepsBetweenLooks = 64;
+constexpr double kKickAfter = 0.02;     // s
+constexpr StepIndex kLeastChanges = 5;  // of the sign of a swing, whose decay is measured
 
 // Upper bound of a scene's pressures from its valves and sources, and from the columns that its actuators stop.
 class Ceiling {
@@ -116,10 +119,20 @@ struct Run {
   Trace trace;
 };
 
-// Parts of a case that are left out for the comparison run.
-enum class Strictness : std::uint8_t { whole, compared };
+// compared: without what the comparison run leaves out. kicked: the same with one sample a step late, a small kick.
+enum class Strictness : std::uint8_t { whole, compared, kicked };
 
-session::SampleAges ages_of(const ExtremeCase& one) {
+// step at which the inputs are full and one sample of the kicked run is late
+StepIndex kick_of(const ExtremeCase& one, double H) {
+  const double from = one.inputs.empty() ? 0 : one.inputs.front().at;
+  return static_cast<StepIndex>((from + kKickAfter) / H);
+}
+
+session::SampleAges ages_of(const ExtremeCase& one, Strictness strictness, double H) {
+  if (strictness == Strictness::kicked) {
+    return [kick = kick_of(one, H)](StepIndex n) -> StepIndex { return n == kick ? 1 : 0; };
+  }
+  if (strictness == Strictness::compared) return {};
   if (one.delay > 0) return [delay = one.delay](StepIndex n) { return std::min(n, delay); };
   if (one.lost > 0) {
     return
@@ -150,7 +163,7 @@ class Stepper {
       : case_(one),
         scene_(scene),
         is_whole_(strictness == Strictness::whole),
-        session_(scene, is_whole_ ? ages_of(one) : session::SampleAges{}),
+        session_(scene, ages_of(one, strictness, scene.session.step)),
         ceiling_(scene),
         H_(scene.session.step_duration()) {
     if (const auto* mechanics = session_.physics<mechanics_node::MechanicsSubsystem>(Role::mechanics)) {
@@ -350,6 +363,41 @@ double difference(const Trace& a, const Trace& b) {
   return range > 0 ? largest / range : largest;
 }
 
+// The swing that a kick at one step starts, until `end`: its frequency by the changes of sign of the difference, its
+// decay by the largest difference in the first and in the last period; none where that is too short.
+struct Swing {
+  double omega = 0, decay = 0;  // 1/s
+};
+std::optional<Swing> swing_after(const Trace& kicked, const Trace& quiet, StepIndex kick, StepIndex end, double H) {
+  const auto columns = static_cast<StepIndex>(quiet.columns);
+  end = std::min(end, std::min(std::ssize(kicked.values), std::ssize(quiet.values)) / columns);
+  const auto at = [&](StepIndex step, StepIndex column) {
+    const auto i = static_cast<std::size_t>(step * columns + column);
+    return kicked.values[i] - quiet.values[i];
+  };
+  const auto largest = [&](StepIndex column, StepIndex from, StepIndex to) {
+    double swing = 0;
+    for (StepIndex i = from; i < to; ++i) swing = std::max(swing, std::fabs(at(i, column)));
+    return swing;
+  };
+  StepIndex column = 0;
+  for (StepIndex other = 1; other < columns; ++other) {
+    if (largest(other, kick + 1, end) > largest(column, kick + 1, end)) column = other;
+  }
+  StepIndex changes = 0, first = 0, last = 0;
+  for (StepIndex i = kick + 2; i < end; ++i) {
+    if (at(i - 1, column) * at(i, column) >= 0) continue;
+    if (changes++ == 0) first = i;
+    last = i;
+  }
+  if (changes < kLeastChanges) return std::nullopt;
+  const StepIndex period = 2 * (last - first) / (changes - 1);
+  const double before = largest(column, kick + 1, kick + 1 + period), after = largest(column, end - period, end);
+  if (!(after > 0)) return std::nullopt;
+  return Swing{2 * std::numbers::pi / (static_cast<double>(period) * H),
+               std::log(before / after) / (static_cast<double>(end - period - kick - 1) * H)};
+}
+
 bool is_same(const Trace& a, const Trace& b) {
   const auto same = [](double x, double y) {
     return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
@@ -489,6 +537,7 @@ class Case {
       const Run other = Stepper(case_, scene, Strictness::compared).run();
       run.measures.difference = difference(run.trace, other.trace);
       bound_error(std::sqrt(other.measures.stiffness.value_or(0)));
+      allow_for_damping(scene, other, run.measures);
       run.measures.is_same = is_same(run.trace, other.trace);
     }
     return std::move(run.measures);
@@ -501,6 +550,34 @@ class Case {
     error = case_.delay > 0 ? error_of_late_samples(w) : error_of_lost_samples(w);
     case_.bounds.made = std::max(case_.bounds.made, error * error);
     notes_.push_back(fmt::format("omega_H k of {:.2g}", w));
+  }
+
+  // The error beyond its law, by what late samples take of the machine's own damping (judge.h).
+  void allow_for_damping(const scene::Scene& scene, const Run& on_time, Measures& measures) {
+    const double H = measures.H;
+    if (case_.compared_with != ComparedWith::on_time || on_time.trace.columns == 0) return;
+    if (measures.difference.value_or(0) <= case_.bounds.difference) return;
+    const Run kicked = Stepper(case_, scene, Strictness::kicked).run();
+    const double until = case_.inputs.size() > 1 ? case_.inputs[1].at : case_.duration;
+    const std::optional<Swing> swing =
+        swing_after(kicked.trace, on_time.trace, kick_of(case_, H), static_cast<StepIndex>(until / H), H);
+    if (!swing) return;
+    const auto lost = static_cast<double>(case_.lost);
+    const double age = case_.delay > 0 ? static_cast<double>(case_.delay) : lost * (lost + 1) / (2 * kLossPeriod);
+    const double taken = 0.5 * swing->omega * swing->omega * age * H, hertz = swing->omega / (2 * std::numbers::pi);
+    notes_.push_back(
+        fmt::format("swing of {:.3g} Hz with an own decay of {:.2g} 1/s, late samples take up to {:.2g} 1/s", hertz,
+                    swing->decay, taken));
+    if (taken < swing->decay) {
+      const double more = error_of_lost_damping(taken, swing->decay, case_.duration);
+      case_.bounds.difference = std::min(1.0, case_.bounds.difference + more);
+      case_.bounds.made = std::max(case_.bounds.made, case_.bounds.difference * case_.bounds.difference);
+      return;
+    }
+    measures.unsuitable = fmt::format(
+        "samples so late take up to {:.2g} 1/s of the decay of the machine's swing of {:.3g} Hz, which has {:.2g} 1/s: "
+        "it may swing up",
+        taken, hertz, swing->decay);
   }
 
   // The bounds without those of comparisons: an error grows with the step long before the run is unstable.

@@ -29,6 +29,7 @@ std::string nearest_text(const Json& result) {
     const std::string& why = result.at(end).text();
     if (!why.empty()) text += fmt::format("at {:.4g} s: {}; ", number(result.at("ended_at")), why);
   }
+  if (const std::string& unsuitable = result.at("unsuitable").text(); !unsuitable.empty()) return text + unsuitable;
   const std::vector<Json>& checks = result.at("checks").items();
   if (checks.empty()) return text + "finite";
   const Json& first = checks.front();
@@ -80,8 +81,9 @@ std::string report_text(const Extremes& extremes, std::size_t width) {
     text += scene + "\n" + table.text("  ", width) + "\n";
   }
   text +=
-      "within: finite and inside all bounds to the end. refused: by name, before it ran, or by the session's own alarm "
-      "(session.coupling_alarm)\nat the time that is named, with all bounds kept until then. EXCEEDED: beyond a bound. "
+      "within: finite and inside all bounds to the end. refused: by name, before it ran, by the session's own alarm "
+      "(session.coupling_alarm)\nat the time that is named, or for the machine's own damping, all other bounds kept. "
+      "EXCEEDED: beyond a bound. "
       "DIVERGED: not finite.\n";
   text +=
       fmt::format("{} within, {} refused by name, {} neither, {} not for their scene", within, refused, bad, not_for);

@@ -49,6 +49,14 @@ double error_of_lost_samples(double w) noexcept {
   return w > 1 ? std::clamp(0.1 * w * w * w, kLeastError, 1.0) : kLeastError;
 }
 
+double error_of_lost_damping(double taken, double own, double until) noexcept {
+  if (!(taken > 0)) return 0;
+  const double left = own - taken;
+  // the largest difference, or the end before it
+  const double t = std::min(until, std::log(own / left) / taken);
+  return 0.5 * (std::exp(-left * t) - std::exp(-own * t));
+}
+
 Judgement judge(const Measures& measures, const Bounds& bounds) {
   Judgement result;
   if (!measures.refusal.empty()) {
@@ -60,16 +68,19 @@ Judgement judge(const Measures& measures, const Bounds& bounds) {
   };
   if (measures.ceiling) add("highest pressure", "Pa", measures.highest_pressure, *measures.ceiling);
   if (measures.lowest_pressure) add("tension of the oil", "Pa", std::max(0.0, -*measures.lowest_pressure), 0);
-  add("energy made", "", measures.made, bounds.made);
+  const bool is_suitable = measures.unsuitable.empty();
+  const double made = measures.alarm.empty() ? bounds.made : std::max(bounds.made, kMadeBeforeAlarm);
+  if (is_suitable) add("energy made", "", measures.made, made);
   add("joints open", "m", measures.gap, bounds.gap);
-  if (bounds.difference > 0) add("force error", "", measures.difference, bounds.difference);
+  if (bounds.difference > 0 && is_suitable) add("force error", "", measures.difference, bounds.difference);
   if (bounds.requires_same) add("bits that differ", "", measures.is_same ? 0.0 : 1.0, 0);
   std::stable_sort(result.checks.begin(), result.checks.end(),
                    [](const Check& a, const Check& b) { return a.share() > b.share(); });
   const bool is_beyond = !result.checks.empty() && result.checks.front().share() > 1;
+  const bool is_refused = !measures.alarm.empty() || !is_suitable;
   result.verdict = !measures.failure.empty() ? Verdict::diverged
                    : is_beyond               ? Verdict::exceeded
-                   : !measures.alarm.empty() ? Verdict::refused
+                   : is_refused              ? Verdict::refused
                                              : Verdict::within;
   return result;
 }
@@ -80,6 +91,7 @@ std::string advice(const Measures& measures, const Judgement& judgement, const E
   if (edge.is_sought && !edge.step) step = "no step from 0.1 ms on keeps the bounds: avoid this";
   switch (judgement.verdict) {
     case Verdict::refused:
+      if (!measures.unsuitable.empty()) return "session.mode lockstep, which waits for every sample; or more damping";
       return measures.alarm.empty() && !edge.step ? "nothing: it is refused before it runs" : step;
     case Verdict::diverged:
       return step;
@@ -105,6 +117,7 @@ Json to_json(const Measures& m, const Judgement& judgement) {
   return {{"verdict", to_text(judgement.verdict)},
           {"checks", checks},
           {"refusal", m.refusal},
+          {"unsuitable", m.unsuitable},
           {"failure", m.failure},
           {"alarm", m.alarm},
           {"ended_at", m.ended_at},

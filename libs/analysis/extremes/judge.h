@@ -16,6 +16,14 @@
 // indicator with its window of one second does not cover: 1 %, and for late and lost samples the energy of a force
 // error e in the oil, e^2, if that is more:
 //   made = max over ports and time of -sum dE*, of max(sum |W_mech|, F_max^2 / (2 K)) of that port in the whole run
+// A session that its alarm ended may have made kMadeBeforeAlarm until then.
+//
+// The laws of late samples hold for a machine whose own damping is large against what they take. A force that is late
+// by tau takes up to omega^2 tau / 2 of the decay d [1/s] of a swing of omega; a lost sample ages, on the mean over the
+// period of the losses k (k + 1)/200 steps. With delta what they take, a swing of half the range adds
+//   1/2 max over t of (exp(-(d - delta) t) - exp(-d t)),   delta < d,  t until the end of the case
+// to the bound. From delta = d on the swing grows, whatever the coupling does: late samples are refused for the
+// machine, by name, if the law does not hold.
 #pragma once
 
 #include <cstdint>
@@ -32,6 +40,7 @@ namespace slew::analysis {
 struct Measures {
   std::string refusal;     // why it did not run: the scene, its start or a live change was refused by name
   std::string alarm;       // why the session ended itself, by session.coupling_alarm; empty: it did not
+  std::string unsuitable;  // why late samples are not for this machine; empty: they are
   std::string failure;     // how it diverged; empty: it did not
   double ended_at = 0;     // s, by the alarm or the failure
   std::int64_t steps = 0;  // done
@@ -75,10 +84,14 @@ struct Check {
 // Shares of the force range; w: omega_H k.
 [[nodiscard]] double error_of_late_samples(double w) noexcept;
 [[nodiscard]] double error_of_lost_samples(double w) noexcept;
+// What a swing of half the range adds, 0 to 1/2: taken, own: delta < d [1/s]; until: s.
+[[nodiscard]] double error_of_lost_damping(double taken, double own, double until) noexcept;
+
+inline constexpr double kMadeBeforeAlarm = 0.2;  // of the work; twice the alarm's limit for one second's
 
 enum class Verdict : std::uint8_t {
   within,    // finite, inside all its bounds to the end
-  refused,   // before it ran, or by the session's own alarm while all bounds were kept
+  refused,   // before it ran, by the session's own alarm or for its damping while all other bounds were kept
   exceeded,  // a bound was broken
   diverged   // not finite
 };

@@ -25,6 +25,7 @@ namespace {
 
 // own error of the reference, as a share of the range, above which the variable is at rest
 constexpr double kMostOwnError = 0.01;
+constexpr double kRounded = 1e-8;
 
 constexpr double kReferenceTolerance = 1e-9, kLooserTolerance = 1e-8;
 constexpr double kReferenceLimit = 600;       // s of wall time
@@ -107,7 +108,9 @@ class Trader {
     for (const ElementVariable& variable : variables) names.push_back(variable.name);
     std::vector<std::string> patterns = options_.variables;
     if (patterns.empty()) {
-      for (const scene::PortDef& port : base_.ports) patterns.push_back(port.name + ".force");
+      for (const scene::PortDef& port : base_.ports) {
+        patterns.push_back(port.name + (port.unit == coupling::PortUnit::metre ? ".force" : ".torque"));
+      }
       for (const std::string& lifted : payload_names()) patterns.push_back(lifted + ".position.?");
       if (patterns.empty()) patterns.emplace_back("*.pressure");
     }
@@ -329,7 +332,10 @@ class Trader {
       double& of_stem = by_stem[stem_of(names_[v])];
       if (std::isfinite(range)) of_stem = std::max(of_stem, range);
     }
-    for (std::size_t v = 0; v < names_.size(); ++v) result_.variables[v].range = by_stem[stem_of(names_[v])];
+    for (std::size_t v = 0; v < names_.size(); ++v) {
+      result_.variables[v].range = by_stem[stem_of(names_[v])];
+      result_.variables[v].size = std::max(std::fabs(of_base.result.low[v]), std::fabs(of_base.result.high[v]));
+    }
   }
 
   // ---- rows ---------------------------------------------------------------------------------------------------
@@ -423,13 +429,16 @@ double worst_error(const Tradeoff& tradeoff, const TradeoffRow& row, ErrorKind k
 }
 
 void mark_at_rest(std::vector<TradeoffVariable>& variables) {
-  std::map<std::string_view, double> spreads;
+  std::map<std::string_view, double> spreads, sizes;
   for (const TradeoffVariable& variable : variables) {
     double& of_stem = spreads[stem_of(variable.name)];
     of_stem = std::max(of_stem, variable.spread.value_or(0));
+    sizes[stem_of(variable.name)] = std::max(sizes[stem_of(variable.name)], variable.size);
   }
   for (TradeoffVariable& variable : variables) {
-    variable.is_at_rest = spreads[stem_of(variable.name)] > kMostOwnError * variable.range;
+    const std::string_view stem = stem_of(variable.name);
+    variable.is_at_rest =
+        spreads[stem] > kMostOwnError * variable.range || variable.range < kRounded * std::max(1.0, sizes[stem]);
   }
 }
 

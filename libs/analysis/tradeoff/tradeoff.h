@@ -34,8 +34,10 @@ struct TradeoffVariable {
   std::string name, unit;  // SI
   Dimension dimension = Dimension::none;
   double range = 0;              // the errors are relative to it
+  double size = 0;               // its largest value in the reference
   std::optional<double> spread;  // largest difference of the reference to itself at ten times its tolerance
-  // It moves no more than a hundred times that difference: an error relative to the range would be noise.
+  // It moves no more than a hundred times that difference, or 1e-8 of its size or of 1: an error relative to the range
+  // would be noise.
   bool is_at_rest = false;
 
   // A relative error exists.

@@ -24,10 +24,13 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings);
 // units. Pre-condition: validate() found nothing.
 void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings);
 
-// Appends a warning for every pair whose shapes start deep in each other. Pre-condition: validate() found nothing.
-// Also warns about contacts whose impact is too fast for the shortest part of a sub-step [s] of the scene's own rule,
-// each body taken as free and hit in its centre of mass.
+// Appends an error for every pair whose impact is too fast for the shortest part of a sub-step [s] of the scene's own
+// rule, each body taken as free and hit in its centre of mass, where an impact would make energy. An implicit rule
+// loses the rebound instead: the second function appends a warning where the restitution is kPlastic or more
+// (contact_rate.h). Pre-condition: validate() found nothing.
 void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems& problems);
+void find_lost_rebounds(const MechanicsDef& mechanics, double substep, Problems& warnings);
+// Appends a warning for every pair whose shapes start deep in each other. Pre-condition: validate() found nothing.
 void find_unlikely_contacts(const MechanicsDef& mechanics, Problems& warnings);
 
 }  // namespace slew::multibody

@@ -266,6 +266,15 @@ ContactParts stiff_parts(const Model& model, double parts, double needed, StepKi
   return {.count = static_cast<int>(std::ceil(std::max(parts, std::min(needed, kMostStiffParts))))};
 }
 
+// Number of parts that an implicit rule requires for the rebound of impacts, present and met with this rate; 0: none.
+double parts_of_blow(const Model& model, double h, double met_rate, Workspace& ws) noexcept {
+  const bool is_hit = has_impact(model, ws, RateOf::springs);
+  const double rate = std::max(met_rate, is_hit ? contact_rate(model, ws, RateOf::springs) : 0.0);
+  const double needed = h * rate / kReachOfBlow;
+  ws.contact->is_lost = ws.contact->is_lost || !(needed * kReachOfBlow <= kMostStiffParts * kLostBlow);
+  return std::min(needed, kMostStiffParts);
+}
+
 }  // namespace
 
 ContactParts contact_parts(const Model& model, double h, ContactStep step, Workspace& ws) noexcept {
@@ -282,20 +291,24 @@ ContactParts contact_parts(const Model& model, double h, ContactStep step, Works
     contacts.is_near = true;
     parts = std::max(parts, kPartsPerThickness * meeting.travel / elements.model.pairs()[pair].half_thickness);
     const bool is_new = contacts.was_touching[pair] == 0 && meeting.kind == contact::Meeting::Kind::found;
-    if (is_new && step.kind != StepKind::implicit) {
-      met_rate = std::max(met_rate, impact_rate(model, ws, pair, meeting, h));
-    }
+    const RateOf chosen = step.kind == StepKind::implicit ? RateOf::springs : RateOf::all;
+    if (is_new) met_rate = std::max(met_rate, impact_rate(model, ws, pair, meeting, h, chosen));
   }
   if (!contacts.is_near) return {};
   parts = std::clamp(parts, 1.0, kMostParts);
-  if (step.kind == StepKind::implicit) return {.count = static_cast<int>(std::ceil(parts))};
+  if (step.kind == StepKind::implicit) {
+    return {.count = static_cast<int>(std::ceil(std::max(parts, parts_of_blow(model, h, met_rate, ws))))};
+  }
   // resolve an imminent impact
   if (met_rate > 0 && step.kind == StepKind::settling) step.kind = StepKind::explicit_rule;
   return stiff_parts(model, parts, h * std::max(contact_rate(model, ws), met_rate) / step.reach, step.kind, ws);
 }
 
 ContactParts contact_parts_again(const Model& model, double h, int parts, ContactStep step, Workspace& ws) noexcept {
-  if (step.kind == StepKind::implicit) return {};
+  if (step.kind == StepKind::implicit) {
+    const double finer = parts_of_blow(model, h, 0, ws) / parts * (1 - kContactRounding);
+    return {.count = static_cast<int>(std::ceil(std::max(1.0, finer)))};
+  }
   const double needed = h * contact_rate(model, ws) / step.reach;
   if (step.kind == StepKind::settling && needed > kWorthSettling * parts && !has_impact(model, ws)) {
     return {.is_settling = true};

@@ -144,19 +144,27 @@ void add_slopes_of(const Pushed& pushed, Vec3 p_W, Vec3 n_W, const Slopes& slope
   add_slopes(leverage, pushed.both * slopes.k_t, pushed.both * slopes.k_n, sum.stiffness);
 }
 
-double rate_of(const ContactRates& link) noexcept {
-  return link.is_touched ? std::max(bound_of(link.damping), std::sqrt(bound_of(link.stiffness))) : 0.0;
+double rate_of(const ContactRates& link, RateOf chosen) noexcept {
+  if (!link.is_touched) return 0;
+  const double of_springs = std::sqrt(bound_of(link.stiffness));
+  return chosen == RateOf::springs ? of_springs : std::max(bound_of(link.damping), of_springs);
 }
 
 }  // namespace
 
-double contact_rate(const Model& model, Workspace& ws) noexcept {
+bool rebounds(const contact::NormalLaw& law) noexcept {
+  // the damping number of a small restitution is its reciprocal, (3) of contact/normal_law.h
+  return law.damping_number * kPlastic < 1;
+}
+
+double contact_rate(const Model& model, Workspace& ws, RateOf chosen) noexcept {
   if (model.contact == nullptr || ws.contact->force_count == 0) return 0;
   ContactWorkspace& contacts = *ws.contact;
   for (ContactRates& link : contacts.rates) link.is_touched = false;
   const std::span<const contact::ContactPoint> points = contacts.set.points();
   for (std::size_t k = 0; k < contacts.force_count; ++k) {
     const contact::ContactPair& pair = model.contact->model.pairs()[points[k].pair];
+    if (chosen == RateOf::springs && !rebounds(pair.normal)) continue;
     const ContactForce& force = contacts.forces[k];
     const Pushed pushed(model, ws, at(force.frame_a), at(force.frame_b));
     const double mass = pushed.mass({pushed.as_free(0), pushed.as_free(1)}, force.p_W, force.n_W);
@@ -167,13 +175,14 @@ double contact_rate(const Model& model, Workspace& ws) noexcept {
     }
   }
   double rate = 0;
-  for (const ContactRates& link : contacts.rates) rate = std::max(rate, rate_of(link));
+  for (const ContactRates& link : contacts.rates) rate = std::max(rate, rate_of(link, chosen));
   return rate;
 }
 
-double impact_rate(const Model& model, const Workspace& ws, std::size_t pair, const contact::Meeting& meeting,
-                   double h) noexcept {
+double impact_rate(const Model& model, const Workspace& ws, std::size_t pair, const contact::Meeting& meeting, double h,
+                   RateOf chosen) noexcept {
   const contact::ContactPair& laws = model.contact->model.pairs()[pair];
+  if (chosen == RateOf::springs && !rebounds(laws.normal)) return 0;
   const std::size_t frames[2] = {model.contact->model.frame_of(laws.shape_a),
                                  model.contact->model.frame_of(laws.shape_b)};
   const Pushed pushed(model, ws, frames[0], frames[1]);
@@ -195,15 +204,16 @@ double impact_rate(const Model& model, const Workspace& ws, std::size_t pair, co
   for (std::size_t i = 0; i < 2; ++i) {
     if (!pushed.moves(pushed.links[i])) continue;
     add_slopes_of(pushed, meeting.p_W, meeting.n_W, slopes, i, as_free[i]);
-    rate = std::max(rate, rate_of(as_free[i]));
+    rate = std::max(rate, rate_of(as_free[i], chosen));
   }
   return rate;
 }
 
-bool has_impact(const Model& model, const Workspace& ws) noexcept {
+bool has_impact(const Model& model, const Workspace& ws, RateOf chosen) noexcept {
   const ContactWorkspace& contacts = *ws.contact;
   for (std::size_t k = 0; k < contacts.force_count; ++k) {
     const contact::ContactPair& pair = model.contact->model.pairs()[contacts.set.points()[k].pair];
+    if (chosen == RateOf::springs && !rebounds(pair.normal)) continue;
     if (std::fabs(contacts.forces[k].depth_rate) > pair.normal.smallest_impact_speed) return true;
   }
   return false;

@@ -19,14 +19,21 @@
 
 namespace slew::multibody {
 
+// springs: only sqrt |K'|, of pairs with a restitution of kPlastic or more. An implicit rule need not resolve damping
+// for the right rebound, and below kPlastic a touch that ends at rest is as good.
+enum class RateOf { all, springs };
+inline constexpr double kPlastic = 0.05;
+[[nodiscard]] bool rebounds(const contact::NormalLaw& law) noexcept;
+
 // (1) [1/s] for the contacts of the last evaluation; 0 when nothing touches. Real-time safe.
-[[nodiscard]] double contact_rate(const Model& model, Workspace& ws) noexcept;
+[[nodiscard]] double contact_rate(const Model& model, Workspace& ws, RateOf chosen = RateOf::all) noexcept;
 
 // The same [1/s] for a pair that does not touch yet and meets within the next h [s]; pair: index of the tested pairs.
 [[nodiscard]] double impact_rate(const Model& model, const Workspace& ws, std::size_t pair,
-                                 const contact::Meeting& meeting, double h) noexcept;
+                                 const contact::Meeting& meeting, double h, RateOf chosen = RateOf::all) noexcept;
 
-// True if a contact point closes or opens faster than the smallest impact speed of its law.
-[[nodiscard]] bool has_impact(const Model& model, const Workspace& ws) noexcept;
+// True if a contact point (of a pair that `chosen` takes) closes or opens faster than the smallest impact speed of its
+// law.
+[[nodiscard]] bool has_impact(const Model& model, const Workspace& ws, RateOf chosen = RateOf::all) noexcept;
 
 }  // namespace slew::multibody

@@ -11,6 +11,7 @@
 #include "multibody/contacts/contact_conversion.h"
 #include "multibody/contacts/contact_elements.h"
 #include "multibody/contacts/contact_passes.h"
+#include "multibody/contacts/contact_rate.h"
 #include "multibody/formulations/integrators.h"
 #include "multibody/model/model.h"
 #include "multibody/model/observe.h"
@@ -142,7 +143,11 @@ void find_deep_starts(const MechanicsDef& m, Problems& warnings) {
 }
 
 // sqrt(k/m) or c/m, for the smallest impact speed of the law
-double rate_of_impact(const Model& model, const contact::ContactPair& pair) {
+struct ImpactRate {
+  double spring = 0, damping = 0;  // 1/s
+  [[nodiscard]] double fastest() const noexcept { return std::max(spring, damping); }
+};
+ImpactRate rate_of_impact(const Model& model, const contact::ContactPair& pair) {
   const int links[2] = {model.contact->frames[model.contact->model.frame_of(pair.shape_a)].link,
                         model.contact->frames[model.contact->model.frame_of(pair.shape_b)].link};
   const double both = links[0] == 0 || links[1] == 0 ? 1 : 2;
@@ -153,10 +158,10 @@ double rate_of_impact(const Model& model, const contact::ContactPair& pair) {
     largest = std::max(largest, both / mass);
     sum += both / mass;
   }
-  if (!(sum > 0)) return 0;
+  if (!(sum > 0)) return {};
   const contact::NormalForce slopes =
       slopes_of_impact(pair.normal, 1, 0, pair.normal.smallest_impact_speed, {}, 1 / sum);
-  return std::max(slopes.d_depth_rate * largest, std::sqrt(slopes.d_depth * largest));
+  return {std::sqrt(slopes.d_depth * largest), slopes.d_depth_rate * largest};
 }
 
 }  // namespace
@@ -178,7 +183,7 @@ void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const int tested = model.contact->pair_of_tested[i];
     const contact::NormalLaw& law = pairs[i].normal;
-    const double rate = rate_of_impact(model, pairs[i]);
+    const double rate = rate_of_impact(model, pairs[i]).fastest();
     if (!(rate > fastest)) continue;
     problems.push_back(
         {model.contact->pairs[static_cast<std::size_t>(tested)].name + ".spring_constant",
@@ -188,6 +193,29 @@ void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems
          fmt::format("at most {:.2g} N/m, a larger restitution_coefficient, mechanics.max_substep of at most {:.2g} s, "
                      "or an implicit mechanics.integrator such as trapezoidal",
                      law.stiffness * std::pow(fastest / rate, law.exponent + 1), substep * fastest / rate),
+         ""});
+  }
+}
+
+void find_lost_rebounds(const MechanicsDef& mechanics, double substep, Problems& warnings) {
+  if (mechanics.contacts.empty() || !is_implicit(step_rule(mechanics).integrator)) return;
+  const double fastest = kMostStiffParts * kLostBlow / substep;
+  const Model model = build_model(mechanics);
+  if (model.contact == nullptr) return;
+  const std::span<const contact::ContactPair> pairs = model.contact->model.pairs();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const contact::NormalLaw& law = pairs[i].normal;
+    const double rate = rate_of_impact(model, pairs[i]).spring;
+    if (!(rate > fastest) || !rebounds(law)) continue;
+    const int tested = model.contact->pair_of_tested[i];
+    warnings.push_back(
+        {model.contact->pairs[static_cast<std::size_t>(tested)].name + ".spring_constant",
+         fmt::format("an impact is over within {:.2g} s, the shortest part of a sub-step of {:.3g} s is {:.2g} s: "
+                     "impacts lose a part of their rebound or all of it, and their steps are flagged not_converged",
+                     1 / rate, substep, substep / kMostStiffParts),
+         fmt::format("at most {:.2g} N/m, or mechanics.max_substep of at most {:.2g} s; with a restitution_coefficient "
+                     "below {} nothing is lost",
+                     law.stiffness * std::pow(fastest / rate, law.exponent + 1), substep * fastest / rate, kPlastic),
          ""});
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step of the formulation `augmented`: equations (5) to (8) of body_penalty.h.
+// The step of the formulation `augmented`: equations (5) to (8) and (10) of body_penalty.h.
 #include <algorithm>
 #include <cmath>
 
@@ -57,14 +57,17 @@ class Trapezoid {
 
   // from unchanged accelerations
   void predict() noexcept {
+    std::fill(pws_.row_displacement.begin(), pws_.row_displacement.end(), 0.0);
     for (std::size_t k = 0; k < pws_.displacement.size(); ++k) {
       pws_.displacement[k] = h_ * (start_.u[k] + 0.5 * h_ * pws_.udot[k]);
     }
     place();
   }
 
-  bool close_positions() noexcept {
+  // slope: of the rows' forces
+  bool close_positions(std::span<const double> slope) noexcept {
     bool is_regular = factorize(model_, body_, ws_, pws_, h_);
+    displace(slope);
     const double extent = extent_of(ws_).length;
     double before = 0, size = 0;
     for (pws_.iterations = 1; pws_.iterations <= kMostStepCorrections; ++pws_.iterations) {
@@ -114,6 +117,16 @@ class Trapezoid {
     }
   }
 
+  // (10)
+  void displace(std::span<const double> slope) noexcept {
+    if (std::all_of(slope.begin(), slope.end(), [](double x) { return x == 0; })) return;
+    std::vector<double>& d = pws_.row_displacement;
+    add_row_forces(model_, body_, pws_.stage_joints, ws_, slope, pws_.ldl, d);
+    for (double& x : d) x *= -h_ * h_ * h_ / 12;
+    pws_.ldl.solve(d);
+    place();
+  }
+
   // state and accelerations at the end, from (5)
   void place() noexcept {
     for (std::size_t k = 0; k < pws_.displacement.size(); ++k) {
@@ -121,13 +134,15 @@ class Trapezoid {
       pws_.end_udot[k] = 2 / h_ * (pws_.stage.u[k] - start_.u[k]) - pws_.udot[k];
     }
     for (std::size_t link = 1; link < model_.links.size(); ++link) {
-      const double* d = pws_.displacement.data() + 6 * (link - 1);
-      for (std::size_t k = 0; k < 3; ++k) pws_.stage.q[7 * (link - 1) + k] = start_.q[7 * (link - 1) + k] + d[k];
-      put_attitude(turned({d[3], d[4], d[5]}, attitude_at(start_.q, link)), pws_.stage.q, link);
+      const std::size_t d = 6 * (link - 1);
+      for (std::size_t k = 0; k < 3; ++k) {
+        pws_.stage.q[7 * (link - 1) + k] = start_.q[7 * (link - 1) + k] + displacement(d + k);
+      }
+      put_attitude(turned(turn_at(d), attitude_at(start_.q, link)), pws_.stage.q, link);
     }
     const std::size_t links = model_.links.size() - 1;
     for (std::size_t k = 6 * links; k < pws_.displacement.size(); ++k) {
-      pws_.stage.q[k + links] = start_.q[k + links] + pws_.displacement[k];
+      pws_.stage.q[k + links] = start_.q[k + links] + displacement(k);
     }
     see(model_, body_, pws_.stage, pws_.stage_joints, ws_, pws_);
   }
@@ -156,10 +171,18 @@ class Trapezoid {
       double* d = pws_.displacement.data() + i;
       const double* delta = pws_.correction.data() + i;
       for (std::size_t k = 0; k < 3; ++k) d[k] += delta[k];
-      const Vec3 change = change_of_turn({d[3], d[4], d[5]}, {delta[3], delta[4], delta[5]});
+      const Vec3 change = change_of_turn(turn_at(i), {delta[3], delta[4], delta[5]});
       for (std::size_t k = 0; k < 3; ++k) d[3 + k] += change[static_cast<int>(k)];
     }
     place();
+  }
+
+  [[nodiscard]] double displacement(std::size_t k) const noexcept {
+    return pws_.displacement[k] + pws_.row_displacement[k];
+  }
+  // of the link whose displacement begins at d
+  [[nodiscard]] Vec3 turn_at(std::size_t d) const noexcept {
+    return {displacement(d + 3), displacement(d + 4), displacement(d + 5)};
   }
 
   const Model& model_;
@@ -182,7 +205,7 @@ bool advance_by_trapezoid(const Model& model, const PenaltyModel& body, BodyStat
   set_stage_time(model, joints, h, ws);
   Trapezoid step(model, body, state, ws, pws, h);
   step.predict();
-  const bool has_settled = step.close_positions();
+  const bool has_settled = step.close_positions(slope);
   step.close_speeds();
   state.q.swap(pws.stage.q);
   state.u.swap(pws.stage.u);

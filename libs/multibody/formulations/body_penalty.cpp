@@ -120,7 +120,9 @@ PenaltyWorkspace::PenaltyWorkspace(const Model& model, const PenaltyModel& body)
   }
   factored_modal = modal;
   for (auto* by_row : {&target, &free_multipliers, &multipliers, &no_target, &rates}) by_row->resize(row_count);
-  for (auto* by_u : {&force, &correction, &free, &udot, &end_udot, &displacement}) by_u->resize(speeds);
+  for (auto* by_u : {&force, &correction, &free, &udot, &end_udot, &displacement, &row_displacement}) {
+    by_u->resize(speeds);
+  }
   if (body.formulation == Formulation::penalty) determinants.resize(body.pattern.nodes.size());
   responses.resize(model.rows.size() * speeds);
   response_multipliers.resize(model.rows.size() * row_count);

@@ -34,6 +34,9 @@
 // C, K: slopes of all force elements and contacts (link_stiffness.h), and in K the pulls on a link at s from its origin
 // with T . s > 0, across s: multipliers, and its own weight and inertia. Light links between heavy ones are strings,
 // which no step resolves.
+// (5) takes the mean of a row's force alone. What a change within the step moves the mechanism beside it is part of the
+// positions, and not of d:
+//   A_h d_r = -h^3/12 J^T slope,   p_1 = p_0 + d_p + d_r,p,   R_1 = exp((d_R + d_r,R)~) R_0             (10)
 // The remainder of (5) in G u is removed in the metric of A_h, and u_1' of the next step comes from (3):
 //   u := u - A_h^-1 G^T alpha G u   until G u = 0                                                      (8)
 // (8) is the velocity projection, (3) the acceleration projection of the sources; both need no matrix of their own.
@@ -86,6 +89,7 @@ struct PenaltyWorkspace {
   std::vector<double> no_target;                           // zeros
   std::vector<double> rates;                               // G u less the prescribed speeds, by row
   std::vector<double> qdot, udot, end_udot, displacement;  // values of a step
+  std::vector<double> row_displacement;                    // d_r of (10)
   BodyState stage, sum;
   State stage_joints;
   std::vector<double> row_force;

@@ -23,6 +23,9 @@ constexpr int kMostCorrections = 80;
 constexpr double kSlowStage = 0.3;
 // rate of an impact times sub-step
 constexpr double kUnresolved = 4;
+// shares of (6): of rules that move by the mean force, and of sdirk2, 2 gamma (1 - gamma)^2 - 1/3
+constexpr double kLeftByMean = -1.0 / 12;
+constexpr double kLeftBySdirk = -0.04044011451988;
 // rounding of the coordinates as a share of the mechanism's size
 constexpr double kStageRounding = 1e-14;
 
@@ -113,7 +116,20 @@ struct RowForces {
   void put(double time, std::span<double> forces) const noexcept {
     for (std::size_t k = 0; k < mean.size(); ++k) forces[k] = mean[k] + (time - 0.5 * h) * slope[k];
   }
+  [[nodiscard]] bool is_constant() const noexcept {
+    return std::all_of(slope.begin(), slope.end(), [](double x) { return x == 0; });
+  }
 };
+
+// (6) for a rule that leaves out `share` h^3 of the slopes, after its last stage
+void displace(const StageContext& at, const RowForces& forces, double share, double sigma) noexcept {
+  StageWorkspace& s = at.stages;
+  if (forces.is_constant() || s.is_near_singular) return;
+  const double moment = share * forces.h * forces.h * forces.h;
+  for (std::size_t k = 0; k < forces.slope.size(); ++k) s.row_force[k] = moment * forces.slope[k];
+  add_displacement(at, s.row_force);
+  place(at, sigma);
+}
 
 // coordinates, speeds and their rates at the start; needs evaluate()
 void take_start(const StageContext& at) noexcept {
@@ -166,7 +182,9 @@ bool take_trapezoid(const StageContext& at, double tolerance, const RowForces& f
   for (std::size_t i = 0; i < s.turn.size(); ++i) s.turn[i] = s.turn_0[i] * half;
   forces.put(forces.h, s.row_force);
   const bool has_settled = solve_stage(at, {half, half, forces.h}, tolerance);
-  return has_touched(at, has_settled) ? take_touch(at, tolerance, forces) : has_settled;
+  if (has_touched(at, has_settled)) return take_touch(at, tolerance, forces);
+  displace(at, forces, kLeftByMean, half);
+  return has_settled;
 }
 
 bool take_sdirk(const StageContext& at, double tolerance, const RowForces& forces) noexcept {
@@ -186,7 +204,9 @@ bool take_sdirk(const StageContext& at, double tolerance, const RowForces& force
   for (std::size_t i = 0; i < s.turn.size(); ++i) s.turn[i] = at.ws.motion[i].w * other;
   forces.put(forces.h, s.row_force);
   has_settled = solve_stage(at, {own, own, forces.h}, tolerance) && has_settled;
-  return has_touched(at, has_settled) ? take_touch(at, tolerance, forces) : has_settled;
+  if (has_touched(at, has_settled)) return take_touch(at, tolerance, forces);
+  displace(at, forces, kLeftBySdirk, own);
+  return has_settled;
 }
 
 // r of (3); leaves the rates at the start without it
@@ -236,6 +256,7 @@ bool take_generalised_alpha(const StageContext& at, const StepRule& rule, const 
   for (std::size_t j = 0; j < u.size(); ++j) {
     s.algorithmic[j] = carried(s.algorithmic[j], s.rate_0[j], s.rate[j] - s.row_rate[j]);
   }
+  displace(at, forces, kLeftByMean, sigma);
   return has_settled;
 }
 

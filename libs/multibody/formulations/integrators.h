@@ -35,6 +35,11 @@
 // both kLargestTurnError and the turn itself has not resolved a whip; small ringing of stiff laws passes. For any
 // angular coordinate:  min(h^2/12 |a_1 - a_0|, h/2 |u_0 + u_1|) <= kLargestTurnError                (5)
 //
+// A force of a row moves a mass m under it by h^2/2 mean - h^3/12 slope over m. The rules take the mean alone (sdirk2 a
+// part of the slope), so that a blow at the start of the sub-step would move it by half of its effect. After the last
+// stage the coordinates take what is left out, by the stage's matrix of (4), so that stiff elements share it:
+//   q (+) [M + tau D + tau sigma K  G^T; G  0]^-1 J^T (share h^3 slope),   share = -1/12, sdirk2 -0.0404 (6)
+//
 // Row forces are the owner's, linear in time over the sub-step (dynamics.h). The number of corrections is bounded, an
 // iteration without convergence is reported. Only the builders allocate.
 // Sources: trapezoidal rule, sdirk2: Alexander 1977; (3) Chung and Hulbert 1993, with rotations as Brüls, Cardona and

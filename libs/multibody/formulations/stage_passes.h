@@ -46,6 +46,10 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept;
 // singular to working precision.
 [[nodiscard]] bool factorize_stage(const StageContext& at, const Stage& stage) noexcept;
 
+// Adds the displacement by forces of the rows with these moments [N s2, N m s2] to the stage's base: the response of
+// the present factors of (4). Speeds stay; needs place() afterwards.
+void add_displacement(const StageContext& at, std::span<const double> moments) noexcept;
+
 // delta of bws.solution in the integrated speeds.
 void read_step(const StageContext& at, std::span<double> step) noexcept;
 

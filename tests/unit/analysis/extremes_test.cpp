@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -93,10 +95,34 @@ TEST(Judge, SessionThatItsAlarmEndedIsRefusedWhileItKeptItsBounds) {
   const Judgement refused = judge(ended, {});
   EXPECT_EQ(refused.verdict, Verdict::refused);
   EXPECT_NE(advice(ended, refused, {true, 5e-3}).find("5 ms"), std::string::npos);
-  ended.made = 0.5;  // before the alarm
+  ended.made = 0.15;  // before the alarm
+  EXPECT_EQ(judge(ended, {}).verdict, Verdict::refused);
+  ended.made = 0.5;
   EXPECT_EQ(judge(ended, {}).verdict, Verdict::exceeded);
   ended.failure = "Bag.position";
   EXPECT_EQ(judge(ended, {}).verdict, Verdict::diverged);
+}
+
+TEST(Judge, MachineThatDampsTooLittleForLateSamplesIsRefusedByName) {
+  Measures measures = good_run();
+  measures.unsuitable = "it swings up";
+  measures.difference = 0.9;
+  measures.made = 0.3;
+  Bounds bounds;
+  bounds.difference = 0.02;
+  EXPECT_EQ(judge(measures, bounds).verdict, Verdict::refused);
+  EXPECT_NE(advice(measures, judge(measures, bounds), {}).find("lockstep"), std::string::npos);
+  // nothing else is excused
+  measures.gap = 1e-3;
+  EXPECT_EQ(judge(measures, bounds).verdict, Verdict::exceeded);
+}
+
+// two decays of one swing, e^-t/2 and e^-t: apart by 1/4 at t = 2 ln 2, of half the range
+TEST(Judge, LostDampingLeavesTheDifferenceOfTwoDecays) {
+  EXPECT_NEAR(error_of_lost_damping(0.5, 1, 10), 0.125, 1e-12);
+  EXPECT_NEAR(error_of_lost_damping(0.5, 1, 1), 0.5 * (std::exp(-0.5) - std::exp(-1)), 1e-12);
+  EXPECT_NEAR(error_of_lost_damping(1e-6, 1, 10), 0.5e-6 / std::exp(1), 1e-11);
+  EXPECT_EQ(error_of_lost_damping(0, 1, 10), 0);
 }
 
 TEST(Judge, WarningBeforeTheRunExcusesNothing) {
@@ -209,6 +235,24 @@ TEST(ExtremeCases, ReliefsOfEveryKindBoundThePressures) {
   const CaseOutcome outcome = run_case(options, "full_range_every_step");
   ASSERT_TRUE(outcome.measures.ceiling) << outcome.measures.refusal;
   EXPECT_GT(*outcome.measures.ceiling, 900e5);
+}
+
+// the tipper swings at 8 Hz and decays with 1.7 1/s by its monolith (docs/extremes.md); as the note has it
+TEST(ExtremeCases, OfLateSamplesIncludeTheTippersOwnDamping) {
+  scene::SceneOptions options;
+  options.file = SLEWRING_SOURCE_DIR "/scenes/tipper.yaml";
+  const CaseOutcome late = run_case(options, "delay_1");
+  EXPECT_EQ(late.judgement.verdict, Verdict::within);
+  double hertz = 0, decay = 0;
+  for (const std::string& note : late.measures.notes) {
+    (void)std::sscanf(note.c_str(), "swing of %lf Hz with an own decay of %lf", &hertz, &decay);
+  }
+  EXPECT_NEAR(hertz, 8, 0.8);
+  EXPECT_NEAR(decay, 1.7, 0.3);
+  // by the same runs two late steps take 1.9 1/s: it swings up
+  const CaseOutcome later = run_case(options, "delay_2");
+  EXPECT_EQ(later.judgement.verdict, Verdict::refused);
+  EXPECT_NE(later.measures.unsuitable.find("it may swing up"), std::string::npos);
 }
 
 TEST(Extremes, UnfinishedAndDivergedRowsAreNotGood) {

@@ -101,11 +101,14 @@ TEST(Variable, ThatMovesNoMoreThanTheReferenceErrsIsAtRest) {
   tradeoff.variables.push_back({.name = "Hinge.torque", .unit = "N m", .range = 6.9e-10, .spread = 1e-11});
   tradeoff.variables.push_back({.name = "Foot.force.x", .unit = "N", .range = 1e-9, .spread = 0});
   tradeoff.variables.push_back({.name = "Foot.force.y", .unit = "N", .range = 1e-9, .spread = 4e-10});
+  // 1e-5 N of 6600, 0.1 um of 1 m
+  tradeoff.variables.push_back({.name = "Rod.force", .unit = "N", .range = 1e-5, .size = 6600, .spread = 1e-9});
+  tradeoff.variables.push_back({.name = "Hook.position", .unit = "m", .range = 1e-7, .size = 1, .spread = 1e-12});
   mark_at_rest(tradeoff.variables);
   std::vector<bool> rests;
   for (const TradeoffVariable& variable : tradeoff.variables) rests.push_back(variable.is_at_rest);
-  EXPECT_EQ(rests, (std::vector<bool>{false, false, false, true, true, true}));
-  for (TradeoffRow& row : tradeoff.rows) row.result.errors.resize(6, VariableError{1e-9, 1e-9});
+  EXPECT_EQ(rests, (std::vector<bool>{false, false, false, true, true, true, true, false}));
+  for (TradeoffRow& row : tradeoff.rows) row.result.errors.resize(8, VariableError{1e-9, 1e-9});
   EXPECT_EQ(relative_error(tradeoff, tradeoff.rows[0], 3), std::nullopt);
   EXPECT_DOUBLE_EQ(worst_error(tradeoff, tradeoff.rows[0]), 0.01);
   const std::string text = report_text(tradeoff, std::nullopt);

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "contact/mesh_check.h"
+#include "contact/mesh_overlap.h"
 #include "math/rotation.h"
 #include "support/contact_shapes.h"
 
@@ -230,6 +231,85 @@ TEST(SolidCheck, RefusesWhatEnclosesNothingOrTurnsWrongly) {
   const auto beside = find_solid_fault(with_reversed({5, 0, 0}));
   ASSERT_TRUE(beside.has_value());
   EXPECT_NE(beside->what.find("is inside out, and no other part surrounds it"), std::string::npos);
+}
+
+// ---- solids that overlap -------------------------------------------------------------------------------------------
+
+// boxes of 1 x 2 x 3 m share (1 - |x|)(2 - |y|)(3 - |z|), whichever way both are turned
+TEST(DoubledVolume, OfTwoBoxesIsThatOfTheirCommonBox) {
+  for (const Vec3 apart : {Vec3(0.5, 0, 0), Vec3(0.9, -1.5, 0.2), Vec3(0.99, 0, 0), Vec3(0, 1.96, 0),
+                           Vec3(0.3, 0.2, -2.7), Vec3(0, 0, 0)}) {
+    const double common = (1 - std::fabs(apart[0])) * (2 - std::fabs(apart[1])) * (3 - std::fabs(apart[2]));
+    for (const double turn : {0.0, 0.4, 1.3}) {
+      SCOPED_TRACE(std::to_string(common) + " m3, turned by " + std::to_string(turn));
+      const MeshDef both = moved(two_boxes(apart), math::rotation_zxz({turn, 2 * turn, -turn}), {3, -2, 100});
+      EXPECT_NEAR(find_doubled_volume(both).volume, common, 0.02 * common);
+      const auto fault = find_solid_fault(both);
+      ASSERT_TRUE(fault.has_value());
+      EXPECT_NE(fault->what.find("its solids overlap"), std::string::npos) << fault->what;
+    }
+  }
+}
+
+TEST(DoubledVolume, OfThreeBoxesCountsEachSurplus) {
+  // 0.5 m apart along x: two common slices of 0.5 m3 x 6, none of all three
+  MeshDef mesh = two_boxes({0.5, 0, 0});
+  append(mesh, moved(box_mesh(1, 2, 3).mesh, Mat3::identity(), {1, 0, 0}));
+  EXPECT_NEAR(find_doubled_volume(mesh).volume, 6, 0.05);
+  // all at one place: 6 m3 that count three times
+  MeshDef thrice = box_mesh(1, 2, 3).mesh;
+  for (int i = 0; i < 2; ++i) append(thrice, box_mesh(1, 2, 3).mesh);
+  EXPECT_NEAR(find_doubled_volume(thrice).volume, 12, 1e-9);
+}
+
+// a ball of 0.5 m within a box, and one that sticks out of it by half
+TEST(DoubledVolume, OfABallInABoxIsTheBallsWithin) {
+  MeshDef ball = octahedron();
+  for (int level = 0; level < 4; ++level) ball = refined(ball);
+  for (Triple& v : ball.vertices) v = (Vec3(v) * 0.5).array();
+  const double volume = mass_properties(ball, 1).volume;
+  for (const double x : {0.0, 2.0}) {
+    MeshDef mesh = box_mesh(4, 4, 4).mesh;
+    append(mesh, moved(ball, Mat3::identity(), {x, 0, 0}));
+    EXPECT_NEAR(find_doubled_volume(mesh).volume, x > 0 ? volume / 2 : volume, 0.03 * volume);
+    EXPECT_TRUE(find_solid_fault(mesh).has_value());
+  }
+  // inside out it is a hole, where it lies within the box
+  for (auto& t : ball.triangles) std::swap(t[0], t[1]);
+  MeshDef hole = box_mesh(4, 4, 4).mesh;
+  append(hole, ball);
+  EXPECT_EQ(find_doubled_volume(hole).volume, 0);
+}
+
+TEST(DoubledVolume, OfThinPlatesAndBarsIsFoundInAnyDirection) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 plate(1, 1, 1), bar(0.01, 0.01, 0.01);
+    plate.lanes[axis] = 1e-3;
+    bar.lanes[axis] = 1;
+    for (const Vec3& size : {plate, bar}) {
+      SCOPED_TRACE(axis);
+      // beside a small box, far away, so that the box around all is five times as large
+      MeshDef mesh = moved(box_mesh(0.01, 0.01, 0.01).mesh, Mat3::identity(), {4, 4, 4});
+      for (int i = 0; i < 2; ++i) append(mesh, box_mesh(size[0], size[1], size[2]).mesh);
+      const double volume = size[0] * size[1] * size[2];
+      EXPECT_GT(find_doubled_volume(mesh).volume, 0.3 * volume);
+      EXPECT_TRUE(find_solid_fault(mesh).has_value());
+    }
+  }
+}
+
+// touching, at any attitude, with vertices of single precision
+TEST(DoubledVolume, OfSolidsThatTouchIsNothing) {
+  for (const Vec3 apart : {Vec3(1, 0, 0), Vec3(1, 2, 0), Vec3(1, 2, 3), Vec3(0, 2, 1.3), Vec3(1, 0.7, -0.4)}) {
+    for (const double turn : {0.0, 0.4, 1.3}) {
+      MeshDef both = moved(two_boxes(apart), math::rotation_zxz({turn, 2 * turn, -turn}), {3, -2, 10});
+      for (Triple& v : both.vertices) {
+        for (double& x : v) x = static_cast<float>(x);
+      }
+      EXPECT_LT(find_doubled_volume(both).volume, 1e-5);
+      EXPECT_FALSE(find_solid_fault(both).has_value());
+    }
+  }
 }
 
 // ---- sheets ---------------------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "build_paths.h"
 #include "core/failure.h"
 #include "core/input_file.h"
 #include "scene/sections.h"

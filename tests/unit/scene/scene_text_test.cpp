@@ -6,6 +6,7 @@
 
 #include <regex>
 
+#include "build_paths.h"
 #include "core/input_file.h"
 #include "scene/edited_scene.h"
 #include "scene/scene.h"

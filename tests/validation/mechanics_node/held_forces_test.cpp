@@ -59,8 +59,11 @@ struct Errors {
   double speed = 0, position = 0;
 };
 
-Errors errors_of(const Damped& damped, double c, const RuleOfScene& rule, const Course& force) {
-  MechanicsAlone m(scene::load_text(scene_of(damped, c, rule), "damped"));
+Errors errors_of(const Damped& damped, double c, const RuleOfScene& rule, const Course& force,
+                 const std::string& substep) {
+  scene::Overrides shorter;
+  if (!substep.empty()) shorter = {"mechanics.max_substep=" + substep};
+  MechanicsAlone m(scene::load_text(scene_of(damped, c, rule), "damped", shorter));
   double v = 0, x = 0, most_v = 0, most_x = 0;
   Errors errors;
   for (int n = 0; n < kSteps; ++n) {
@@ -79,29 +82,38 @@ Errors errors_of(const Damped& damped, double c, const RuleOfScene& rule, const 
 }
 
 // what sdirk2 leaves at its worst in one micro-step of a decay, over the four of a step: at c h/m = 4
-constexpr double kOfTheRule = 5e-3;
+constexpr double kOfTheRule = 8e-3;
 
 class HeldForces : public ::testing::TestWithParam<RuleOfScene> {};
 INSTANTIATE_TEST_SUITE_P(All, HeldForces, ::testing::ValuesIn(gate_rules()), name_of_rule);
 INSTANTIATE_TEST_SUITE_P(AllNightly, HeldForces, ::testing::ValuesIn(nightly_rules()), name_of_rule);
 
-void expect_closed_form(const Damped& damped, const RuleOfScene& rule, double per_step) {
+// substep: of the mechanics; empty: the step
+void expect_closed_form(const Damped& damped, const RuleOfScene& rule, double per_step,
+                        const std::string& substep = "") {
   const double c = per_step * kInertia / kStep;
   for (const Named& course : courses()) {
     SCOPED_TRACE(std::string(course.name) + ", c h/m = " + std::to_string(per_step));
-    const Errors errors = errors_of(damped, c, rule, course.force);
+    const Errors errors = errors_of(damped, c, rule, course.force, substep);
     EXPECT_LT(errors.speed, kOfTheRule);
-    // The mechanism goes by mean and slope of the force, the other rules by the mean alone. A single pulse was off by
-    // an eighth of its own small way.
-    if (rule.integrator == "rk4") {
-      EXPECT_LT(errors.position, per_step < 10 ? 0.13 : 0.03);
+    // Mean and slope of the force move the mechanism as far as the force does. semi_implicit_euler, of order 1, takes
+    // the mean as a blow at the start of the sub-step.
+    if (rule.integrator != "semi_implicit_euler") {
+      EXPECT_LT(errors.position, substep.empty() ? 0.012 : 0.025);
     }
   }
 }
 
 TEST_P(HeldForces, MoveADampedSliderAsTheClosedForm) {
-  for (const double per_step : {1e-3, 0.03, 0.3, 1.0, 10.0, 1e2, 1e4})
+  for (const double per_step : {1e-3, 0.03, 0.3, 1.0, 3.0, 10.0, 30.0, 1e2, 1e3, 1e4})
     expect_closed_form(kSlider, GetParam(), per_step);
+}
+
+TEST_P(HeldForces, MoveADampedSliderInShorterSubSteps) {
+  // was off by half a micro-step of 0.25 ms after a jump
+  for (const char* substep : {"0.25ms", "0.5ms"}) {
+    for (const double per_step : {0.3, 10.0, 1e2, 1e4}) expect_closed_form(kSlider, GetParam(), per_step, substep);
+  }
 }
 
 TEST_P(HeldForces, TurnADampedHingeAsTheClosedForm) {
@@ -120,6 +132,25 @@ TEST(HeldForce, OfAStaircaseIsFollowedStepByStep) {
     m.report = m.subsystem.step(m.n++, {}, controls, m.sample);
     EXPECT_NEAR(m.value("R.velocity"), 0.01 * (n + 1), 1e-6);
   }
+}
+
+// the same on 1 kg: 145.00 um after 5 ms; was 125.0 by the trapezoid, generalised_alpha and augmented, 135.8 by sdirk2
+TEST_P(HeldForces, OfAStaircaseMoveAsFarAsTheClosedForm) {
+  if (GetParam().integrator == "semi_implicit_euler") return;
+  std::string scene = scene_of(kSlider, 1e4, GetParam());
+  scene.replace(scene.find("2 kg"), 4, "1 kg");
+  MechanicsAlone m(scene::load_text(scene, "staircase"));
+  double v = 0, x = 0;
+  for (int n = 0; n < 5; ++n) {
+    const double controls[] = {100.0 * (n + 1)};
+    m.report = m.subsystem.step(m.n++, {}, controls, m.sample);
+    const double steady = controls[0] / 1e4, gone = std::expm1(-10);
+    x += steady * kStep - (v - steady) * gone / 1e4;
+    v += (v - steady) * gone;
+    // a hundredth of the step times the change of speed
+    EXPECT_NEAR(m.value("R.position"), x, 0.01 * kStep * 0.01);
+  }
+  EXPECT_NEAR(x, 145e-6, 1e-8);
 }
 
 // A P loop on the position over a delay of n = 10 steps of h = 1 ms, x' = F/c = K u: stable below 2 sin(pi/(2 (2 n +
