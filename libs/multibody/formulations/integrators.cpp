@@ -122,7 +122,7 @@ struct RowForces {
 };
 
 // (6) for a rule that leaves out `share` h^3 of the slopes, after its last stage
-void displace(const StageContext& at, const RowForces& forces, double share, double sigma) noexcept {
+void add_left_out(const StageContext& at, const RowForces& forces, double share, double sigma) noexcept {
   StageWorkspace& s = at.stages;
   if (forces.is_constant() || s.is_near_singular) return;
   const double moment = share * forces.h * forces.h * forces.h;
@@ -183,7 +183,7 @@ bool take_trapezoid(const StageContext& at, double tolerance, const RowForces& f
   forces.put(forces.h, s.row_force);
   const bool has_settled = solve_stage(at, {half, half, forces.h}, tolerance);
   if (has_touched(at, has_settled)) return take_touch(at, tolerance, forces);
-  displace(at, forces, kLeftByMean, half);
+  add_left_out(at, forces, kLeftByMean, half);
   return has_settled;
 }
 
@@ -205,7 +205,7 @@ bool take_sdirk(const StageContext& at, double tolerance, const RowForces& force
   forces.put(forces.h, s.row_force);
   has_settled = solve_stage(at, {own, own, forces.h}, tolerance) && has_settled;
   if (has_touched(at, has_settled)) return take_touch(at, tolerance, forces);
-  displace(at, forces, kLeftBySdirk, own);
+  add_left_out(at, forces, kLeftBySdirk, own);
   return has_settled;
 }
 
@@ -256,7 +256,7 @@ bool take_generalised_alpha(const StageContext& at, const StepRule& rule, const 
   for (std::size_t j = 0; j < u.size(); ++j) {
     s.algorithmic[j] = carried(s.algorithmic[j], s.rate_0[j], s.rate[j] - s.row_rate[j]);
   }
-  displace(at, forces, kLeftByMean, sigma);
+  add_left_out(at, forces, kLeftByMean, sigma);
   return has_settled;
 }
 

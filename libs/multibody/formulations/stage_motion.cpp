@@ -115,7 +115,7 @@ std::span<const double> modal_rate(const StageContext& at) noexcept {
 }
 
 // forces of all active rows onto bws.solution
-void add_rows(const StageContext& at, std::span<const double> forces) noexcept {
+void push_by_rows(const StageContext& at, std::span<const double> forces) noexcept {
   for (std::size_t k = 0; k < at.model.rows.size(); ++k) {
     if (at.ws.row_is_active[k] == 0) continue;
     add_row(body_row(at.model, at.body, at.moving.joints, at.model.rows[k], at.ws), forces[k], at.bws.ldl,
@@ -164,14 +164,14 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
     });
     at.bws.solution[slew::at(at.bws.ldl.first_row(at.body.first_gear + static_cast<int>(k)))] = -g;
   }
-  add_rows(at, s.row_force);
+  push_by_rows(at, s.row_force);
   for (double& x : at.bws.solution) x *= stage.tau;
 }
 
 void add_displacement(const StageContext& at, std::span<const double> moments) noexcept {
   StageWorkspace& s = at.stages;
   std::fill(at.bws.solution.begin(), at.bws.solution.end(), 0.0);
-  add_rows(at, moments);
+  push_by_rows(at, moments);
   at.bws.ldl.solve(at.bws.solution);
   read_step(at, s.step);
   for (std::size_t j = 0; j < s.base.size(); ++j) s.base[j] += s.step[j];
