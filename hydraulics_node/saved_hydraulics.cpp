@@ -5,7 +5,7 @@
 namespace slew::hydraulics_node {
 namespace {
 
-constexpr std::uint32_t kLayout = 2, kOldestLayout = 1;  // 2: with the watch over the convergence
+constexpr std::uint32_t kLayout = 3;
 
 }  // namespace
 
@@ -34,9 +34,6 @@ void HydraulicsSubsystem::visit(Self& self, Bytes& bytes) {
   visit_sized(bytes, self.stiffness_, self.m_);
   visit_report(bytes, self.failure_);
   CouplingAlarm::visit_text(self.alarm_, bytes);
-  if constexpr (Bytes::kIsReading) {
-    if (bytes.layout() < 2) return;
-  }
   ConvergenceWatch::visit(self.convergence_, bytes);
 }
 
@@ -58,7 +55,7 @@ void HydraulicsSubsystem::save(std::vector<std::byte>& state) const {
 Status HydraulicsSubsystem::load(std::span<const std::byte> state, coupling::OwnSample& sample) {
   reset();
   if (Status status = can_save(); !status.is_ok()) return status;
-  StateReader bytes(state, {kLayout, saved_model_, kOldestLayout});
+  StateReader bytes(state, {kLayout, saved_model_});
   visit(*this, bytes);
   if (Status status = bytes.finish("hydraulics"); !status.is_ok()) {
     reset();

@@ -56,8 +56,7 @@ StateReader::Fault StateReader::open(std::span<const std::byte> bytes, StateForm
   rest_ = bytes.subspan(sizeof header);
   layout_ = header.layout;
   if (header.magic != kMagic) return Fault::no_state;
-  const std::uint32_t oldest = format.oldest != 0 ? format.oldest : format.layout;
-  if (header.layout < oldest || header.layout > format.layout) return Fault::layout;
+  if (header.layout != format.layout) return Fault::layout;
   if (header.length > rest_.size()) return Fault::cut;
   if (header.length < rest_.size() || header.check != check_of(rest_)) return Fault::damaged;
   return header.model == format.model ? Fault::none : Fault::model;

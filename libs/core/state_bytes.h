@@ -25,7 +25,6 @@ namespace slew {
 struct StateFormat {
   std::uint32_t layout = 0;
   std::uint64_t model = 0;
-  std::uint32_t oldest = 0;  // first layout that is read too; 0: none
 };
 
 // Limit of step numbers in a state; the sum of two is still a valid step number.
@@ -84,7 +83,6 @@ class StateReader {
   StateReader(std::span<const std::byte> bytes, StateFormat format) noexcept;
 
   [[nodiscard]] bool is_sound() const noexcept { return fault_ == Fault::none; }
-  [[nodiscard]] std::uint32_t layout() const noexcept { return layout_; }
   // Called by the owner if a value read is impossible.
   void refuse() noexcept { note(Fault::damaged); }
   // Ok if everything was sound and no bytes are left. Error (bad_input); whose: "mechanics".

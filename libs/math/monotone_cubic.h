@@ -5,7 +5,8 @@
 // On an interval of width h with t = (x - x_i)/h, u = 1 - t and slopes m at the points
 //   y = u^2 (1 + 2t) y_i + t^2 (3 - 2t) y_i+1 + t u h (u m_i - t m_i+1)                              (1)
 // Slopes: weighted harmonic mean of the neighbouring intervals, zero at an extremum of the points (Fritsch and Butland
-// 1984), three-point formula at the ends; two points give a straight line. Ends selects the continuation beyond the points.
+// 1984), three-point formula at the ends; two points give a straight line. Ends selects the continuation beyond the
+// points.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 namespace slew::math {
 namespace {
 
-// of 2 b/a - 1, where double can still tell it from 1: lambda H of 2e9
+// of 2 b/a - 1, where double can still distinguish it from 1: lambda H of 2e9
 constexpr double kFastest = 1 - 1e-9;
 
 // a(x) and b(x) of (1)

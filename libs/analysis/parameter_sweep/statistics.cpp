@@ -25,7 +25,9 @@ bool are_equal(std::span<const double> samples) {
 }  // namespace
 
 double student_quantile(double degrees_of_freedom) {
-  return boost::math::quantile(boost::math::students_t(degrees_of_freedom), kQuantile);
+  // without long double inside: half of the templates
+  using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+  return boost::math::quantile(boost::math::students_t_distribution<double, Policy>(degrees_of_freedom), kQuantile);
 }
 
 SampleStatistics statistics_of(std::span<const double> samples) {

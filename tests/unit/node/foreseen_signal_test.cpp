@@ -10,6 +10,7 @@
 
 #include "build_paths.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
+#include "math/relaxing_spring.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "scene/scene.h"
 
@@ -35,7 +36,7 @@ class Circuit {
   // under the signal of the last step
   [[nodiscard]] double F_dot_as_it_was() {
     hydraulics.integrator().refresh();
-    return hydraulics.integrator().actuators()[0].F_dot;
+    return math::one_for_all(hydraulics.integrator().actuators()[0].springs, 1e-3).F_dot;
   }
   [[nodiscard]] double variable(const std::string& name) const {
     std::vector<double> values(hydraulics.variables().size());

@@ -120,7 +120,7 @@ forces:
             "Rope.stiffness would change nothing: the rope has its spring by axial_rigidity");
 }
 
-constexpr const char* kChambers = SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml";
+constexpr const char* kCylinder = SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml";
 
 TEST(ParameterOfChoices, IsListedWithItsNamesAndTakesOneOfThem) {
   const Scene scene = load_file(kCylinder);
