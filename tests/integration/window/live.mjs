@@ -252,6 +252,8 @@ async function recordsAndPlaysInputs(page) {
   await page.click('text="Record input"');
   await page.keyboard.down("KeyS");
   await waitFor("the key", async () => (await raw(page, "Input_Lift")) === -1);
+  // long enough to be seen when it is played, on a busy machine too
+  await page.waitForTimeout(2000);
   await page.keyboard.up("KeyS");
   await waitFor("neutral", async () => (await raw(page, "Input_Lift")) === 0);
   const [file] = await Promise.all([page.waitForEvent("download"), page.click('text="Stop and save"')]);
