@@ -38,7 +38,7 @@ for package in "${!names[@]}"; do
   for field in Maintainer Description Section; do
     [ -n "$(dpkg-deb --field "$file" $field)" ] || fail "$package: no field $field"
   done
-  dpkg-deb --raw-extract "$file" "$scratch/unpacked"
+  dpkg-deb --extract "$file" "$scratch/unpacked"
 done
 depends=$(dpkg-deb --field "$scratch/packages/${names[slewring]}.deb" Depends)
 for library in libc6 libddsc0debian libfmt9 libyaml libsundials libassimp5; do
@@ -57,7 +57,7 @@ if [ "$(id -u)" -ne 0 ] || ! command -v debootstrap > /dev/null; then
 fi
 bare=$scratch/bare
 mirror=$(sed -n 's/^deb \(\[[^]]*\] \)\?\([^ ]*debian\/\?\) .*/\2/p; s/^URIs: \([^ ]*debian\/\?\)$/\1/p' \
-           /etc/apt/sources.list /etc/apt/sources.list.d/* 2> /dev/null | head -1)
+           /etc/apt/sources.list /etc/apt/sources.list.d/* 2> /dev/null | head -1) || true  # one of them may be missing
 if ! debootstrap --variant=minbase bookworm "$bare" ${mirror:+"$mirror"} > "$scratch/log" 2>&1; then
   tail -3 "$scratch/log"
   echo "without a bare system: debootstrap cannot make one here"
