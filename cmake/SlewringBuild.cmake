@@ -51,11 +51,9 @@ target_compile_options(slewring_flags INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   # clang takes the C macro INFINITY for a float; ccache takes precompiled headers of clang without their time alone
   $<$<CXX_COMPILER_ID:Clang>:-Wno-double-promotion> $<$<COMPILE_LANG_AND_ID:CXX,Clang>:SHELL:-Xclang -fno-pch-timestamp>)
-if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
-  # of the same kind, and shown for standard headers only where they are precompiled; asan-ubsan builds without
-  target_compile_options(slewring_flags INTERFACE
-    $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
-endif()
+# of the same kind, and shown for standard headers only where they are precompiled
+target_compile_options(slewring_flags INTERFACE
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
 target_include_directories(slewring_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/libs)
 # as fmt::fmt does: with the same definitions everywhere all targets can share the precompiled headers
 target_compile_definitions(slewring_flags INTERFACE FMT_SHARED)
@@ -123,12 +121,10 @@ function(slewring_compile_apart options)
 endfunction()
 
 # Headers and instances of templates are compiled once for twelve files. The sources of a library therefore name no two
-# things of their unnamed namespaces alike, and each test file has a namespace of its own; asan-ubsan compiles every file
-# alone. Sources that are long to compile stay alone with slewring_compile_alone.
+# things of their unnamed namespaces alike, and each test file has a namespace of its own; the nightly tests compile every
+# file alone (tests/architecture/each_alone.py). Sources that are long to compile stay alone with slewring_compile_alone.
 function(slewring_compile_together target)
-  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
-  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
 endfunction()
 function(slewring_compile_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
