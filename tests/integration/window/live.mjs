@@ -3,7 +3,9 @@
 import foxglove from "@foxglove/ws-protocol";
 import { readFileSync, writeFileSync } from "node:fs";
 import WebSocket from "ws";
-import { address, input, raw, require, rest, rowsOfCsv, run, savesSvg, select, shown, showsTheCircuit, showsTheMachine, waitFor } from "./support.mjs";
+import {
+  address, input, letRun, raw, require, rest, rowsOfCsv, run, savesSvg, select, shown, showsTheCircuit, showsTheMachine, waitFor
+} from "./support.mjs";
 
 const decoder = new TextDecoder();
 
@@ -174,9 +176,7 @@ async function isNeutralWhenSuspended(page, context) {
 async function readsAPlot(page) {
   await select(page, "Bag");
   // the plot begins with what was seen in the panel
-  const time = async () => Number.parseFloat(await page.locator(".top .time").textContent());
-  const start = await time();
-  await waitFor("twelve seconds", async () => (await time()) > start + 12);
+  await letRun(page, 12);
   const plot = page.locator(".plot").first();
   const row = page.locator(".values tr", { has: page.locator('.name:text-is("position.y")') });
   await row.dragTo(plot.locator(".chart"));
@@ -196,7 +196,7 @@ async function readsAPlot(page) {
     (await page.locator(".panel-plots > header").textContent()).includes("Follow"),
   );
   const first = (await rowsOfCsv(page, plot)).rows;
-  await page.waitForTimeout(1000);
+  await letRun(page, 1);
   require(JSON.stringify(first) ===
     JSON.stringify((await rowsOfCsv(page, plot)).rows), "a held plot has other samples");
   await page.click('[aria-label="Follow the newest samples"]');
@@ -252,8 +252,8 @@ async function recordsAndPlaysInputs(page) {
   await page.click('text="Record input"');
   await page.keyboard.down("KeyS");
   await waitFor("the key", async () => (await raw(page, "Input_Lift")) === -1);
-  // long enough to be seen when it is played, on a busy machine too
-  await page.waitForTimeout(2000);
+  // long enough to be shown when it is played, on a busy machine too
+  await letRun(page, 4);
   await page.keyboard.up("KeyS");
   await waitFor("neutral", async () => (await raw(page, "Input_Lift")) === 0);
   const [file] = await Promise.all([page.waitForEvent("download"), page.click('text="Stop and save"')]);
@@ -267,8 +267,14 @@ async function recordsAndPlaysInputs(page) {
     const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click('text="Play input"')]);
     await chooser.setFiles(given);
   };
+  // kept in the page, which a busy machine lets answer too late
+  await input(page, "Input_Lift").locator("> .number").evaluate((number) => {
+    window.shownValues = [];
+    new MutationObserver(() => window.shownValues.push(Number(number.textContent)))
+      .observe(number, { childList: true, characterData: true, subtree: true });
+  });
   await play(path);
-  await waitFor("the played value", async () => (await raw(page, "Input_Lift")) === -1);
+  await waitFor("the played value", () => page.evaluate(() => window.shownValues.includes(-1)));
   await page.locator('.tables button:text-is("Play input")').waitFor(); // its end
   await waitFor("neutral after the table", async () => (await raw(page, "Input_Lift")) === 0);
   writeFileSync(path, "time,Input_Lift\n0,0.5\n1,2\n");

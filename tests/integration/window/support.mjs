@@ -109,6 +109,14 @@ export const select = (page, element) => page.click(`.row[data-element="${elemen
 export const input = (page, name) => page.locator(`.input[data-input="${name}"]`);
 export const raw = async (page, name) => Number(await input(page, name).locator("> .number").textContent());
 
+export const sessionTime = async (page) => Number.parseFloat(await page.locator(".top .time").textContent());
+
+// Waits until the session is that much further [s].
+export async function letRun(page, seconds) {
+  const start = await sessionTime(page);
+  await waitFor(`${seconds} s of the session`, async () => (await sessionTime(page)) > start + seconds);
+}
+
 export async function rowsOfCsv(page, plot) {
   const [file] = await Promise.all([page.waitForEvent("download"), plot.locator('[aria-label*="CSV"]').click()]);
   const [head, ...lines] = readFileSync(await file.path(), "utf8")
