@@ -72,6 +72,7 @@ endif()
 if(SLEWRING_SANITIZE)
   target_compile_options(slewring_flags INTERFACE -fsanitize=${SLEWRING_SANITIZE} -fno-sanitize-recover=all
     -fno-omit-frame-pointer)
+  target_compile_definitions(slewring_flags INTERFACE SLEWRING_SANITIZED)
   # their checks double what the optimiser has to do: only fuzzers, and what computes, are worth the wait
   if(NOT SLEWRING_BUILD_FUZZERS)
     target_compile_options(slewring_flags INTERFACE $<$<NOT:$<BOOL:$<TARGET_PROPERTY:SLEWRING_COMPUTES>>>:-O1;-g1>)

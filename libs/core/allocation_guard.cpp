@@ -4,7 +4,7 @@
 #include <cerrno>
 #include <cstddef>
 
-#ifdef SLEWRING_COUNTS_HEAP
+#ifndef SLEWRING_SANITIZED
 // glibc's own entry points behind malloc and its relatives
 extern "C" {
 void* __libc_malloc(std::size_t);
@@ -20,7 +20,7 @@ thread_local std::uint64_t allocation_count = 0;
 thread_local std::uint64_t free_count = 0;
 }  // namespace
 
-#ifdef SLEWRING_COUNTS_HEAP
+#ifndef SLEWRING_SANITIZED
 extern "C" {
 void* malloc(std::size_t size) {
   ++allocation_count;

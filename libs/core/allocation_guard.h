@@ -15,7 +15,7 @@ namespace slew {
 
 class AllocationGuard {
  public:
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SLEWRING_SANITIZED
   static constexpr bool kCounts = false;
 #else
   static constexpr bool kCounts = true;
