@@ -90,14 +90,15 @@ INSTANTIATE_TEST_SUITE_P(
     Circuits, Hopsan,
     testing::Values(Compared{"accumulator", 7e-4}, Compared{"check_valve", 1e-4}, Compared{"compensated_valve", 1.3e-2},
                     Compared{"counterbalance_oscillation", 4e-3}, Compared{"counterbalance_valve", 2e-4},
-                    Compared{"cylinder", 9e-4}, Compared{"direct_relief_valve", 6e-4}, Compared{"fixed_pump", 3e-3},
-                    Compared{"flow_sharing", 2e-4}, Compared{"four_way_valve", 3e-3},
-                    Compared{"hydrostatic_transmission", 1e-4}, Compared{"line", 4e-3},
-                    Compared{"load_sensing_system", 6e-3}, Compared{"motor", 2e-4}, Compared{"open_centre_valve", 8e-4},
-                    Compared{"pilot_check_valve", 1e-4}, Compared{"pressure_controlled_pump", 3e-3},
-                    Compared{"priority_valve", 8e-3}, Compared{"reducing_valve", 5e-3}, Compared{"relief_valve", 6e-4},
-                    Compared{"restrictions", 3e-4}, Compared{"shuttle_valve", 1e-3},
-                    Compared{"throttle_check_valve", 1e-4}, Compared{"variable_motor", 1e-4}),
+                    Compared{"cylinder", 9e-4}, Compared{"direct_relief_valve", 6e-4}, Compared{"engine", 4e-3},
+                    Compared{"fixed_pump", 3e-3}, Compared{"flow_sharing", 2e-4}, Compared{"four_way_valve", 3e-3},
+                    Compared{"gear_flow_divider", 2.2e-3}, Compared{"hydrostatic_transmission", 1e-4},
+                    Compared{"line", 4e-3}, Compared{"load_sensing_system", 6e-3}, Compared{"motor", 2e-4},
+                    Compared{"open_centre_valve", 8e-4}, Compared{"pilot_check_valve", 1e-4},
+                    Compared{"pressure_controlled_pump", 3e-3}, Compared{"priority_valve", 8e-3},
+                    Compared{"reducing_valve", 5e-3}, Compared{"relief_valve", 6e-4}, Compared{"restrictions", 3e-4},
+                    Compared{"shuttle_valve", 1e-3}, Compared{"throttle_check_valve", 1e-4},
+                    Compared{"variable_motor", 1e-4}),
     [](const testing::TestParamInfo<Compared>& info) { return std::string(info.param.circuit); });
 
 }  // namespace hopsan_test
