@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/shuttle_valve.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "hydraulics/circuit_builder.h"
@@ -49,9 +50,10 @@ class ShuttleValve final : public HydraulicComponent {
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
     for (const StateIndex inlet : {p_1_, p_2_}) {
-      const EdgeFlow Q = flow(view, inlet);
-      jacobian.move(inlet, p_3_, inlet, Q.over_drop);
-      jacobian.move(inlet, p_3_, p_3_, -Q.over_drop);
+      const SeatFlow Q = flow(view, inlet);
+      jacobian.move(inlet, p_3_, inlet, Q.over_inlet);
+      jacobian.move(inlet, p_3_, other(inlet), Q.over_other);
+      jacobian.move(inlet, p_3_, p_3_, -Q.over_inlet - Q.over_other);
       jacobian.move(inlet, p_3_, p_1_, Q.over_position);
       jacobian.move(inlet, p_3_, p_2_, -Q.over_position);
     }
@@ -77,12 +79,31 @@ class ShuttleValve final : public HydraulicComponent {
     const ValueSlope a = unit_clip(0.5 * (1 + x), kBallEndWidth);
     return {a.value, 0.5 * a.slope / def_.switching_pressure};
   }
-  // (2); over_position: over p_1 - p_2 by the ball
-  [[nodiscard]] EdgeFlow flow(const CircuitView& view, StateIndex inlet) const noexcept {
-    const ValueSlope a = place(view), r = root(view[inlet] - view[p_3_], transition_);
+  struct SeatFlow {
+    double value, over_inlet, over_other, over_position;  // m3/s, m3/s/Pa; the position's over p_1 - p_2
+  };
+  [[nodiscard]] StateIndex other(StateIndex inlet) const noexcept { return inlet == p_1_ ? p_2_ : p_1_; }
+  // (2)
+  [[nodiscard]] SeatFlow flow(const CircuitView& view, StateIndex inlet) const noexcept {
+    const ValueSlope a = place(view);
     const bool is_first = inlet == p_1_;
-    const double open = is_first ? a.value : 1 - a.value;
-    return {open * K_ * r.value, open * K_ * r.slope, (is_first ? a.slope : -a.slope) * K_ * r.value};
+    const double KA = (is_first ? a.value : 1 - a.value) * K_;
+    const ValueSlope in = driven(view[inlet] - view[p_3_]), back = driven(view[p_3_] - view[inlet]);
+    const ValueSlope share = rise(view[p_3_] - view[other(inlet)]);
+    const double drive = in.value - share.value * back.value;
+    return {KA * drive, KA * (in.slope + share.value * back.slope), KA * share.slope * back.value,
+            (is_first ? a.slope : -a.slope) * K_ * drive};
+  }
+  // (4)
+  [[nodiscard]] ValueSlope rise(double drop) const noexcept {
+    const double t = std::clamp(drop / transition_, 0.0, 1.0);
+    return {t * t * t * (10 + t * (6 * t - 15)), 30 * t * t * (1 - t) * (1 - t) / transition_};
+  }
+  // (3)
+  [[nodiscard]] ValueSlope driven(double drop) const noexcept {
+    if (drop <= 0) return {0, 0};
+    const ValueSlope r = root(drop, transition_), s = rise(drop);
+    return {s.value * r.value, s.slope * r.value + s.value * r.slope};
   }
 
   ShuttleValveDef def_;

@@ -2,10 +2,14 @@
 // Shuttle valve: its outlet is connected to the inlet of the higher pressure.
 //
 //   a = clip((1 + (p_1 - p_2)/switching_pressure)/2, 0, 1)                                                      (1)
-//   Q_13 = a K root(p_1 - p_3),   Q_23 = (1 - a) K root(p_2 - p_3),   K = nominal_flow/sqrt(nominal_pressure_drop) (2)
-// 1 and 2 inlets, 3 outlet; the ball shuts the inlet of the lower pressure, and lets the outlet's oil back to the
-// higher one. a is the ball's place, which follows the pressures at once. For the pressure alone, without oil, use
-// ls_shuttle.
+//   Q_i3 = a_i K (F(p_i - p_3) - s(p_3 - p_j) F(p_3 - p_i)),   a_1 = a,   a_2 = 1 - a                            (2)
+//   F(d) = s(d) root(d) for d > 0, else 0                                                                       (3)
+//   s(d) = t^3 (10 - 15 t + 6 t^2),   t = clip(d/d_t, 0, 1)                                                   (4)
+// 1 and 2 inlets, 3 outlet, j the inlet other than i, K = nominal_flow/sqrt(nominal_pressure_drop), d_t the transition
+// of the orifices. The ball shuts the inlet of the lower pressure, and lets the outlet's oil back to the higher one. a
+// is the ball's place, which follows the pressures at once. s in (2): no oil flows from one inlet through the outlet
+// into the other one while the ball is on its way. Such a flow would bring the inlets together and hold the ball
+// between the seats. For the pressure alone, without oil, use ls_shuttle.
 //
 // Source: Merritt 1967 for the orifices. Not covered: mass of the ball, leak of the shut seat.
 #pragma once

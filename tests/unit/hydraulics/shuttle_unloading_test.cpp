@@ -45,6 +45,26 @@ TEST(ShuttleValve, of_equal_inlets_stands_in_the_middle) {
   EXPECT_NEAR(rig.variable("Shuttle.flow_2"), 10 * kLitrePerMinute, 1e-5 * kLitrePerMinute);
 }
 
+// Both lines rest at one pressure when the first one rises. Oil that flowed through the outlet into the second line,
+// which is closed, would take that along and keep the ball between the seats.
+TEST(ShuttleValve, leaves_a_closed_line_alone_while_the_other_line_rises) {
+  CircuitRig rig;
+  rig.def.start = StartState::table13;
+  add_tank(rig.def, "Tank", kBar);
+  for (const char* name : {"One", "Two", "Out"}) add_volume(rig.def, name, 20 * kBar).rigid_volume = 0.5e-3;
+  FlowSourceDef& source = add<FlowSourceDef>(rig.def, "Source");
+  source.port_1 = "Tank", source.port_2 = "One", source.flow = 0.5 * kLitrePerMinute;
+  OrificeDef& consumer = add<OrificeDef>(rig.def, "Consumer");
+  consumer.port_1 = "Out", consumer.port_2 = "Tank", consumer.diameter = 2e-4;
+  ShuttleValveDef& valve = add<ShuttleValveDef>(rig.def, "Shuttle");
+  valve.port_1 = "One", valve.port_2 = "Two", valve.port_3 = "Out", valve.nominal_flow = 20 * kLitrePerMinute;
+  rig.run(1);
+  EXPECT_GT(rig.variable("One.pressure"), 40 * kBar);
+  EXPECT_NEAR(rig.variable("Out.pressure"), rig.variable("One.pressure"), kBar);
+  EXPECT_NEAR(rig.variable("Two.pressure"), 20 * kBar, 0.2 * kBar);
+  EXPECT_EQ(rig.variable("Shuttle.position"), 1);
+}
+
 // 20 l/min at 5 bar; edges open from 5 to 10 bar between the sides.
 TEST(FlushingValve, takes_oil_of_the_lower_side_alone) {
   for (const auto& [one, two, flow_1, flow_2] : {std::tuple{25.0, 220.0, 20.0, 0.0},  // 5 bar to the outlet
