@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/shuttle_valve.h"
 
-#include <cmath>
-
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
-#include "hydraulics/components/check_poppet.h"
-#include "hydraulics/components/spring_spool.h"
+#include "hydraulics/components/outlet_edges.h"
+#include "hydraulics/components/shared_fields.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -25,35 +23,25 @@ constexpr Field kShuttleValveFields[] = {
                                                  .doc = "difference of the inlets that holds the ball on a seat"}),
 };
 
-constexpr double kBallEndWidth = 0.02;  // share of the ball's way, smoothing of its ends
+constexpr double kBallEndWidth = 0.02;  // share of the ball's travel, smoothing of its ends
 
 class ShuttleValve final : public HydraulicComponent {
  public:
   ShuttleValve(const ShuttleValveDef& def, CircuitBuilder& builder)
-      : HydraulicComponent(def),
-        def_(def),
-        p_1_(builder.volume(def.port_1)),
-        p_2_(builder.volume(def.port_2)),
-        p_3_(builder.volume(def.port_3)),
-        transition_(builder.def().orifice_transition) {
+      : HydraulicComponent(def), def_(def), edges_(def, builder) {
     apply_parameters();
   }
-  void declare_dependencies(DependencyList& dependencies) const override {
-    for (const StateIndex row : {p_1_, p_2_, p_3_}) {
-      for (const StateIndex column : {p_1_, p_2_, p_3_}) dependencies.add(row, column);
-    }
-  }
+  void declare_dependencies(DependencyList& dependencies) const override { edges_.declare_dependencies(dependencies); }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
-    rates.move(p_1_, p_3_, flow(view, p_1_).value);
-    rates.move(p_2_, p_3_, flow(view, p_2_).value);
+    for (const int i : {0, 1}) edges_.move(i, flow(view, i), rates);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    for (const StateIndex inlet : {p_1_, p_2_}) {
-      const EdgeFlow Q = flow(view, inlet);
-      jacobian.move(inlet, p_3_, inlet, Q.over_drop);
-      jacobian.move(inlet, p_3_, p_3_, -Q.over_drop);
-      jacobian.move(inlet, p_3_, p_1_, Q.over_position);
-      jacobian.move(inlet, p_3_, p_2_, -Q.over_position);
+    for (const int i : {0, 1}) {
+      const EdgeFlow Q = flow(view, i);
+      edges_.stamp(i, i, Q.over_drop, jacobian);
+      edges_.stamp_outlet(i, -Q.over_drop, jacobian);
+      edges_.stamp(i, 0, Q.over_position, jacobian);
+      edges_.stamp(i, 1, -Q.over_position, jacobian);
     }
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
@@ -62,40 +50,33 @@ class ShuttleValve final : public HydraulicComponent {
     variables.push_back(variable("flow_2", Dimension::volume_flow));
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
-    *values++ = place(view).value;
-    *values++ = flow(view, p_1_).value;
-    *values++ = flow(view, p_2_).value;
+    *values++ = position(view).value;
+    for (const int i : {0, 1}) *values++ = flow(view, i).value;
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
-  void apply_parameters() noexcept override { K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop); }
+  void apply_parameters() noexcept override { edges_.set(def_.nominal_flow, def_.nominal_pressure_drop); }
 
  private:
   // (1) with its slope over p_1 - p_2
-  [[nodiscard]] ValueSlope place(const CircuitView& view) const noexcept {
-    const double x = (view[p_1_] - view[p_2_]) / def_.switching_pressure;
+  [[nodiscard]] ValueSlope position(const CircuitView& view) const noexcept {
+    const double x = (view[edges_.inlet(0)] - view[edges_.inlet(1)]) / def_.switching_pressure;
     const ValueSlope a = unit_clip(0.5 * (1 + x), kBallEndWidth);
     return {a.value, 0.5 * a.slope / def_.switching_pressure};
   }
-  // (2); over_position: over p_1 - p_2 by the ball
-  [[nodiscard]] EdgeFlow flow(const CircuitView& view, StateIndex inlet) const noexcept {
-    const ValueSlope a = place(view), r = root(view[inlet] - view[p_3_], transition_);
-    const bool is_first = inlet == p_1_;
-    const double open = is_first ? a.value : 1 - a.value;
-    return {open * K_ * r.value, open * K_ * r.slope, (is_first ? a.slope : -a.slope) * K_ * r.value};
+  // (2)
+  [[nodiscard]] EdgeFlow flow(const CircuitView& view, int i) const noexcept {
+    const ValueSlope a = position(view);
+    return edges_.flow(view, i, i == 0 ? a : ValueSlope{1 - a.value, -a.slope});
   }
 
   ShuttleValveDef def_;
-  StateIndex p_1_, p_2_, p_3_;
-  double transition_;
-  double K_ = 0;
+  OutletEdges edges_;
 };
 
 void validate_shuttle_valve(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {
   const ShuttleValveDef& def = static_cast<const ShuttleValveDef&>(component);
-  check_distinct(def.name + ".port_2", def.port_1, def.port_2, errors);
-  check_distinct(def.name + ".port_3", def.port_1, def.port_3, errors);
-  check_distinct(def.name + ".port_3", def.port_2, def.port_3, errors);
+  check_three_ports(def, errors);
 }
 
 }  // namespace
