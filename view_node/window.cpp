@@ -8,11 +8,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
 
 #include "core/failure.h"
 #include "core/json.h"
@@ -127,7 +131,6 @@ void end(gateway::Gateway& gateway, Server& server, const std::string& reason, c
 }
 
 // ---- a live session
-// ---------------------------------------------------------------------------------------------------
 
 // Receives for a gateway that is made when the session is found; names and values of before are in the view.
 class LateReceiver final : public observer::Receiver {
@@ -138,8 +141,10 @@ class LateReceiver final : public observer::Receiver {
   }
   void take_wire(wire::Topic topic, std::span<const std::byte> bytes, double time) override {
     if (gateway_ != nullptr) return gateway_->take_wire(topic, bytes, time);
-    if (gateway::KeptWireMessages::keeps(topic) && early_.size() < gateway::KeptWireMessages::kMostOfTopic)
-      early_.push_back({topic, {bytes.begin(), bytes.end()}, time});
+    if (!gateway::KeptWireMessages::keeps(topic)) return;
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    early_.take(topic,
+                {static_cast<std::uint64_t>(std::llround(time * 1e9)), std::make_shared<const std::string>(text)});
   }
   void take_lease(const wire::ControllerLease& lease) override {
     if (gateway_ != nullptr) gateway_->take_lease(lease);
@@ -149,19 +154,19 @@ class LateReceiver final : public observer::Receiver {
   }
   void set_gateway(gateway::Gateway* gateway) {
     gateway_ = gateway;
-    for (const Early& message : std::exchange(early_, {}))
-      if (gateway != nullptr) gateway->take_wire(message.topic, message.bytes, message.time);
+    const gateway::KeptWireMessages early = std::exchange(early_, {});
+    if (gateway == nullptr) return;
+    for (std::size_t i = 0; i < wire::kTopics; ++i) {
+      const auto topic = static_cast<wire::Topic>(i);
+      for (const gateway::WireMessage& message : early.of(topic))
+        gateway->take_wire(topic, std::as_bytes(std::span(*message.body)), static_cast<double>(message.time_ns) * 1e-9);
+    }
   }
   [[nodiscard]] bool has_new_session() const noexcept { return has_new_session_; }
 
  private:
-  struct Early {
-    wire::Topic topic;
-    std::vector<std::byte> bytes;
-    double time;
-  };
   gateway::Gateway* gateway_ = nullptr;
-  std::vector<Early> early_;
+  gateway::KeptWireMessages early_;
   bool has_new_session_ = false;
 };
 
@@ -290,7 +295,6 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
 }
 
 // ---- a recording
-// ------------------------------------------------------------------------------------------------------
 
 // A run's folder names its recording, or the file does.
 std::string name_of(const recording::Reader& reader) {
