@@ -24,6 +24,7 @@
 #include "gateway/gateway.h"
 #include "node/driver.h"
 #include "node/identity.h"
+#include "observer/silence_watch.h"
 #include "recording/run_directory.h"
 #include "session/recorded.h"
 #include "session/survey.h"
@@ -46,7 +47,6 @@ using Report = std::function<void(const std::string&)>;
 constexpr SimDuration kRound = milliseconds(5);
 constexpr SimDuration kLastRound = milliseconds(500);  // for the last events of clients
 constexpr std::size_t kShortestToken = 16;
-constexpr std::int64_t kSilentNs = 5'000'000'000;  // nodes publish their health ten times a second
 
 std::string read_token(const std::string& path) {
   if (path.empty()) return "";
@@ -207,27 +207,6 @@ gateway::GatewayDef live_def(const WindowOptions& options, observer::Observer& o
   return def;
 }
 
-// Processes that were killed publish no end.
-class Silence {
- public:
-  // A sentence when the session falls silent or publishes again.
-  [[nodiscard]] std::optional<std::string> look(const observer::SessionView& view, std::int64_t now_ns) {
-    std::uint64_t all = 0;
-    for (const wire::Role role : wire::kNodeRoles) all += view.node(role).healths;
-    if (all != healths_ || received_ns_ == 0) received_ns_ = now_ns;
-    healths_ = all;
-    const bool is_silent = now_ns - received_ns_ > kSilentNs;
-    if (is_silent == std::exchange(was_silent_, is_silent)) return std::nullopt;
-    return is_silent ? "no message of the session has come for 5 s; look with 'slewring sessions' whether it still runs"
-                     : "messages of the session come again";
-  }
-
- private:
-  std::uint64_t healths_ = 0;
-  std::int64_t received_ns_ = 0;
-  bool was_silent_ = false;
-};
-
 // The diagram of the scene's circuit for the page.
 std::shared_ptr<const std::string> draw_circuit(const scene::Scene& scene) {
   if (scene.hydraulics.components.empty()) return nullptr;
@@ -267,7 +246,7 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
   Server server(std::move(def), gateway);
   show_address(options, server, "session '" + observer->session_name() + "'", token, report);
   report_meshes(meshes, gateway, report);
-  Silence silence;
+  observer::SilenceWatch silence;
   const auto is_over = [&] { return view.is_over() || receiver.has_new_session(); };
   while (!is_over() && !observer->is_stopped()) {
     observer->drain();
@@ -276,9 +255,12 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
     saved.poll();
     if (editing) editing->poll();
     if (editing && editing->takes_restart()) report(std::string(kRestartLine));
-    if (const auto text = silence.look(view, now_ns)) {
-      report(*text);
-      gateway.add_event(gateway::LogLevel::warning, "window", *text);
+    if (silence.has_changed(view, now_ns)) {
+      const std::string text = silence.is_silent() ? "no message of the session has come for 5 s; look with 'slewring "
+                                                     "sessions' whether it still runs"
+                                                   : "messages of the session come again";
+      report(text);
+      gateway.add_event(gateway::LogLevel::warning, "window", text);
     }
     server.poll(kRound);
   }

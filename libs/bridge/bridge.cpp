@@ -13,6 +13,7 @@
 #include "bridge/parameter_door.h"
 #include "core/failure.h"
 #include "lcm_log/event_log.h"
+#include "observer/silence_watch.h"
 
 namespace slew::bridge {
 namespace {
@@ -20,8 +21,7 @@ namespace {
 constexpr SimDuration kDirectoryTimeout = milliseconds(5000);
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr SimDuration kLongestWait = milliseconds(20);
-constexpr int kInputWaitMs = 1;                    // with inputs: variables leave this much later at most
-constexpr std::int64_t kSilentNs = 5 * kSecondNs;  // nodes publish their health each second
+constexpr int kInputWaitMs = 1;  // with inputs: variables leave this much later at most
 
 std::vector<lcm_log::InputChannel> input_channels(const SceneView& scene) {
   std::vector<lcm_log::InputChannel> channels;
@@ -75,7 +75,6 @@ struct Bridge::State final : observer::Receiver {
   void open(observer::Observer& observer, const SceneView& scene);
   void open_door(observer::Observer& observer, const SceneView& scene, const std::string& prefix);
   void each_second(observer::Observer& observer, std::int64_t now_ns);
-  [[nodiscard]] bool is_silent(const observer::SessionView& view, std::int64_t now_ns);
   [[nodiscard]] bool receives() const { return !settings.controllers.empty() || settings.takes_parameters; }
 
   Settings settings;
@@ -90,9 +89,7 @@ struct Bridge::State final : observer::Receiver {
   std::uint32_t epoch = 0;
   StepIndex newest_step = kJoinStep;  // of the blocks of this epoch
   std::uint64_t unsent_inputs = 0;
-  std::uint64_t healths = 0;  // messages of all nodes
-  std::int64_t healths_ns = 0;
-  bool was_silent = false;
+  observer::SilenceWatch silence;
   std::vector<std::string> notices;
 };
 
@@ -177,26 +174,17 @@ void Bridge::State::open_door(observer::Observer& observer, const SceneView& sce
   }
 }
 
-// Processes that were killed publish no end.
-bool Bridge::State::is_silent(const observer::SessionView& view, std::int64_t now_ns) {
-  std::uint64_t all = 0;
-  for (const wire::Role role : wire::kNodeRoles) all += view.node(role).healths;
-  if (all != healths || healths_ns == 0) healths_ns = now_ns;
-  healths = all;
-  return now_ns - healths_ns > kSilentNs;
-}
-
 void Bridge::State::each_second(observer::Observer& observer, std::int64_t now_ns) {
   const StepIndex step = observer.view().step();
-  const bool is_silent_now = is_silent(observer.view(), now_ns);
-  if (is_silent_now != std::exchange(was_silent, is_silent_now) && !has_new_session) {
+  if (silence.has_changed(observer.view(), now_ns) && !has_new_session) {
     notices.push_back(
-        is_silent_now ? fmt::format("no message of session '{}' has come for 5 s; its health is not published until "
-                                    "one comes; look with 'slewring sessions' whether it still runs",
-                                    observer.session_name())
-                      : fmt::format("messages of session '{}' come again", observer.session_name()));
+        silence.is_silent()
+            ? fmt::format("no message of session '{}' has come for 5 s; its health is not published until "
+                          "one comes; look with 'slewring sessions' whether it still runs",
+                          observer.session_name())
+            : fmt::format("messages of session '{}' come again", observer.session_name()));
   }
-  if (!is_silent_now) {
+  if (!silence.is_silent()) {
     outgoing->publish_directory(step);
     outgoing->publish_health(observer.view(), step);
   }
