@@ -11,7 +11,7 @@
 #include <iostream>
 #include <memory>
 
-#include "bridge/bridge.h"
+#include "bridge/log_export.h"
 #include "cli/lcm_scene.h"
 #include "cli/verbs.h"
 #include "core/failure.h"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bridge/bridge.h"
+#include "bridge/settings.h"
 #include "options/options.h"
 #include "scene/scene.h"
 

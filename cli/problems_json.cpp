@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/problems_json.h"
 
+#include "scene/scene_outline.h"
+
 namespace slew::cli {
 
 Json problems_json(const scene::LoadError& error) {
-  Json problems = Json::array();
-  for (const scene::Diagnostic& diagnostic : error.diagnostics()) {
-    problems.push_back({{"file", diagnostic.file},
-                        {"line", diagnostic.line},
-                        {"column", diagnostic.column},
-                        {"path", diagnostic.path},
-                        {"what", diagnostic.what},
-                        {"expected", diagnostic.expected},
-                        {"suggestion", diagnostic.suggestion}});
-  }
   return {{"ok", false},
           {"code", static_cast<int>(ExitCode::bad_input)},
-          {"problems", problems},
+          {"problems", scene::diagnostics_json(error)},
           {"omitted", error.omitted()}};
 }
 

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <utility>
 
+#include "core/comma_list.h"
 #include "view_node/page_files.h"
 
 namespace slew::view_node {
@@ -45,9 +46,7 @@ HttpAnswer sentence(unsigned status, std::string text) {
 
 bool accepts_gzip(std::string_view accept_encoding) noexcept {
   while (!accept_encoding.empty()) {
-    std::string_view one = accept_encoding.substr(0, accept_encoding.find(','));
-    accept_encoding.remove_prefix(std::min(accept_encoding.size(), one.size() + 1));
-    while (one.starts_with(' ')) one.remove_prefix(1);
+    const std::string_view one = take_listed(accept_encoding);
     std::string_view name = one.substr(0, one.find(';'));
     const std::string_view weight = one.substr(name.size());
     while (name.ends_with(' ')) name.remove_suffix(1);

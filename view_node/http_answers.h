@@ -12,6 +12,7 @@
 
 #include "gateway/door.h"
 #include "gateway/gateway.h"
+#include "view_node/entity_tag.h"
 #include "view_node/server_def.h"
 #include "view_node/workspace_file.h"
 

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_node/recorded_curves.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 
-#include "core/failure.h"
 #include "plotting/decimation.h"
 #include "session/recorded.h"
 
@@ -24,15 +21,8 @@ std::uint64_t nanoseconds(double seconds) {
 }  // namespace
 
 RecordedCurves::RecordedCurves(std::vector<Recording> recordings)
-    : recordings_(std::move(recordings)), thread_([this] { work(); }) {}
-
-RecordedCurves::~RecordedCurves() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_closing_ = true;
-  }
-  has_changed_.notify_one();
-  thread_.join();
+    : recordings_(std::move(recordings)),
+      thread_(kMostWaiting, kPlaybackFirst, [this](const gateway::CurvesRequest& request) { return answer(request); }) {
 }
 
 std::vector<std::string> RecordedCurves::names() const {
@@ -42,46 +32,19 @@ std::vector<std::string> RecordedCurves::names() const {
 }
 
 void RecordedCurves::read(gateway::CurvesRequest request, Done done) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (waiting_.size() < kMostWaiting) {
-      waiting_.push_back({std::move(request), std::move(done)});
-      done = nullptr;
-    }
-  }
-  if (done) return done({.problem = "too many requests for curves wait; nothing was read; try again"});
-  has_changed_.notify_one();
-}
-
-void RecordedCurves::poll() {
-  std::deque<Job> answered;
-  {
-    const std::lock_guard lock(mutex_);
-    answered.swap(answered_);
-  }
-  for (Job& job : answered) job.done(std::move(job.answer));
-}
-
-void RecordedCurves::work() {
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kPlaybackFirst);  // without it the answers come as well
-  std::unique_lock lock(mutex_);
-  while (true) {
-    has_changed_.wait(lock, [this] { return is_closing_ || !waiting_.empty(); });
-    if (is_closing_) return;
-    Job job = std::move(waiting_.front());
-    waiting_.pop_front();
-    lock.unlock();
-    try {
-      job.answer = answer(job.request);
-    } catch (const std::exception& error) {
-      job.answer = {.problem = error.what()};
-    }
-    lock.lock();
-    answered_.push_back(std::move(job));
-  }
+  if (!thread_.take(std::move(request), done))
+    done({.problem = "too many requests for curves wait; nothing was read; try again"});
 }
 
 RecordedCurves::Answer RecordedCurves::answer(const gateway::CurvesRequest& request) const {
+  try {
+    return read_curves(request);
+  } catch (const std::exception& error) {
+    return {.problem = error.what()};
+  }
+}
+
+RecordedCurves::Answer RecordedCurves::read_curves(const gateway::CurvesRequest& request) const {
   const recording::Reader& reader = *recordings_.at(request.recording).reader;
   const std::vector<std::string> recorded = session::recorded_names(reader);
   std::vector<std::string> names;

@@ -3,16 +3,13 @@
 // takes its time and the playback must not wait.
 #pragma once
 
-#include <condition_variable>
-#include <deque>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "gateway/gateway.h"
 #include "recording/reader.h"
+#include "view_node/request_thread.h"
 
 namespace slew::view_node {
 
@@ -27,29 +24,17 @@ class RecordedCurves final : public gateway::RecordedCurves {
     std::unique_ptr<recording::Reader> reader;
   };
   explicit RecordedCurves(std::vector<Recording> recordings);
-  // Waits for the curves that are being read; others get no answer.
-  ~RecordedCurves() override;
-
   [[nodiscard]] std::vector<std::string> names() const override;
   // done is called from poll(), or at once where too many requests wait.
   void read(gateway::CurvesRequest request, Done done) override;
-  void poll();
+  void poll() { thread_.poll(); }
 
  private:
-  struct Job {
-    gateway::CurvesRequest request;
-    Done done;
-    Answer answer{};
-  };
-  void work();
   [[nodiscard]] Answer answer(const gateway::CurvesRequest& request) const;
+  [[nodiscard]] Answer read_curves(const gateway::CurvesRequest& request) const;
 
   std::vector<Recording> recordings_;
-  std::mutex mutex_;  // of all below
-  std::condition_variable has_changed_;
-  std::deque<Job> waiting_, answered_;
-  bool is_closing_ = false;
-  std::thread thread_;
+  RequestThread<gateway::CurvesRequest, Answer> thread_;  // the last member: its end is that of its use of the others
 };
 
 }  // namespace slew::view_node

@@ -47,10 +47,10 @@ double seconds_of(std::uint64_t ns) {
 RecordedSource::RecordedSource(const recording::Reader& reader) : reader_(reader) {
   const recording::StatisticsRecord& statistics = reader.statistics();
   range_ = {statistics.start_time, statistics.end_time};
-  recording::MessageFilter values = session::only({Topic::variables});
-  std::uint64_t blocks = 0;
-  static_cast<void>(reader.for_each(values, [&](const recording::RecordedMessage&) {
-    ++blocks;
+  const recording::MessageFilter values = session::only({Topic::variables});
+  bool has_values = false;
+  require(reader.for_each(values, [&](const recording::RecordedMessage&) {
+    has_values = true;
     return recording::Reader::Visit::stop;
   }));
   const auto keep = [&reader](Topic topic, std::vector<KeptMessage>& kept) {
@@ -64,7 +64,7 @@ RecordedSource::RecordedSource(const recording::Reader& reader) : reader_(reader
   keep(Topic::variable_directory, names_);
   keep(Topic::node_status, states_);
   forget_later(0);
-  if (blocks == 0 || !view_.has_session()) {
+  if (!has_values || !view_.has_session()) {
     throw Failure(ExitCode::bad_input, reader.path().string() +
                                            ": the recording has no values of variables; nothing was started; record "
                                            "the session with recording.variables");
@@ -182,6 +182,8 @@ void RecordedSource::poll(gateway::Gateway& gateway, std::int64_t now_ns) {
   const bool has_more = read_until(time_ns, &gateway);
   read_to_ns_ = time_ns;
   gateway.show(view_, time_ns);
+  if (const Status& status = cursor_->status(); !has_more && !status.is_ok())
+    gateway.add_event(gateway::LogLevel::error, "window", status.text);
   if (!is_playing_ || (has_more && time_ns < range_.to_ns)) return;
   is_playing_ = false;
   base_ns_ = range_.to_ns;

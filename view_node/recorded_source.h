@@ -27,7 +27,8 @@ class RecordedSource final : public gateway::Playback {
   [[nodiscard]] std::vector<gateway::WireChannelDef> wire_topics() const;
   // Gives the gateway the messages that its clients may request at any time: the session and the names of variables.
   void publish_names(gateway::Gateway& gateway) const;
-  // Goes on to the time of the playback and shows it; nothing while it stands.
+  // Goes on to the time of the playback and shows it; nothing while it stands. The playback ends at a damaged place of
+  // the recording, with an event.
   void poll(gateway::Gateway& gateway, std::int64_t now_ns);
 
   [[nodiscard]] Status control(const gateway::PlaybackControl& request, std::int64_t now_ns) override;
@@ -39,7 +40,7 @@ class RecordedSource final : public gateway::Playback {
   void forget_later(std::uint64_t time_ns);
   // Reads from so early that every variable has a value at the time.
   void jump(std::uint64_t time_ns, gateway::Gateway& gateway);
-  // Takes the messages up to the time. False: the recording cannot be read further.
+  // Takes the messages up to the time. False: the recording has no more of them, or is damaged there.
   bool read_until(std::uint64_t time_ns, observer::Receiver* receiver);
 
   struct KeptMessage {

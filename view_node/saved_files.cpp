@@ -44,8 +44,9 @@ void SavedFiles::poll() {
     const std::size_t begin = ended.output.find('{');
     const auto answer =
         begin == std::string::npos ? std::nullopt : Json::parse(std::string_view(ended.output).substr(begin));
-    if (is_done && answer) {
-      ended.done("", answer->at("step").integer());
+    const Json* const step = answer ? answer->find("step") : nullptr;
+    if (is_done && step != nullptr && step->is_number()) {
+      ended.done("", step->integer());
     } else {
       ended.done(ended.output.empty() ? end->text() : ended.output.substr(0, ended.output.find_last_not_of('\n') + 1),
                  kJoinStep);

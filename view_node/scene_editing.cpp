@@ -3,10 +3,9 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
+#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -15,7 +14,8 @@
 #include "core/text_output.h"
 #include "gateway/client_messages.h"
 #include "scene/scene_outline.h"
-#include "view_node/workspace_file.h"
+#include "view_node/entity_tag.h"
+#include "view_node/file_lock.h"
 
 namespace slew::view_node {
 namespace {
@@ -52,22 +52,6 @@ FileText read_file(const fs::path& path) {
   return file;
 }
 
-// Held while a state is compared and replaced. Another process that waits for it compares with the new file.
-class FileLock {
- public:
-  explicit FileLock(const fs::path& path) : file_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (file_ >= 0) flock(file_, LOCK_EX);
-  }
-  FileLock(const FileLock&) = delete;
-  FileLock& operator=(const FileLock&) = delete;
-  ~FileLock() {
-    if (file_ >= 0) close(file_);
-  }
-
- private:
-  int file_;
-};
-
 HttpAnswer missing_condition() {
   return sentence(428, "the request does not name the state of the file with If-Match; nothing was changed");
 }
@@ -82,56 +66,13 @@ HttpAnswer other_state(const std::string& tag) {
 }  // namespace
 
 SceneEditing::SceneEditing(fs::path file, scene::Overrides settings)
-    : path_(std::move(file)), settings_(std::move(settings)), thread_([this] { work(); }) {}
-
-SceneEditing::~SceneEditing() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_closing_ = true;
-  }
-  has_changed_.notify_one();
-  thread_.join();
-}
+    : path_(std::move(file)),
+      settings_(std::move(settings)),
+      thread_(kMostWaiting, kNiceness, [this](const Request& request) { return answer(request); }) {}
 
 void SceneEditing::take(Request request, Done done) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (waiting_.size() < kMostWaiting) {
-      waiting_.push_back({std::move(request), std::move(done)});
-      done = nullptr;
-    }
-  }
-  if (done) return done(sentence(503, "too many changes of the scene wait; nothing was changed; try again"));
-  has_changed_.notify_one();
-}
-
-void SceneEditing::poll() {
-  std::deque<Job> answered;
-  {
-    const std::lock_guard lock(mutex_);
-    answered.swap(answered_);
-  }
-  for (const Job& job : answered) job.done(job.answer);
-}
-
-bool SceneEditing::takes_restart() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(is_restart_wanted_, false);
-}
-
-void SceneEditing::work() {
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);  // without it the answers come as well
-  std::unique_lock lock(mutex_);
-  while (true) {
-    has_changed_.wait(lock, [this] { return is_closing_ || !waiting_.empty(); });
-    if (is_closing_) return;
-    Job job = std::move(waiting_.front());
-    waiting_.pop_front();
-    lock.unlock();
-    job.answer = answer(job.request);
-    lock.lock();
-    answered_.push_back(std::move(job));
-  }
+  if (!thread_.take(std::move(request), done))
+    done(sentence(503, "too many changes of the scene wait; nothing was changed; try again"));
 }
 
 HttpAnswer SceneEditing::answer(const Request& request) {
@@ -178,7 +119,10 @@ HttpAnswer SceneEditing::save(const std::string& text, const std::string& if_mat
   const Json outline = scene::outline_json(path_.string(), text, settings_);
   if (!outline.at("problems").items().empty()) return json_answer(outline, 422);
   const fs::path path = fs::canonical(path_);  // a link stays one
-  const FileLock lock(path);
+  // another process that waits for it compares with the new file
+  const FileLock lock(path, O_RDONLY);
+  if (lock.error() != 0)
+    return sentence(507, path.string() + ": " + std::strerror(lock.error()) + "; nothing was changed");
   const FileText present = read_file(path);
   if (present.fault) return *present.fault;
   const std::string tag = entity_tag(present.text);
@@ -206,7 +150,6 @@ HttpAnswer SceneEditing::restart(const std::string& if_match) {
   if (!has_tag(if_match, tag)) return other_state(tag);
   const Json outline = scene::outline_json(path_.string(), present.text, settings_);
   if (!outline.at("problems").items().empty()) return json_answer(outline, 422);
-  const std::lock_guard lock(mutex_);
   is_restart_wanted_ = true;
   return {.status = 202};
 }

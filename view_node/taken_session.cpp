@@ -49,6 +49,7 @@ TakenSession::~TakenSession() {
 }
 
 void TakenSession::start(const gateway::ContinuationRequest& request, Done done) {
+  if (done_) return done({.problem = "another client takes this recording over just now; nothing was started"});
   if (session_ != nullptr && !session_->poll_end()) {
     return done({.problem = fmt::format("session '{}' was taken over from this recording and still runs; nothing was "
                                         "started; end it with 'slewring control stop --session {}'",
@@ -79,11 +80,10 @@ void TakenSession::start(const gateway::ContinuationRequest& request, Done done)
   window.is_json = true;
   output_.clear();
   try {
-    window_.reset();
-    session_ = std::make_unique<ChildProcess>("session", sibling_program("slewring"), arguments);
+    auto session = std::make_unique<ChildProcess>("session", sibling_program("slewring"), arguments);
     window_ = std::make_unique<ChildProcess>("window", sibling_program("view_node"), window_arguments(window));
+    session_ = std::move(session);
   } catch (const Failure& failure) {
-    if (session_ != nullptr) session_->send_signal(SIGINT);
     return done({.problem = failure.what()});
   }
   done_ = std::move(done);
@@ -102,13 +102,13 @@ std::vector<std::string> TakenSession::poll() {
   const bool is_over = session_->poll_end().has_value();
   const bool is_without_window = window_->poll_end().has_value();
   for (const std::string& line : session_->take_lines()) {
-    output_ += line + "\n";
+    if (done_) output_ += line + "\n";
     reports.push_back(name_ + ": " + line);
   }
   for (const std::string& line : window_->take_lines()) {
     const std::optional<Json> addresses = addresses_in(line);
     if (!addresses) {
-      output_ += line + "\n";
+      if (done_) output_ += line + "\n";
       continue;
     }
     reports.push_back(fmt::format("session '{}' goes on from the recording: {}", name_, addresses->at("page").text()));

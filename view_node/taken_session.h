@@ -30,10 +30,10 @@ class TakenSession final : public gateway::Continuation {
   void end(const std::string& problem);
 
   WindowOptions options_;
-  std::string name_;  // of the live session
-  Done done_;         // empty: answered
-  std::unique_ptr<ChildProcess> session_, window_;
-  std::string output_;  // of both, since the start
+  std::string name_;                                // of the live session
+  Done done_;                                       // empty: answered
+  std::unique_ptr<ChildProcess> session_, window_;  // both or none
+  std::string output_;                              // of both, from the start to the answer
 };
 
 }  // namespace slew::view_node

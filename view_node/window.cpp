@@ -8,11 +8,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
 
 #include "core/failure.h"
 #include "core/json.h"
@@ -20,6 +24,7 @@
 #include "gateway/gateway.h"
 #include "node/driver.h"
 #include "node/identity.h"
+#include "observer/silence_watch.h"
 #include "recording/run_directory.h"
 #include "session/recorded.h"
 #include "session/survey.h"
@@ -42,7 +47,6 @@ using Report = std::function<void(const std::string&)>;
 constexpr SimDuration kRound = milliseconds(5);
 constexpr SimDuration kLastRound = milliseconds(500);  // for the last events of clients
 constexpr std::size_t kShortestToken = 16;
-constexpr std::int64_t kSilentNs = 5'000'000'000;  // nodes publish their health ten times a second
 
 std::string read_token(const std::string& path) {
   if (path.empty()) return "";
@@ -127,7 +131,6 @@ void end(gateway::Gateway& gateway, Server& server, const std::string& reason, c
 }
 
 // ---- a live session
-// ---------------------------------------------------------------------------------------------------
 
 // Receives for a gateway that is made when the session is found; names and values of before are in the view.
 class LateReceiver final : public observer::Receiver {
@@ -138,8 +141,10 @@ class LateReceiver final : public observer::Receiver {
   }
   void take_wire(wire::Topic topic, std::span<const std::byte> bytes, double time) override {
     if (gateway_ != nullptr) return gateway_->take_wire(topic, bytes, time);
-    if (gateway::KeptWireMessages::keeps(topic) && early_.size() < gateway::KeptWireMessages::kMostOfTopic)
-      early_.push_back({topic, {bytes.begin(), bytes.end()}, time});
+    if (!gateway::KeptWireMessages::keeps(topic)) return;
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    early_.take(topic,
+                {static_cast<std::uint64_t>(std::llround(time * 1e9)), std::make_shared<const std::string>(text)});
   }
   void take_lease(const wire::ControllerLease& lease) override {
     if (gateway_ != nullptr) gateway_->take_lease(lease);
@@ -149,19 +154,19 @@ class LateReceiver final : public observer::Receiver {
   }
   void set_gateway(gateway::Gateway* gateway) {
     gateway_ = gateway;
-    for (const Early& message : std::exchange(early_, {}))
-      if (gateway != nullptr) gateway->take_wire(message.topic, message.bytes, message.time);
+    const gateway::KeptWireMessages early = std::exchange(early_, {});
+    if (gateway == nullptr) return;
+    for (std::size_t i = 0; i < wire::kTopics; ++i) {
+      const auto topic = static_cast<wire::Topic>(i);
+      for (const gateway::WireMessage& message : early.of(topic))
+        gateway->take_wire(topic, std::as_bytes(std::span(*message.body)), static_cast<double>(message.time_ns) * 1e-9);
+    }
   }
   [[nodiscard]] bool has_new_session() const noexcept { return has_new_session_; }
 
  private:
-  struct Early {
-    wire::Topic topic;
-    std::vector<std::byte> bytes;
-    double time;
-  };
   gateway::Gateway* gateway_ = nullptr;
-  std::vector<Early> early_;
+  gateway::KeptWireMessages early_;
   bool has_new_session_ = false;
 };
 
@@ -202,27 +207,6 @@ gateway::GatewayDef live_def(const WindowOptions& options, observer::Observer& o
   return def;
 }
 
-// Processes that were killed publish no end.
-class Silence {
- public:
-  // A sentence when the session falls silent or publishes again.
-  [[nodiscard]] std::optional<std::string> look(const observer::SessionView& view, std::int64_t now_ns) {
-    std::uint64_t all = 0;
-    for (const wire::Role role : wire::kNodeRoles) all += view.node(role).healths;
-    if (all != healths_ || received_ns_ == 0) received_ns_ = now_ns;
-    healths_ = all;
-    const bool is_silent = now_ns - received_ns_ > kSilentNs;
-    if (is_silent == std::exchange(was_silent_, is_silent)) return std::nullopt;
-    return is_silent ? "no message of the session has come for 5 s; look with 'slewring sessions' whether it still runs"
-                     : "messages of the session come again";
-  }
-
- private:
-  std::uint64_t healths_ = 0;
-  std::int64_t received_ns_ = 0;
-  bool was_silent_ = false;
-};
-
 // The diagram of the scene's circuit for the page.
 std::shared_ptr<const std::string> draw_circuit(const scene::Scene& scene) {
   if (scene.hydraulics.components.empty()) return nullptr;
@@ -262,7 +246,7 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
   Server server(std::move(def), gateway);
   show_address(options, server, "session '" + observer->session_name() + "'", token, report);
   report_meshes(meshes, gateway, report);
-  Silence silence;
+  observer::SilenceWatch silence;
   const auto is_over = [&] { return view.is_over() || receiver.has_new_session(); };
   while (!is_over() && !observer->is_stopped()) {
     observer->drain();
@@ -271,9 +255,12 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
     saved.poll();
     if (editing) editing->poll();
     if (editing && editing->takes_restart()) report(std::string(kRestartLine));
-    if (const auto text = silence.look(view, now_ns)) {
-      report(*text);
-      gateway.add_event(gateway::LogLevel::warning, "window", *text);
+    if (silence.has_changed(view, now_ns)) {
+      const std::string text = silence.is_silent() ? "no message of the session has come for 5 s; look with 'slewring "
+                                                     "sessions' whether it still runs"
+                                                   : "messages of the session come again";
+      report(text);
+      gateway.add_event(gateway::LogLevel::warning, "window", text);
     }
     server.poll(kRound);
   }
@@ -290,7 +277,6 @@ ExitCode run_live(const WindowOptions& options, ServerDef def, const Report& rep
 }
 
 // ---- a recording
-// ------------------------------------------------------------------------------------------------------
 
 // A run's folder names its recording, or the file does.
 std::string name_of(const recording::Reader& reader) {

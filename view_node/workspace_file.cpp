@@ -2,11 +2,7 @@
 #include "view_node/workspace_file.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <utility>
@@ -17,34 +13,14 @@
 #include "core/text_output.h"
 #include "gateway/client_messages.h"
 #include "node/session_options.h"
-#include "scene/assets.h"
+#include "view_node/file_lock.h"
 
 namespace slew::view_node {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kTagDigits = 32;
 constexpr int kDeepestWorkspace = 64;  // levels
-
-// Held by one process at a time, until it is destroyed.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& file) : file_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
-    if (file_ >= 0 && flock(file_, LOCK_EX) != 0) error_ = errno;
-    if (file_ < 0) error_ = errno;
-  }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  ~FolderLock() {
-    if (file_ >= 0) close(file_);
-  }
-  [[nodiscard]] int error() const noexcept { return error_; }
-
- private:
-  int file_;
-  int error_ = 0;
-};
 
 // Empty: the text is a workspace.
 std::string problem_of(const std::string& text) {
@@ -75,7 +51,7 @@ WorkspaceFile::Result WorkspaceFile::replace(const std::string& text, const Cond
   std::error_code error;
   fs::create_directories(path_.parent_path(), error);
   if (error) return refuse(507, path_.parent_path().string() + ": " + error.message());
-  const FolderLock lock(path_.parent_path() / ".lock");
+  const FileLock lock(path_.parent_path() / ".lock", O_RDWR | O_CREAT);
   if (lock.error() != 0) return refuse(507, path_.parent_path().string() + ": " + std::strerror(lock.error()));
   const std::optional<std::string> present = read();
   const std::string tag = present ? entity_tag(*present) : "";
@@ -102,21 +78,6 @@ fs::path workspace_path(const std::string& scene) {
     return {};
   }
   return folder / "slewring/workspaces" / (node::session_name_of(scene) + ".json");
-}
-
-std::string entity_tag(std::string_view content) {
-  return "\"" + scene::hex_text(scene::sha256_of(content)).substr(0, kTagDigits) + "\"";
-}
-
-bool has_tag(std::string_view list, std::string_view tag) noexcept {
-  while (!list.empty()) {
-    std::string_view one = list.substr(0, list.find(','));
-    list.remove_prefix(std::min(list.size(), one.size() + 1));
-    while (one.starts_with(' ')) one.remove_prefix(1);
-    while (one.ends_with(' ')) one.remove_suffix(1);
-    if (one == "*" || one == tag) return true;
-  }
-  return false;
 }
 
 }  // namespace slew::view_node

@@ -10,16 +10,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
+
+#include "view_node/entity_tag.h"
 
 namespace slew::view_node {
 
 inline constexpr std::size_t kMostWorkspaceBytes = 1u << 20;
-
-// Conditions of a request; empty: not stated.
-struct Conditions {
-  std::string_view if_match, if_none_match;
-};
 
 class WorkspaceFile {
  public:
@@ -45,11 +41,5 @@ class WorkspaceFile {
 // XDG_STATE_HOME/slewring/workspaces/SCENE.json (XDG base directory specification); empty: the environment names no
 // folder. scene: characters that are not of a file's name become '_'.
 [[nodiscard]] std::filesystem::path workspace_path(const std::string& scene);
-
-// Strong entity tag of a content, with its quotes.
-[[nodiscard]] std::string entity_tag(std::string_view content);
-
-// A list of tags, or *, has this one.
-[[nodiscard]] bool has_tag(std::string_view list, std::string_view tag) noexcept;
 
 }  // namespace slew::view_node

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -13,8 +12,8 @@
 #include "bridge/outgoing.h"
 #include "bridge/parameter_door.h"
 #include "core/failure.h"
-#include "core/suggestion.h"
 #include "lcm_log/event_log.h"
+#include "observer/silence_watch.h"
 
 namespace slew::bridge {
 namespace {
@@ -22,81 +21,13 @@ namespace {
 constexpr SimDuration kDirectoryTimeout = milliseconds(5000);
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr SimDuration kLongestWait = milliseconds(20);
-constexpr int kInputWaitMs = 1;                    // with inputs: variables leave this much later at most
-constexpr std::int64_t kSilentNs = 5 * kSecondNs;  // nodes publish their health each second
-constexpr std::string_view kLongestSuffix = "_DIRECTORY";
-// types of idl/slewring.lcm, without _t; in capitals the endings of their channels
-constexpr std::string_view kOwnTypes[] = {"variables", "directory", "health", "bridge", "input", "parameter", "reply"};
-constexpr const char* kOfRecording = "recording";  // controller in an exported log
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
-
-std::vector<lcm_log::SignalList> read_lists(const Settings& settings) {
-  std::vector<lcm_log::SignalList> lists;
-  for (const std::string& text : settings.signals) {
-    lcm_log::SignalList list;
-    require(read_signal_list(text, list));
-    const bool is_taken = std::ranges::find(kOwnTypes, lower_case(list.name)) != std::end(kOwnTypes) ||
-                          std::ranges::find(lists, list.name, &lcm_log::SignalList::name) != lists.end();
-    if (is_taken) {
-      throw Failure(ExitCode::bad_input, fmt::format("--signals {}: a channel or type has the name {} already; nothing "
-                                                     "was started; choose another",
-                                                     text, list.name));
-    }
-    lists.push_back(std::move(list));
-  }
-  return lists;
-}
-
-// Refuses channels that LCM cannot carry: a shortened name would be found by no one.
-std::string prefix_of(const Settings& settings, const std::string& session,
-                      const std::vector<lcm_log::SignalList>& lists) {
-  const std::string prefix = settings.prefix.empty() ? "SLEWRING_" + session : settings.prefix;
-  std::size_t longest = kLongestSuffix.size();
-  for (const lcm_log::SignalList& list : lists) longest = std::max(longest, list.name.size() + 1);
-  if (prefix.size() + longest <= lcm_log::kMaxChannelLength) return prefix;
-  throw Failure(
-      ExitCode::bad_input,
-      fmt::format("channels of LCM have at most {} characters, and '{}' with the longest ending has {}; nothing "
-                  "was started; choose a shorter prefix with --channel",
-                  lcm_log::kMaxChannelLength, prefix, prefix.size() + longest));
-}
+constexpr int kInputWaitMs = 1;  // with inputs: variables leave this much later at most
 
 std::vector<lcm_log::InputChannel> input_channels(const SceneView& scene) {
   std::vector<lcm_log::InputChannel> channels;
   for (const Channel& channel : scene.channels)
     channels.push_back({channel.name, channel.is_digital, channel.is_lockstep});
   return channels;
-}
-
-void check_every(const Settings& settings, const SceneView& scene) {
-  if (settings.every <= 0 || settings.every % scene.variables_every == 0) return;
-  throw Failure(
-      ExitCode::bad_input,
-      fmt::format("--every {}: variables are there at every {}th step (recording.every of the scene); nothing "
-                  "was started; expected a multiple of {}",
-                  settings.every, scene.variables_every, scene.variables_every));
-}
-
-// A variable that no node has, with the one that was probably meant. source: "the session", "the recording".
-void check_names(const std::vector<lcm_log::SignalList>& lists, const observer::SessionView& view,
-                 std::string_view source) {
-  std::vector<std::string_view> names;
-  for (const observer::VariableView* variable : view.variables()) names.emplace_back(variable->name);
-  for (const lcm_log::SignalList& list : lists) {
-    for (const std::string& variable : list.variables) {
-      if (std::ranges::find(names, std::string_view(variable)) != names.end()) continue;
-      const std::string meant = closest(variable, names);
-      throw Failure(
-          ExitCode::bad_input,
-          fmt::format(
-              "--signals {}: {} has no variable '{}'; nothing was written or sent; {}", list.name, source, variable,
-              meant.empty() ? "'slewring variables SCENE' lists them" : fmt::format("did you mean '{}'?", meant)));
-    }
-  }
 }
 
 // Waits until the session has named its variables, and compares the lists with them.
@@ -115,10 +46,6 @@ void wait_for_names(const std::vector<lcm_log::SignalList>& lists, observer::Obs
 }
 
 }  // namespace
-
-void require_lcm() {}
-
-// ---- a live session -------------------------------------------------------------------------------------------
 
 struct Bridge::State final : observer::Receiver {
   explicit State(Settings chosen) : settings(std::move(chosen)), lists(read_lists(settings)) {}
@@ -148,7 +75,6 @@ struct Bridge::State final : observer::Receiver {
   void open(observer::Observer& observer, const SceneView& scene);
   void open_door(observer::Observer& observer, const SceneView& scene, const std::string& prefix);
   void each_second(observer::Observer& observer, std::int64_t now_ns);
-  [[nodiscard]] bool is_silent(const observer::SessionView& view, std::int64_t now_ns);
   [[nodiscard]] bool receives() const { return !settings.controllers.empty() || settings.takes_parameters; }
 
   Settings settings;
@@ -163,9 +89,7 @@ struct Bridge::State final : observer::Receiver {
   std::uint32_t epoch = 0;
   StepIndex newest_step = kJoinStep;  // of the blocks of this epoch
   std::uint64_t unsent_inputs = 0;
-  std::uint64_t healths = 0;  // messages of all nodes
-  std::int64_t healths_ns = 0;
-  bool was_silent = false;
+  observer::SilenceWatch silence;
   std::vector<std::string> notices;
 };
 
@@ -250,26 +174,17 @@ void Bridge::State::open_door(observer::Observer& observer, const SceneView& sce
   }
 }
 
-// Processes that were killed publish no end.
-bool Bridge::State::is_silent(const observer::SessionView& view, std::int64_t now_ns) {
-  std::uint64_t all = 0;
-  for (const wire::Role role : wire::kNodeRoles) all += view.node(role).healths;
-  if (all != healths || healths_ns == 0) healths_ns = now_ns;
-  healths = all;
-  return now_ns - healths_ns > kSilentNs;
-}
-
 void Bridge::State::each_second(observer::Observer& observer, std::int64_t now_ns) {
   const StepIndex step = observer.view().step();
-  const bool is_silent_now = is_silent(observer.view(), now_ns);
-  if (is_silent_now != std::exchange(was_silent, is_silent_now) && !has_new_session) {
+  if (silence.has_changed(observer.view(), now_ns) && !has_new_session) {
     notices.push_back(
-        is_silent_now ? fmt::format("no message of session '{}' has come for 5 s; its health is not published until "
-                                    "one comes; look with 'slewring sessions' whether it still runs",
-                                    observer.session_name())
-                      : fmt::format("messages of session '{}' come again", observer.session_name()));
+        silence.is_silent()
+            ? fmt::format("no message of session '{}' has come for 5 s; its health is not published until "
+                          "one comes; look with 'slewring sessions' whether it still runs",
+                          observer.session_name())
+            : fmt::format("messages of session '{}' come again", observer.session_name()));
   }
-  if (!is_silent_now) {
+  if (!silence.is_silent()) {
     outgoing->publish_directory(step);
     outgoing->publish_health(observer.view(), step);
   }
@@ -353,133 +268,6 @@ std::string Bridge::summary_text() const {
   if (state.door && state.door->refused() > 0)
     text += fmt::format("\n{} parameter requests damaged or refused by the bridge", state.door->refused());
   return text;
-}
-
-// ---- a recording ----------------------------------------------------------------------------------------------
-
-struct LogExport::State final : observer::Receiver {
-  State(const Settings& settings, const std::string& session, SceneView of_scene,
-        std::function<void(std::string_view)> write_bytes)
-      : scene(std::move(of_scene)),
-        write(std::move(write_bytes)),
-        prefix(prefix_of(settings, session, read_lists(settings))),
-        outgoing(
-            prefix, read_lists(settings), settings.every,
-            [this](const std::string& channel, std::string_view bytes, StepIndex step) { put(channel, bytes, step); }),
-        inputs(scene.channels.size()) {
-    check_every(settings, scene);
-  }
-
-  struct RecordedInput {
-    std::optional<std::uint32_t> index;  // of its raw value among io's variables
-    std::optional<double> value{};
-    StepIndex step = 0;
-  };
-
-  void put(const std::string& channel, std::string_view bytes, StepIndex at_step) {
-    line.clear();
-    writer.add({(at_step * step_ns + 500) / 1000, channel, std::as_bytes(std::span<const char>(bytes))}, line);
-    write(line);
-  }
-  void take_directory(const wire::VariableDirectory& directory) override {
-    outgoing.take(directory);
-    for (std::size_t i = 0; i < directory.entries.size(); ++i) {
-      if (directory.header.role != wire::Role::io) continue;
-      for (std::size_t k = 0; k < inputs.size(); ++k) {
-        if (directory.entries[i].name == scene.channels[k].name + ".raw")
-          inputs[k].index = directory.first + static_cast<std::uint32_t>(i);
-      }
-    }
-  }
-  void take_block(const wire::VariableBlock& block, std::span<const std::byte>, double time) override;
-  void take_inputs(const wire::VariableBlock& block);
-
-  SceneView scene;
-  std::function<void(std::string_view)> write;
-  std::string prefix;
-  Outgoing outgoing;
-  std::vector<RecordedInput> inputs;  // by channel of the scene
-  lcm_log::EventLogWriter writer;
-  const observer::SessionView* view = nullptr;
-  std::int64_t step_ns = 0;
-  std::int64_t from_ns = 0, to_ns = INT64_MAX;
-  std::int64_t next_directory_ns = 0;
-  std::optional<std::uint32_t> epoch;
-  std::int64_t sequence = 0;
-  std::string line, input_bytes;
-};
-
-void LogExport::State::take_block(const wire::VariableBlock& block, std::span<const std::byte>, double time) {
-  step_ns = view->session().step_ns;
-  const StepIndex step = block.header.step;
-  if (epoch && block.header.epoch != *epoch) {
-    throw Failure(
-        ExitCode::bad_input,
-        "the session was reset on the way, so its time is no one line; nothing was written; record it without "
-        "a reset");
-  }
-  if (!epoch) check_names(outgoing.lists(), *view, "the recording");
-  epoch = block.header.epoch;
-  const std::int64_t time_ns = step * step_ns;
-  if (time_ns < from_ns || time_ns > to_ns) return;
-  if (writer.count() == 0) outgoing.publish_directory(0);
-  if (time_ns >= next_directory_ns) {
-    next_directory_ns = (time_ns / kSecondNs + 1) * kSecondNs;
-    outgoing.publish_directory(step);
-    outgoing.publish_health(*view, step);
-  }
-  outgoing.take(block, time);
-  if (block.header.role == wire::Role::io) take_inputs(block);
-}
-
-// At each change, and often enough that a value that stays is no silence.
-void LogExport::State::take_inputs(const wire::VariableBlock& block) {
-  const StepIndex repeat = std::max<StepIndex>(1, scene.neutral_after.ns / 2 / step_ns);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    RecordedInput& input = inputs[i];
-    if (!input.index || *input.index < block.first) continue;
-    const std::size_t at = *input.index - block.first;
-    if (at >= block.values.size()) continue;
-    const double value = block.values[at];
-    const StepIndex step = block.header.step;
-    if (!std::isfinite(value) || (input.value == value && step - input.step < repeat)) continue;
-    input.value = value;
-    input.step = step;
-    encode(lcm_log::Input{kOfRecording, 0, sequence++, scene.channels[i].name, value, kJoinStep}, input_bytes);
-    put(prefix + "_INPUT", input_bytes, step);
-  }
-}
-
-LogExport::LogExport(const Settings& settings, const std::string& session, SceneView scene,
-                     std::function<void(std::string_view)> write)
-    : state_(std::make_unique<State>(settings, session, std::move(scene), std::move(write))) {}
-
-LogExport::~LogExport() = default;
-
-void LogExport::choose(std::uint64_t from_ns, std::uint64_t to_ns) {
-  state_->from_ns = static_cast<std::int64_t>(std::min<std::uint64_t>(from_ns, INT64_MAX));
-  state_->to_ns = static_cast<std::int64_t>(std::min<std::uint64_t>(to_ns, INT64_MAX));
-}
-
-observer::Receiver& LogExport::receiver(const observer::SessionView& view) {
-  state_->view = &view;
-  return *state_;
-}
-
-std::int64_t LogExport::events() const noexcept {
-  return state_->writer.count();
-}
-
-std::uint64_t LogExport::incomplete() const noexcept {
-  return state_->outgoing.incomplete();
-}
-
-std::vector<std::string> LogExport::missing_inputs() const {
-  std::vector<std::string> missing;
-  for (std::size_t i = 0; i < state_->inputs.size(); ++i) {
-    if (!state_->inputs[i].index) missing.push_back(state_->scene.channels[i].name);
-  }
-  return missing;
 }
 
 }  // namespace slew::bridge

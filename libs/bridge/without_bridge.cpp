@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bridge/bridge.h"
+#include "bridge/log_export.h"
 #include "core/failure.h"
 
 namespace slew::bridge {

@@ -15,12 +15,7 @@ namespace {
 constexpr std::size_t kAdvertisedAtOnce = 100;  // channels in one message
 constexpr std::uint64_t kReportedLeftOut = 10;  // values; one or two are the jitter of any client
 constexpr std::int64_t kReportEveryNs = 5'000'000'000;
-constexpr std::size_t kTimeState = 0;  // state of an outbox: the time; then the channels
 constexpr const char *kLeftOutId = "left_out", *kWireLeftOutId = "wire_left_out";
-
-std::size_t state_of(std::size_t channel) noexcept {
-  return channel + 1;
-}
 
 }  // namespace
 
@@ -102,9 +97,9 @@ std::optional<Frame> Gateway::next_state(Client& client) {
     const auto* const state = std::get_if<std::size_t>(&next);
     if (state == nullptr) return std::nullopt;
     if (*state == kTimeState) return binary_frame(time_bytes(time_ns_));
-    const std::size_t index = *state - 1;
-    if (index >= client.subscription.size() || !client.subscription[index]) continue;
-    return binary_frame(message_head(*client.subscription[index], time_ns_), body_of(channels_[index]));
+    const std::size_t channel = *state - state_of(0);
+    if (const std::optional<std::uint32_t> subscription = client.subscription_to(channel))
+      return binary_frame(message_head(*subscription, time_ns_), body_of(channels_[channel]));
   }
 }
 
@@ -150,8 +145,9 @@ std::string Gateway::session_body() const {
 }
 
 void Gateway::send_scene(Client& client) {
-  if (client.subscription.size() < 2 || !client.subscription[1] || revision_ == 0) return;
-  push(client, binary_frame(message_head(*client.subscription[1], time_ns_),
+  const std::optional<std::uint32_t> subscription = client.subscription_to(kSceneChannel);
+  if (!subscription || revision_ == 0) return;
+  push(client, binary_frame(message_head(*subscription, time_ns_),
                             std::make_shared<const std::string>(frames_.scene_update(snapshot_, time_ns_))));
 }
 
@@ -180,8 +176,8 @@ void Gateway::take_wire(wire::Topic topic, std::span<const std::byte> bytes, dou
     kept_wire_.take(topic, message);
   }
   for (auto& [id, client] : clients_) {
-    if (index >= client.subscription.size() || !client.subscription[index]) continue;
-    client.wire.push(binary_frame(message_head(*client.subscription[index], message.time_ns), body()));
+    if (const std::optional<std::uint32_t> subscription = client.subscription_to(index))
+      client.wire.push(binary_frame(message_head(*subscription, message.time_ns), body()));
   }
 }
 

@@ -46,7 +46,7 @@ void Gateway::take(ClientId, Client& client, const Subscribe& message, std::int6
       for (const WireMessage& kept : kept_wire_.of(channel->topic))
         client.wire.push(binary_frame(message_head(wanted.id, kept.time_ns), kept.body));
     } else if (revision_ > 0) {
-      client.outbox.mark(index + 1);
+      client.outbox.mark(state_of(index));
     }
   }
   if (refused == 0) return;
@@ -61,7 +61,7 @@ void Gateway::take(ClientId, Client& client, const Unsubscribe& message, std::in
     const auto found = client.channels.find(subscription);
     if (found == client.channels.end()) continue;
     client.subscription[found->second].reset();
-    client.outbox.unmark(found->second + 1);
+    client.outbox.unmark(state_of(found->second));
     client.channels.erase(found);
   }
 }
@@ -114,7 +114,6 @@ void Gateway::take(ClientId id, Client& client, const Publish& message, std::int
 }
 
 // ---- parameters
-// -------------------------------------------------------------------------------------------------------
 
 void Gateway::take(ClientId, Client& client, const GetParameters& message, std::int64_t) {
   if (!is_steering()) return send_status(client, StatusLevel::error, "this gateway has no parameters");
@@ -162,7 +161,6 @@ void Gateway::publish_parameter(const std::string& name) {
 }
 
 // ---- connection graph
-// -------------------------------------------------------------------------------------------------
 
 void Gateway::take(ClientId, Client& client, const FollowGraph& message, std::int64_t) {
   client.follows_graph = message.wanted == Wanted::yes;
@@ -183,7 +181,6 @@ void Gateway::publish_graph() {
 }
 
 // ---- assets
-// -----------------------------------------------------------------------------------------------------------
 
 void Gateway::take(ClientId, Client& client, const FetchAsset& message, std::int64_t) {
   const std::shared_ptr<const std::string> found = asset(asset_of_uri(message.uri));
@@ -202,7 +199,6 @@ void Gateway::take(ClientId, Client& client, const FetchAsset& message, std::int
 }
 
 // ---- playback
-// ---------------------------------------------------------------------------------------------------------
 
 void Gateway::take(ClientId, Client& client, const PlaybackControl& message, std::int64_t now_ns) {
   if (def_.playback == nullptr) {

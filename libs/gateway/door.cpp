@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/comma_list.h"
+
 namespace slew::gateway {
 namespace {
 
@@ -87,10 +89,7 @@ std::optional<std::string> plain_path(std::string_view path) {
 std::optional<Subprotocol> chosen_subprotocol(std::string_view offered) {
   std::optional<Subprotocol> chosen;
   while (!offered.empty()) {
-    std::string_view one = offered.substr(0, offered.find(','));
-    offered.remove_prefix(std::min(offered.size(), one.size() + 1));
-    while (one.starts_with(' ')) one.remove_prefix(1);
-    while (one.ends_with(' ')) one.remove_suffix(1);
+    const std::string_view one = take_listed(offered);
     if (one == to_text(Subprotocol::sdk_v1)) return Subprotocol::sdk_v1;
     if (one == to_text(Subprotocol::websocket_v1)) chosen = Subprotocol::websocket_v1;
   }

@@ -76,7 +76,6 @@ std::span<const Call> Gateway::calls() const noexcept {
 }
 
 // ---- the session
-// ------------------------------------------------------------------------------------------------------
 
 void Gateway::take_block(const wire::VariableBlock& block, std::span<const std::byte>, double) {
   if (block.header.epoch != epoch_) begin_epoch(block.header.epoch);
@@ -125,8 +124,8 @@ void Gateway::take_reply(const wire::ControlReply& reply) {
 void Gateway::add_event(LogLevel level, const std::string& source, const std::string& text) {
   const LogEvent& event = log_.add(time_ns_, level, source, text);
   for (auto& [id, client] : clients_) {
-    if (client.subscription.size() > 2 && client.subscription[2])
-      push(client, binary_frame(message_head(*client.subscription[2], event.time_ns), event.body));
+    if (const std::optional<std::uint32_t> subscription = client.subscription_to(kLogChannel))
+      push(client, binary_frame(message_head(*subscription, event.time_ns), event.body));
   }
 }
 

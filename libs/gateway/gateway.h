@@ -179,6 +179,8 @@ class Gateway final : public observer::Receiver {
 
  private:
   enum class Kind : std::uint8_t { transforms, scene, log, session, wire, signal };
+  // places of the gateway's own channels, which are the first ones
+  static constexpr std::size_t kSceneChannel = 1, kLogChannel = 2;
   struct Channel {
     ChannelInfo info;
     Kind kind = Kind::signal;
@@ -203,7 +205,15 @@ class Gateway final : public observer::Receiver {
     std::uint64_t wire_left_out = 0, reported_wire_left_out = 0;
     std::int64_t next_report_ns = 0, next_wire_report_ns = 0;
     std::string close_reason{};
+
+    // Of a channel by its place; none: the client has not subscribed to it.
+    [[nodiscard]] std::optional<std::uint32_t> subscription_to(std::size_t channel) const {
+      return channel < subscription.size() ? subscription[channel] : std::nullopt;
+    }
   };
+  // States of an outbox: the time, then a state for each channel.
+  static constexpr std::size_t kTimeState = 0;
+  [[nodiscard]] static constexpr std::size_t state_of(std::size_t channel) noexcept { return channel + 1; }
 
   [[nodiscard]] bool is_steering() const noexcept { return static_cast<bool>(def_.send_request); }
   [[nodiscard]] std::string server_info() const;

@@ -215,7 +215,6 @@ void Gateway::play(const CallPlace& place, const PlaybackControl& request, std::
 }
 
 // ---- /session.json
-// ----------------------------------------------------------------------------------------------------
 
 Json Gateway::description(const observer::SessionView& view) const {
   Json variables = Json::array(), inputs = Json::array(), calls = Json::array(), graphics = Json::array();

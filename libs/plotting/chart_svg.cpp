@@ -9,6 +9,7 @@
 
 #include "core/escaped.h"
 #include "plotting/axis.h"
+#include "plotting/svg_elements.h"
 #include "plotting/svg_text.h"
 
 namespace slew::plotting {
@@ -20,12 +21,6 @@ constexpr double kChartLegendRow = 18, kChartSwatch = 18;
 constexpr double kChartMark = 3.5;
 constexpr double kPixelsPerXTick = 90, kPixelsPerYTick = 45;
 
-std::string power_text(int exponent) {
-  if (exponent == 0) return {};
-  return fmt::format(" \u00d7 10<tspan dy=\"-4\" font-size=\"9\">{}{}</tspan>", exponent < 0 ? "\u2212" : "",
-                     std::abs(exponent));
-}
-
 class ChartPicture {
  public:
   explicit ChartPicture(const Chart& chart) : c_(chart) {
@@ -36,13 +31,11 @@ class ChartPicture {
   }
 
   std::string draw() {
-    put("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
-        "{1:.0f}\">\n<style>{2}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-        right_ + kChartRight, bottom_ + kChartBottom, kStyle);
-    put("<text class=\"title\" x=\"{}\" y=\"30\">{}</text>\n", kChartLeft, escaped(c_.title));
-    put("<text class=\"sub\" x=\"{}\" y=\"50\">{}</text>\n", kChartLeft, escaped(c_.subtitle));
+    put_head(out_, right_ + kChartRight, bottom_ + kChartBottom);
+    put(out_, "<text class=\"title\" x=\"{}\" y=\"30\">{}</text>\n", kChartLeft, escaped(c_.title));
+    put(out_, "<text class=\"sub\" x=\"{}\" y=\"50\">{}</text>\n", kChartLeft, escaped(c_.subtitle));
     draw_axes();
-    put("<clipPath id=\"plot\"><rect x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/></clipPath>\n",
+    put(out_, "<clipPath id=\"plot\"><rect x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/></clipPath>\n",
         kChartLeft - 1, top_ - 1, right_ - kChartLeft + 2, bottom_ - top_ + 2);
     for (std::size_t i = 0; i < c_.curves.size(); ++i) draw_chart_curve(i);
     place_legend([&](std::size_t i, double x, double y) { draw_legend_name(i, x, y); });
@@ -51,11 +44,6 @@ class ChartPicture {
   }
 
  private:
-  template <typename... Values>
-  void put(fmt::format_string<Values...> format, Values&&... values) {
-    fmt::format_to(std::back_inserter(out_), format, std::forward<Values>(values)...);
-  }
-
   static bool is_finite(const ChartPoint& point) { return std::isfinite(point.x) && std::isfinite(point.y); }
 
   void find_chart_axes() {
@@ -77,26 +65,23 @@ class ChartPicture {
   [[nodiscard]] double x_of(double value) const { return kChartLeft + (right_ - kChartLeft) * x_.fraction(value); }
   [[nodiscard]] double y_of(double value) const { return bottom_ - (bottom_ - top_) * y_.fraction(value); }
 
-  void draw_line(const char* kind, double x1, double y1, double x2, double y2) {
-    put("<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>\n", kind, std::floor(x1) + 0.5,
-        std::floor(y1) + 0.5, std::floor(x2) + 0.5, std::floor(y2) + 0.5);
-  }
-
   void draw_axes() {
     for (const double tick : x_.ticks()) {
-      draw_line("grid", x_of(tick), top_, x_of(tick), bottom_);
-      put("<text class=\"tick mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x_of(tick), bottom_ + 18, x_.label(tick));
+      put_line(out_, "grid", x_of(tick), top_, x_of(tick), bottom_);
+      put(out_, "<text class=\"tick mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x_of(tick), bottom_ + 18,
+          x_.label(tick));
     }
     for (const double tick : y_.ticks()) {
-      draw_line(tick == 0 ? "zero" : "grid", kChartLeft, y_of(tick), right_, y_of(tick));
-      put("<text class=\"tick end\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", kChartLeft - 9, y_of(tick) + 4, y_.label(tick));
+      put_line(out_, tick == 0 ? "zero" : "grid", kChartLeft, y_of(tick), right_, y_of(tick));
+      put(out_, "<text class=\"tick end\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", kChartLeft - 9, y_of(tick) + 4,
+          y_.label(tick));
     }
-    draw_line("axis", kChartLeft, top_, kChartLeft, bottom_);
-    draw_line("axis", kChartLeft, bottom_, right_, bottom_);
-    put("<text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}{}</text>\n", 0.5 * (kChartLeft + right_), bottom_ + 40,
-        escaped(c_.x_label), power_text(x_.exponent));
-    put("<text class=\"mid\" transform=\"translate(22 {:.1f}) rotate(-90)\">{}{}</text>\n", 0.5 * (top_ + bottom_),
-        escaped(c_.y_label), power_text(y_.exponent));
+    put_line(out_, "axis", kChartLeft, top_, kChartLeft, bottom_);
+    put_line(out_, "axis", kChartLeft, bottom_, right_, bottom_);
+    put(out_, "<text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}{}</text>\n", 0.5 * (kChartLeft + right_), bottom_ + 40,
+        escaped(c_.x_label), factor_text(x_.exponent));
+    put(out_, "<text class=\"mid\" transform=\"translate(22 {:.1f}) rotate(-90)\">{}{}</text>\n",
+        0.5 * (top_ + bottom_), escaped(c_.y_label), factor_text(y_.exponent));
   }
 
   void draw_chart_curve(std::size_t i) {
@@ -113,8 +98,8 @@ class ChartPicture {
       is_open = is_finite(point);
     }
     if (!has_marks && !path.empty()) {
-      put("<path class=\"curve\" stroke=\"{}\"{} d=\"{}\"><title>{}</title></path>\n", colour_of(i), width_text(curve),
-          path, escaped(curve.name));
+      put(out_, "<path class=\"curve\" stroke=\"{}\"{} d=\"{}\"><title>{}</title></path>\n", colour_of(i),
+          width_text(curve), path, escaped(curve.name));
     }
     out_ += "</g>\n";
   }
@@ -124,12 +109,12 @@ class ChartPicture {
   }
 
   void draw_mark(const ChartPoint& point, std::size_t i) {
-    put("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\">", x_of(point.x), y_of(point.y), kChartMark,
+    put(out_, "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\">", x_of(point.x), y_of(point.y), kChartMark,
         colour_of(i));
-    if (!point.tooltip.empty()) put("<title>{}</title>", escaped(point.tooltip));
+    if (!point.tooltip.empty()) put(out_, "<title>{}</title>", escaped(point.tooltip));
     out_ += "</circle>";
     if (!point.label.empty()) {
-      put("<text class=\"tick\" style=\"font-size:10px\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
+      put(out_, "<text class=\"tick\" style=\"font-size:10px\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
           x_of(point.x) + kChartMark + 2, y_of(point.y) - 3, escaped(point.label));
     }
     out_ += '\n';
@@ -151,13 +136,13 @@ class ChartPicture {
   void draw_legend_name(std::size_t i, double x, double y) {
     const ChartCurve& curve = c_.curves[i];
     if (curve.look == CurveLook::marks) {
-      put("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>", x + kChartSwatch / 2, y - 4, kChartMark,
+      put(out_, "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>", x + kChartSwatch / 2, y - 4, kChartMark,
           colour_of(i));
     } else {
-      put("<path class=\"curve\" stroke=\"{}\"{} d=\"M{:.1f} {:.1f}h{}\"/>", colour_of(i), width_text(curve), x, y - 4,
-          kChartSwatch);
+      put(out_, "<path class=\"curve\" stroke=\"{}\"{} d=\"M{:.1f} {:.1f}h{}\"/>", colour_of(i), width_text(curve), x,
+          y - 4, kChartSwatch);
     }
-    put("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + kChartSwatch + 6, y, escaped(curve.name));
+    put(out_, "<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + kChartSwatch + 6, y, escaped(curve.name));
   }
 
   const Chart& c_;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/escaped.h"
+#include "plotting/svg_elements.h"
 #include "plotting/svg_text.h"
 
 namespace slew::plotting {
@@ -35,8 +36,7 @@ LogAxis axis_around(double smallest, double largest) {
 std::string tick_text(double factor, int power) {
   if (power >= -2 && power <= 3) return fmt::format("{:g}", factor * std::pow(10.0, power));
   const std::string mantissa = factor == 1 ? "" : fmt::format("{:g}\u00b7", factor);
-  return fmt::format("{}10<tspan dy=\"-4\" font-size=\"9\">{}{}</tspan>", mantissa, power < 0 ? "\u2212" : "",
-                     std::abs(power));
+  return mantissa + power_of_ten(power);
 }
 
 class ScatterPicture {
@@ -48,11 +48,9 @@ class ScatterPicture {
   }
 
   std::string draw() {
-    put("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
-        "{1:.0f}\">\n<style>{2}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-        s_.width, s_.height, kStyle);
-    put("<text class=\"title\" x=\"{}\" y=\"30\">{}</text>\n", kScatterLeft, escaped(s_.title));
-    put("<text class=\"sub\" x=\"{}\" y=\"50\">{}</text>\n", kScatterLeft, escaped(s_.subtitle));
+    put_head(out_, s_.width, s_.height);
+    put(out_, "<text class=\"title\" x=\"{}\" y=\"30\">{}</text>\n", kScatterLeft, escaped(s_.title));
+    put(out_, "<text class=\"sub\" x=\"{}\" y=\"50\">{}</text>\n", kScatterLeft, escaped(s_.subtitle));
     draw_grid();
     if (s_.y_floor > 0) draw_floor();
     for (std::size_t i = 0; i < s_.groups.size(); ++i) draw_group(i);
@@ -62,11 +60,6 @@ class ScatterPicture {
   }
 
  private:
-  template <typename... Values>
-  void put(fmt::format_string<Values...> format, Values&&... values) {
-    fmt::format_to(std::back_inserter(out_), format, std::forward<Values>(values)...);
-  }
-
   static bool is_shown(const Mark& mark) {
     return mark.x > 0 && std::isfinite(mark.x) && mark.y >= 0 && std::isfinite(mark.y);
   }
@@ -94,12 +87,6 @@ class ScatterPicture {
   [[nodiscard]] double x_of(double value) const { return kScatterLeft + (right_ - kScatterLeft) * x_.fraction(value); }
   [[nodiscard]] double y_of(double value) const { return bottom_ - (bottom_ - kScatterTop) * y_.fraction(value); }
 
-  void draw_line(const char* kind, double x1, double y1, double x2, double y2) {
-    // at half pixels, where a line of one pixel is sharp
-    put("<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>\n", kind, std::floor(x1) + 0.5,
-        std::floor(y1) + 0.5, std::floor(x2) + 0.5, std::floor(y2) + 0.5);
-  }
-
   // draw(value, label) for every tick
   template <typename Draw>
   static void each_tick(const LogAxis& axis, const Draw& draw) {
@@ -114,26 +101,26 @@ class ScatterPicture {
 
   void draw_grid() {
     each_tick(x_, [this](double value, const std::string& label) {
-      draw_line("grid", x_of(value), kScatterTop, x_of(value), bottom_);
-      put("<text class=\"tick mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x_of(value), bottom_ + 18, label);
+      put_line(out_, "grid", x_of(value), kScatterTop, x_of(value), bottom_);
+      put(out_, "<text class=\"tick mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x_of(value), bottom_ + 18, label);
     });
     each_tick(y_, [this](double value, const std::string& label) {
-      draw_line("grid", kScatterLeft, y_of(value), right_, y_of(value));
-      put("<text class=\"tick end\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", kScatterLeft - 9, y_of(value) + 4, label);
+      put_line(out_, "grid", kScatterLeft, y_of(value), right_, y_of(value));
+      put(out_, "<text class=\"tick end\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", kScatterLeft - 9, y_of(value) + 4, label);
     });
-    draw_line("axis", kScatterLeft, kScatterTop, kScatterLeft, bottom_);
-    draw_line("axis", kScatterLeft, bottom_, right_, bottom_);
-    put("<text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", 0.5 * (kScatterLeft + right_), bottom_ + 40,
+    put_line(out_, "axis", kScatterLeft, kScatterTop, kScatterLeft, bottom_);
+    put_line(out_, "axis", kScatterLeft, bottom_, right_, bottom_);
+    put(out_, "<text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", 0.5 * (kScatterLeft + right_), bottom_ + 40,
         escaped(s_.x_label));
     const double middle = 0.5 * (kScatterTop + bottom_);
-    put("<text class=\"mid\" x=\"18\" y=\"{0:.1f}\" transform=\"rotate(-90 18 {0:.1f})\">{1}</text>\n", middle,
+    put(out_, "<text class=\"mid\" x=\"18\" y=\"{0:.1f}\" transform=\"rotate(-90 18 {0:.1f})\">{1}</text>\n", middle,
         escaped(s_.y_label));
   }
 
   void draw_floor() {
-    draw_line("zero dash", kScatterLeft, y_of(s_.y_floor), right_, y_of(s_.y_floor));
+    put_line(out_, "zero dash", kScatterLeft, y_of(s_.y_floor), right_, y_of(s_.y_floor));
     // the space below the floor is free for its label
-    put("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kScatterLeft + 6, y_of(s_.y_floor) + 13,
+    put(out_, "<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kScatterLeft + 6, y_of(s_.y_floor) + 13,
         escaped(s_.y_floor_label));
   }
 
@@ -147,15 +134,16 @@ class ScatterPicture {
                      y_of(shown_y(mark)));
     }
     if (path.empty()) return;
-    put("<path class=\"curve\" stroke=\"{}\" d=\"{}\"/>\n", colour, path);
+    put(out_, "<path class=\"curve\" stroke=\"{}\" d=\"{}\"/>\n", colour, path);
     for (const Mark& mark : group.marks) {
       if (!is_shown(mark)) continue;
       const double x = x_of(mark.x), y = y_of(shown_y(mark));
-      put("<circle class=\"mark\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\" stroke=\"{}\" "
+      put(out_,
+          "<circle class=\"mark\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\" stroke=\"{}\" "
           "stroke-width=\"1.6\"><title>{}, {}: {:.4g}, {:.4g}</title></circle>\n",
           x, y, kMarkRadius, is_on_floor(mark) ? "#ffffff" : colour, colour, escaped(group.name), escaped(mark.label),
           mark.x, mark.y);
-      put("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 8, y - 6, escaped(mark.label));
+      put(out_, "<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 8, y - 6, escaped(mark.label));
     }
   }
 
@@ -163,9 +151,9 @@ class ScatterPicture {
     double x = kScatterLeft;
     const double y = kScatterTop - kScatterLegendRow + 4;
     for (std::size_t i = 0; i < s_.groups.size(); ++i) {
-      put("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>", x + kMarkRadius, y - 4, kMarkRadius,
+      put(out_, "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>", x + kMarkRadius, y - 4, kMarkRadius,
           colour_of(i));
-      put("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 16, y, escaped(s_.groups[i].name));
+      put(out_, "<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 16, y, escaped(s_.groups[i].name));
       x += 16 + text_width(s_.groups[i].name) + 18;
     }
   }

@@ -13,6 +13,7 @@
 #include "core/escaped.h"
 #include "plotting/axis.h"
 #include "plotting/decimation.h"
+#include "plotting/svg_elements.h"
 #include "plotting/svg_text.h"
 
 namespace slew::plotting {
@@ -60,12 +61,6 @@ std::string typeset_unit(std::string_view unit) {
   return out;
 }
 
-std::string power_of_ten(int exponent) {
-  if (exponent == 0) return {};
-  return fmt::format(" \u00d7 10<tspan dy=\"-4\" font-size=\"9\">{}{}</tspan>", exponent < 0 ? "\u2212" : "",
-                     std::abs(exponent));
-}
-
 class Picture {
  public:
   Picture(std::span<const Plot> plots, const PlotOptions& options)
@@ -76,16 +71,13 @@ class Picture {
   }
 
   std::string draw() {
-    out_ = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
-        "{1:.0f}\">\n<style>{2}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-        width_, height_, kStyle);
+    put_head(out_, width_, height_);
     if (!options_.title.empty()) {
-      put("<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n", kLeft, kTopMargin + 14, escaped(options_.title));
+      put(out_, "<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n", kLeft, kTopMargin + 14, escaped(options_.title));
     }
     if (!options_.subtitle.empty()) {
       const double y = kTopMargin + (options_.title.empty() ? 0 : kTitleHeight) + 10;
-      put("<text class=\"sub\" x=\"{}\" y=\"{}\">{}</text>\n", kLeft, y, escaped(options_.subtitle));
+      put(out_, "<text class=\"sub\" x=\"{}\" y=\"{}\">{}</text>\n", kLeft, y, escaped(options_.subtitle));
     }
     for (std::size_t i = 0; i < panels_.size(); ++i) draw_panel(panels_[i], i);
     draw_time_labels();
@@ -94,11 +86,6 @@ class Picture {
   }
 
  private:
-  template <typename... Values>
-  void put(fmt::format_string<Values...> format, Values&&... values) {
-    fmt::format_to(std::back_inserter(out_), format, std::forward<Values>(values)...);
-  }
-
   // panels of one unit of the plot
   void add_panels(const Plot& plot) {
     const auto first = static_cast<std::ptrdiff_t>(panels_.size());
@@ -194,42 +181,36 @@ class Picture {
   void draw_panel(const Panel& panel, std::size_t number) {
     out_ += "<g>\n";
     if (!panel.heading.empty()) {
-      put("<text class=\"heading\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", kLeft, panel.legend_top - kHeadingRow,
+      put(out_, "<text class=\"heading\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", kLeft, panel.legend_top - kHeadingRow,
           escaped(panel.heading));
     }
-    put("<text class=\"unit\" x=\"{}\" y=\"{:.1f}\">{}{}</text>\n", kLeft, panel.legend_top,
-        escaped(typeset_unit(panel.unit)), power_of_ten(panel.axis.exponent));
+    put(out_, "<text class=\"unit\" x=\"{}\" y=\"{:.1f}\">{}{}</text>\n", kLeft, panel.legend_top,
+        escaped(typeset_unit(panel.unit)), factor_text(panel.axis.exponent));
     draw_grid(panel);
-    put("<clipPath id=\"p{}\"><rect x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/></clipPath>\n", number,
-        kLeft, panel.top - 1, plot_width() + 1, panel_height_ + 2);
-    put("<g clip-path=\"url(#p{})\">\n", number);
+    put(out_, "<clipPath id=\"p{}\"><rect x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/></clipPath>\n",
+        number, kLeft, panel.top - 1, plot_width() + 1, panel_height_ + 2);
+    put(out_, "<g clip-path=\"url(#p{})\">\n", number);
     for (std::size_t i = 0; i < panel.series.size(); ++i) draw_curve(panel, i);
     out_ += "</g>\n";
     place_legend(panel, [&](std::size_t i, double x, double row) { draw_legend_entry(panel, i, x, row); });
     if (panel.is_empty) {
-      put("<text class=\"sub mid\" x=\"{:.1f}\" y=\"{:.1f}\">no values</text>\n", kLeft + plot_width() / 2,
+      put(out_, "<text class=\"sub mid\" x=\"{:.1f}\" y=\"{:.1f}\">no values</text>\n", kLeft + plot_width() / 2,
           panel.top + panel_height_ / 2 - 8);
     }
     out_ += "</g>\n";
   }
 
-  void draw_line(std::string_view kind, double x1, double y1, double x2, double y2) {
-    // at half pixels, where a line of one pixel is sharp
-    put("<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>\n", kind, std::floor(x1) + 0.5,
-        std::floor(y1) + 0.5, std::floor(x2) + 0.5, std::floor(y2) + 0.5);
-  }
-
   void draw_grid(const Panel& panel) {
     for (const double tick : time_.ticks()) {
-      draw_line("grid", x_of(tick), panel.top, x_of(tick), panel.top + panel_height_);
+      put_line(out_, "grid", x_of(tick), panel.top, x_of(tick), panel.top + panel_height_);
     }
     for (const double tick : panel.axis.ticks()) {
       const double y = y_of(panel, tick);
-      draw_line(tick == 0 ? "zero" : "grid", kLeft, y, width_ - kRight, y);
-      put("<text class=\"tick end\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", kLeft - 9, y + 4, panel.axis.label(tick));
+      put_line(out_, tick == 0 ? "zero" : "grid", kLeft, y, width_ - kRight, y);
+      put(out_, "<text class=\"tick end\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", kLeft - 9, y + 4, panel.axis.label(tick));
     }
-    draw_line("axis", kLeft, panel.top, kLeft, panel.top + panel_height_);
-    draw_line("axis", kLeft, panel.top + panel_height_, width_ - kRight, panel.top + panel_height_);
+    put_line(out_, "axis", kLeft, panel.top, kLeft, panel.top + panel_height_);
+    put_line(out_, "axis", kLeft, panel.top + panel_height_, width_ - kRight, panel.top + panel_height_);
   }
 
   static std::string_view colour(std::size_t i) { return colour_of(i); }
@@ -248,29 +229,29 @@ class Picture {
       if (part.size() == 1) draw_dot(x_of(part[0].first), y_of(panel, part[0].second), colour(i));
     }
     if (path.empty()) return;
-    put("<path class=\"curve{}\" stroke=\"{}\" d=\"{}\"><title>{}</title></path>\n", dash(i), colour(i), path,
+    put(out_, "<path class=\"curve{}\" stroke=\"{}\" d=\"{}\"><title>{}</title></path>\n", dash(i), colour(i), path,
         escaped(series.name));
   }
 
   void draw_dot(double x, double y, std::string_view fill) {
-    put("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\" fill=\"{}\"/>\n", x, y, fill);
+    put(out_, "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\" fill=\"{}\"/>\n", x, y, fill);
   }
 
   void draw_legend_entry(const Panel& panel, std::size_t i, double x, double row) {
     const double y = panel.legend_top + row;
-    put("<path class=\"curve{}\" stroke=\"{}\" style=\"stroke-width:2.4\" d=\"M{:.1f} {:.1f}h{}\"/>", dash(i),
+    put(out_, "<path class=\"curve{}\" stroke=\"{}\" style=\"stroke-width:2.4\" d=\"M{:.1f} {:.1f}h{}\"/>", dash(i),
         colour(i), x, y - 4, kSwatch);
-    put("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + kSwatch + 6, y, escaped(panel.series[i]->name));
+    put(out_, "<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + kSwatch + 6, y, escaped(panel.series[i]->name));
   }
 
   void draw_time_labels() {
     for (const double tick : time_.ticks()) {
-      draw_line("axis", x_of(tick), bottom_, x_of(tick), bottom_ + 4);
-      put("<text class=\"tick mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x_of(tick), bottom_ + 18,
+      put_line(out_, "axis", x_of(tick), bottom_, x_of(tick), bottom_ + 4);
+      put(out_, "<text class=\"tick mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x_of(tick), bottom_ + 18,
           time_.label(tick));
     }
-    put("<text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">time [s{}]</text>\n", kLeft + plot_width() / 2, bottom_ + 36,
-        power_of_ten(time_.exponent));
+    put(out_, "<text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">time [s{}]</text>\n", kLeft + plot_width() / 2,
+        bottom_ + 36, factor_text(time_.exponent));
   }
 
   const PlotOptions& options_;

@@ -2,6 +2,7 @@
 #include "recording/state_hashes.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/state_hash.h"
 
@@ -54,8 +55,9 @@ bool decode_state_hashes(ByteSpan payload, StateHashes& hashes) noexcept {
   hashes.epoch = source.take<std::uint32_t>();
   hashes.digest = source.take<std::uint64_t>();
   hashes.count = source.take<std::uint32_t>();
+  const bool has_next_step = hashes.last_step < std::numeric_limits<StepIndex>::max();
   return source.is_valid() && hashes.count > 0 && hashes.first_step >= 0 && hashes.first_step <= hashes.last_step &&
-         hash_block_of(hashes.first_step) == hash_block_of(hashes.last_step);
+         has_next_step && hash_block_of(hashes.first_step) == hash_block_of(hashes.last_step);
 }
 
 }  // namespace slew::recording

@@ -210,19 +210,6 @@ Json points_json(const std::vector<NamedPoint>& points, Report report) {
   return list;
 }
 
-void put_problems(Json& json, const LoadError& error) {
-  for (const Diagnostic& diagnostic : error.diagnostics()) {
-    json["problems"].push_back({{"file", diagnostic.file},
-                                {"line", diagnostic.line},
-                                {"column", diagnostic.column},
-                                {"path", diagnostic.path},
-                                {"what", diagnostic.what},
-                                {"expected", diagnostic.expected},
-                                {"suggestion", diagnostic.suggestion}});
-  }
-  json["omitted"] = error.omitted();
-}
-
 // Where included files name an element, or have a part of it: "J.body1 (side.yaml:12)". Files with a prefix name their
 // own elements alone.
 std::vector<std::string> places_in_included_files(const std::string& path, const std::string& text,
@@ -297,6 +284,20 @@ Json kinds_json() {
   return kinds;
 }
 
+Json diagnostics_json(const LoadError& error) {
+  Json list = Json::array();
+  for (const Diagnostic& diagnostic : error.diagnostics()) {
+    list.push_back({{"file", diagnostic.file},
+                    {"line", diagnostic.line},
+                    {"column", diagnostic.column},
+                    {"path", diagnostic.path},
+                    {"what", diagnostic.what},
+                    {"expected", diagnostic.expected},
+                    {"suggestion", diagnostic.suggestion}});
+  }
+  return list;
+}
+
 Json outline_json(const std::string& path, const std::string& text, const Overrides& overrides) {
   Json json = {{"elements", Json::array()},
                {"points", Json::array()},
@@ -307,7 +308,8 @@ Json outline_json(const std::string& path, const std::string& text, const Overri
     const Scene scene = load_edited(path, text, overrides);
     for (const std::string& warning : scene.warnings) json["warnings"].push_back(warning);
   } catch (const LoadError& error) {
-    put_problems(json, error);
+    json["problems"] = diagnostics_json(error);
+    json["omitted"] = error.omitted();
   }
   if (const std::optional<SceneText> own = read_text(path, text)) {
     const WrittenOut whole(path, text);

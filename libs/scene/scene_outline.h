@@ -25,6 +25,9 @@ namespace slew::scene {
 // A text that is no YAML has problems alone. Does not throw for faults of the text.
 [[nodiscard]] Json outline_json(const std::string& path, const std::string& text, const Overrides& overrides);
 
+// [{file, line, column, path, what, expected, suggestion}] of the loader.
+[[nodiscard]] Json diagnostics_json(const LoadError& error);
+
 // A change of a text: {"set": path, "value": text}, {"add": name, "section", "type"}, {"copy": name, "to": name},
 // {"rename": name, "to": name}, {"remove": name}, or {}, which changes nothing. A rename is refused while included
 // files name the element, which are not edited; the notes list their places.

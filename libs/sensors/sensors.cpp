@@ -7,160 +7,28 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/find_named.h"
-#include "contact/mesh_check.h"
-#include "contact/solid.h"
 #include "core/state_hash.h"
 #include "math/rotation.h"
 #include "sensors/fcl_border.h"
+#include "sensors/shape_search.h"
 
 namespace slew::sensors {
 
-using contact::ShapeDef;
-using contact::ShapeType;
 using fcl_border::QueryResult;
-using math::Mat3;
 using math::Vec3;
 
 namespace {
 
 constexpr double kReached = 1e-4;  // m, distance at which a continuous search has found a hit
 
-bool is_zone(const SensorsDef& def, const std::string& shape) {
-  return std::any_of(def.sensors.begin(), def.sensors.end(), [&](const SensorDef& s) { return s.zone == shape; });
-}
-
-// Indices of the shapes that a list names; in the list's order, each once. A zone is no part of its body: it counts
-// under its own name only.
-std::vector<std::size_t> shapes_of(const SensorsDef& def, const std::vector<std::string>& names) {
-  std::vector<std::size_t> found;
-  for (const std::string& name : names) {
-    for (std::size_t i = 0; i < def.shapes.size(); ++i) {
-      const ShapeDef& shape = def.shapes[i];
-      if (shape.name != name && (shape.frame != name || is_zone(def, shape.name))) continue;
-      if (std::find(found.begin(), found.end(), i) == found.end()) found.push_back(i);
-    }
-  }
-  return found;
-}
-
-std::size_t frame_index(const SensorsDef& def, const std::string& name) {
-  return static_cast<std::size_t>(contact::find_named(def.frames, name) - def.frames.data());
-}
-
-class Validator {
- public:
-  Validator(const SensorsDef& def, Problems& problems) : def_(def), problems_(problems) {}
-
-  void check(const SensorDef& sensor) {
-    if (sensor.type == SensorType::zone) {
-      check_zone(sensor);
-    } else {
-      check_groups(sensor, "to", group(sensor, "of", sensor.of), group(sensor, "to", sensor.to));
-    }
-  }
-
- private:
-  void add(const SensorDef& sensor, const char* key, std::string what, std::string expected) {
-    problems_.push_back({sensor.name + "." + key, std::move(what), std::move(expected), {}});
-  }
-
-  std::vector<std::size_t> group(const SensorDef& sensor, const char* key, const std::vector<std::string>& names) {
-    for (const std::string& name : names) {
-      if (shapes_of(def_, {name}).empty()) {
-        add(sensor, key, fmt::format("'{}' has no shape", name), "a shape, or a body with a shape that is no zone");
-      }
-    }
-    if (names.empty()) add(sensor, key, "the list is empty", "names of shapes or bodies");
-    std::vector<std::size_t> shapes = shapes_of(def_, names);
-    for (const std::size_t i : shapes) {
-      const ShapeDef& shape = def_.shapes[i];
-      const contact::FrameDef* frame = contact::find_named(def_.frames, shape.frame);
-      if (shape.type == ShapeType::plane && frame != nullptr && !frame->is_static) {
-        add(sensor, key, fmt::format("the plane '{}' is fixed to '{}', which moves", shape.name, shape.frame),
-            "a plane on Ground, or a box");
-      }
-    }
-    return shapes;
-  }
-
-  // At least one pair of shapes of two frames, and no two planes.
-  void check_groups(const SensorDef& sensor, const char* key, const std::vector<std::size_t>& a,
-                    const std::vector<std::size_t>& b) {
-    if (a.empty() || b.empty()) return;
-    bool has_pair = false;
-    for (const std::size_t i : a) {
-      for (const std::size_t j : b) {
-        const ShapeDef &x = def_.shapes[i], &y = def_.shapes[j];
-        if (x.frame == y.frame) continue;
-        has_pair = true;
-        if (x.type == ShapeType::plane && y.type == ShapeType::plane) {
-          return add(sensor, key, fmt::format("'{}' and '{}' are both planes", x.name, y.name),
-                     "a plane in one group only");
-        }
-      }
-    }
-    if (!has_pair) add(sensor, key, "no shape can move relative to one of the other group", "shapes of two bodies");
-  }
-
-  void check_zone(const SensorDef& sensor) {
-    const ShapeDef* zone = contact::find_named(def_.shapes, sensor.zone);
-    if (zone == nullptr) {
-      add(sensor, "zone", fmt::format("there is no shape '{}'", sensor.zone), "the name of a shape");
-    } else if (zone->type == ShapeType::triangle_mesh || zone->type == ShapeType::height_field) {
-      add(sensor, "zone", fmt::format("'{}' is a surface of triangles and has no inside", sensor.zone),
-          "a sphere, box, cylinder, capsule, plane or convex mesh");
-    }
-    std::vector<std::string> seen;
-    for (const std::string& name : sensor.watch) {
-      if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
-        add(sensor, "watch", fmt::format("'{}' is named twice", name), "each name once");
-      }
-      seen.push_back(name);
-    }
-    group(sensor, "watch", sensor.watch);
-    if (zone == nullptr) return;
-    for (const std::string& name : sensor.watch) {
-      check_groups(sensor, "watch", shapes_of(def_, {sensor.zone}), shapes_of(def_, {name}));
-    }
-  }
-
-  const SensorsDef& def_;
-  Problems& problems_;
-};
-
-std::size_t add_shape(fcl_border::Geometries& geometries, const ShapeDef& def, const contact::Geometry& geometry) {
-  std::vector<double> vertices;
-  for (const Vec3& v : geometry.vertices) vertices.insert(vertices.end(), {v[0], v[1], v[2]});
-  const std::uint32_t* triangles = geometry.triangles.empty() ? nullptr : geometry.triangles.front().data();
-  switch (def.type) {
-    case ShapeType::sphere:
-      return add_sphere(geometries, def.radius);
-    case ShapeType::box:
-      return add_box(geometries, def.size[0], def.size[1], def.size[2]);
-    case ShapeType::cylinder:
-      return add_cylinder(geometries, def.radius, def.length);
-    case ShapeType::capsule:
-      return add_capsule(geometries, def.radius, def.length);
-    case ShapeType::plane:
-      return add_plane(geometries);
-    case ShapeType::convex_mesh:
-      return add_convex(geometries, vertices.data(), geometry.vertices.size(), triangles, geometry.triangles.size());
-    case ShapeType::triangle_mesh:
-    case ShapeType::height_field:
-      break;
-  }
-  return add_surface(geometries, vertices.data(), geometry.vertices.size(), triangles, geometry.triangles.size());
-}
-
 // Motion of a frame over an interval: a straight line, and a turn about a fixed axis by less than half a turn.
 struct Path {
   FrameMotion start;
-  Vec3 way;   // m
-  Vec3 turn;  // rad, start's axes
+  Vec3 displacement;  // m
+  Vec3 turn;          // rad, start's axes
   double angle = 0;
 
-  Path(const FrameMotion& from, const FrameMotion& to) : start(from), way(to.p_W - from.p_W) {
+  Path(const FrameMotion& from, const FrameMotion& to) : start(from), displacement(to.p_W - from.p_W) {
     const math::Quaternion q = math::quaternion_of(transpose(from.R_W) * to.R_W);
     const Vec3 v(q.x, q.y, q.z);
     const double sine = norm(v);
@@ -170,20 +38,16 @@ struct Path {
 
   // Pose at this share of the interval, with the velocities of its start.
   [[nodiscard]] FrameMotion at(double tau) const {
-    return {start.p_W + way * tau, start.R_W * rotation_of(math::turn_by(turn * tau)), start.v_W, start.w_W};
+    return {start.p_W + displacement * tau, start.R_W * rotation_of(math::turn_by(turn * tau)), start.v_W, start.w_W};
   }
   // The same with the mean velocities of the interval, which lasts so long [s].
   [[nodiscard]] FrameMotion mean_at(double tau, double interval) const {
     FrameMotion motion = at(tau);
-    motion.v_W = way * (1 / interval);
+    motion.v_W = displacement * (1 / interval);
     motion.w_W = start.R_W * turn * (1 / interval);
     return motion;
   }
 };
-
-Vec3 velocity_of(const FrameMotion& frame, Vec3 point_W) {
-  return frame.v_W + cross(frame.w_W, point_W - frame.p_W);
-}
 
 // Visits the fields of a saved state for their hash.
 struct Hasher {
@@ -201,91 +65,7 @@ struct Hasher {
   }
 };
 
-Vec3 vector(const double* x) {
-  return {x[0], x[1], x[2]};
-}
-
 }  // namespace
-
-void validate(const SensorsDef& def, Problems& problems) {
-  Validator validator(def, problems);
-  for (const SensorDef& sensor : def.sensors) validator.check(sensor);
-}
-
-struct Sensors::Search {
-  struct Shape {
-    std::size_t geometry = 0, frame = 0;
-    Vec3 p_FS;
-    Mat3 R_FS;
-    double extent = 0;  // m, of the farthest point from the frame's origin
-  };
-  struct Nearest {
-    double distance = 0;
-    Vec3 p_a_W, p_b_W, n_W;
-    std::size_t frame_a = 0, frame_b = 0;
-
-    // m/s, (2); motion_of: motion of a frame
-    template <typename MotionOf>
-    [[nodiscard]] double closing_speed(const MotionOf& motion_of) const {
-      return -dot(velocity_of(motion_of(frame_a), p_a_W) - velocity_of(motion_of(frame_b), p_b_W), n_W);
-    }
-  };
-
-  explicit Search(const SensorsDef& def)
-      : geometries(fcl_border::create_geometries(), &free_geometries), groups(nullptr, &free_groups) {
-    for (const ShapeDef& shape : def.shapes) {
-      const contact::Geometry geometry = contact::make_geometry(shape);
-      const Vec3 p_FS(shape.position);
-      const Mat3 R_FS = math::rotation_zxz(shape.orientation);
-      shapes.push_back({add_shape(*geometries, shape, geometry), frame_index(def, shape.frame), p_FS, R_FS,
-                        norm(p_FS + R_FS * geometry.centre) + geometry.bounding_radius});
-    }
-    groups.reset(fcl_border::create_groups(*geometries));
-  }
-
-  std::size_t add_group(const std::vector<std::size_t>& members) {
-    std::vector<std::size_t> indices, frames;
-    for (const std::size_t i : members) indices.push_back(shapes[i].geometry), frames.push_back(shapes[i].frame);
-    group_shapes.push_back(members);
-    return fcl_border::add_group(*groups, indices.data(), frames.data(), indices.size());
-  }
-
-  template <typename MotionOf>
-  void place(std::size_t group, const MotionOf& motion_of) {
-    for (std::size_t k = 0; k < group_shapes[group].size(); ++k) {
-      const Shape& shape = shapes[group_shapes[group][k]];
-      const FrameMotion motion = motion_of(shape.frame);
-      const std::array<double, 3> p = (motion.p_W + motion.R_W * shape.p_FS).array();
-      const Mat3 R = motion.R_W * shape.R_FS;
-      double columns[9];
-      for (int column = 0; column < 3; ++column) {
-        for (int row = 0; row < 3; ++row) columns[3 * column + row] = R(row, column);
-      }
-      fcl_border::place(*groups, group, k, {p.data(), columns});
-    }
-  }
-
-  // Nearest points of two placed groups.
-  bool find_nearest(std::size_t a, std::size_t b, Nearest& found) {
-    fcl_border::Nearest raw{};
-    if (fcl_border::find_nearest(*groups, a, b, raw) != QueryResult::fine) return false;
-    found = {raw.distance,
-             vector(raw.p_a_W),
-             vector(raw.p_b_W),
-             vector(raw.n_W),
-             shapes[group_shapes[a][raw.member_a]].frame,
-             shapes[group_shapes[b][raw.member_b]].frame};
-    return true;
-  }
-
-  static void free_geometries(fcl_border::Geometries* p) noexcept { fcl_border::destroy(p); }
-  static void free_groups(fcl_border::Groups* p) noexcept { fcl_border::destroy(p); }
-
-  std::unique_ptr<fcl_border::Geometries, void (*)(fcl_border::Geometries*) noexcept> geometries;
-  std::unique_ptr<fcl_border::Groups, void (*)(fcl_border::Groups*) noexcept> groups;
-  std::vector<Shape> shapes;
-  std::vector<std::vector<std::size_t>> group_shapes;
-};
 
 Sensors::Sensors(const SensorsDef& def) : interval_(def.interval), search_(std::make_unique<Search>(def)) {
   for (const SensorDef& sensor_def : def.sensors) {
@@ -456,7 +236,7 @@ bool Sensors::search_motion(std::size_t index, std::span<const FrameMotion> fram
       const auto turned = [&](const Search::Shape& s) {
         return paths[s.frame].angle > 0 ? paths[s.frame].angle * s.extent : 0.0;
       };
-      mu = std::max(mu, norm(paths[x.frame].way - paths[y.frame].way) + turned(x) + turned(y));
+      mu = std::max(mu, norm(paths[x.frame].displacement - paths[y.frame].displacement) + turned(x) + turned(y));
     }
   }
   bool is_fine = true;

@@ -14,15 +14,14 @@
 
 #include "core/child_process.h"
 #include "core/failure.h"
-#include "core/installation.h"
-#include "core/real_time_thread.h"
 #include "io_node/scene_config.h"
 #include "node/identity.h"
 #include "node/open_transport.h"
 #include "node/session_member.h"
 #include "recording/run_directory.h"
-#include "scene/cpu_places.h"
 #include "session/interrupts.h"
+#include "session/node_output.h"
+#include "session/node_programs.h"
 #include "transport/session_state.h"
 
 namespace slew::session {
@@ -54,30 +53,22 @@ class Supervisor {
         begin_(begin),
         watcher_(watcher),
         tally_({options.kept, scene.session.step_duration()}),
-        roles_(io_node::required_roles(
-            scene, options.scene.is_recording ? io_node::Recording::required : io_node::Recording::none)),
+        programs_(options, scene),
         name_(scene.name),
         give_up_after_(duration_of_seconds(scene.session.give_up_after)),
         rejoin_(duration_of_seconds(scene.session.rejoin)),
-        is_refusal_reported_(options.is_refusal_reported),
+        output_([this](const std::string& line) { watcher_.report(line); }, options.is_refusal_reported),
         devices_([this](const std::string& line) { watcher_.report(line); }) {
     if (!options.is_without_devices) device_names_ = scene.devices.names();
-    const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
-    require(scene::parse_cpu_places(places, cpus_));
-    for (const scene::CpuPlace& place : cpus_) {
-      const auto role = std::find_if(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles),
-                                     [&](Role of_place) { return node::to_text(of_place) == place.role; });
-      if (role != std::end(wire::kNodeRoles)) check_place(*role, place);
-    }
   }
 
   RunOutcome run() {
     count_interrupts();
     started_wall_ns_ = wall_clock_ns();
-    if (is_ours(Role::io)) start(Role::io);
+    if (programs_.is_ours(Role::io)) start(Role::io);
     observer_ = std::make_unique<Observer>(
         open_transport(), observer::ObserverOptions{.session = options_.session.session, .receiver = &tally_});
-    if (!is_ours(Role::io)) start_others();
+    if (!programs_.is_ours(Role::io)) start_others();
     while (!all_ended()) {
       wait_for_output();
       observer_->drain();
@@ -115,10 +106,10 @@ class Supervisor {
   // values are needed by the watcher, and for the summary
   [[nodiscard]] std::unique_ptr<transport::Transport> open_transport() const {
     // what the samples report is counted by the recorder when there is one: each reader costs the writers time
-    if (!is_ours(Role::recorder)) {
+    if (!programs_.is_ours(Role::recorder)) {
       if (auto transport = open_with_samples()) return transport;
     }
-    if (watcher_.reads_values() || !options_.kept.empty() || !is_ours(Role::recorder)) {
+    if (watcher_.reads_values() || !options_.kept.empty() || !programs_.is_ours(Role::recorder)) {
       return node::open_transport(Role::observer, options_.session);
     }
     return node::open_observer_without_values(options_.session);
@@ -136,79 +127,20 @@ class Supervisor {
 
   // ---- starting -----------------------------------------------------------------------------------------------
 
-  [[nodiscard]] bool is_ours(Role role) const {
-    const bool is_remote =
-        std::find(options_.remote.begin(), options_.remote.end(), node::to_text(role)) != options_.remote.end();
-    return (roles_ & bit(role)) != 0 && !is_remote;
-  }
-
-  // before anything is started
-  void check_place(Role role, const scene::CpuPlace& place) const {
-    // the list of a scene may name more than this session has
-    if ((roles_ & bit(role)) == 0 && !options_.cpus.empty()) {
-      throw Failure(ExitCode::bad_input,
-                    fmt::format("--cpu {}={}: this session has no {} node; nothing was started; leave it out",
-                                place.role, place.cpu, place.role));
-    }
-    if (is_ours(role)) check_cpu(place);
-  }
-
-  static void check_cpu(const scene::CpuPlace& place) {
-    const std::vector<int> cpus = usable_cpus();
-    if (std::binary_search(cpus.begin(), cpus.end(), place.cpu)) return;
-    throw Failure(
-        ExitCode::bad_input,
-        fmt::format("{}={}: there is no processor {} for this process; there are {}; nothing was started; name one of "
-                    "them in --cpu or session.cpus",
-                    place.role, place.cpu, place.cpu, cpu_list(cpus)));
+  // nodes of this run follow its own io and no other of its name
+  [[nodiscard]] std::unique_ptr<ChildProcess> make(Role role) const {
+    const bool has_own_io = role != Role::io && programs_.is_ours(Role::io);
+    return programs_.start(role, has_own_io ? node::to_text(observer_->view().session().header.session) : "");
   }
 
   void start(Role role) { nodes_.push_back({role, make(role)}); }
 
-  [[nodiscard]] std::unique_ptr<ChildProcess> make(Role role) const {
-    std::vector<std::string> arguments;
-    if (role == Role::io) arguments = scene::scene_arguments(options_.scene);
-    if (role != Role::recorder && options_.join_timeout) {
-      arguments.insert(arguments.end(), {"--join-timeout", fmt::format("{}", *options_.join_timeout)});
-    }
-    arguments.insert(arguments.end(), {"--session", options_.session.session});
-    if (is_physics(role)) {
-      arguments.insert(arguments.end(), {"--assets", options_.assets()});
-    }
-    // nodes of this run follow its own io and no other of its name
-    if (role != Role::io && is_ours(Role::io)) {
-      arguments.insert(arguments.end(), {"--session-id", node::to_text(observer_->view().session().header.session)});
-    }
-    const std::vector<std::string> network = node::network_arguments(options_.session);
-    arguments.insert(arguments.end(), network.begin(), network.end());
-    if (role == Role::recorder)
-      arguments.insert(arguments.end(),
-                       {"--out", options_.runs, "--keep-free", fmt::format("{}", options_.keep_free_mb)});
-    if (options_.is_real_time) arguments.emplace_back("--rt");
-    for (const scene::CpuPlace& place : cpus_) {
-      if (place.role == node::to_text(role)) arguments.insert(arguments.end(), {"--cpu", std::to_string(place.cpu)});
-    }
-    if (is_physics(role) && options_.added_work_us > 0) {
-      arguments.insert(arguments.end(), {"--add-work", fmt::format("{}", options_.added_work_us)});
-    }
-    const std::string name(node::to_text(role));
-    return std::make_unique<ChildProcess>(name, sibling_program(name + "_node"), arguments);
-  }
-
-  void start_device(const std::string& name) {
-    std::vector<std::string> arguments = {"--device", name, "--session", options_.session.session, "--supervised"};
-    const std::vector<std::string> network = node::network_arguments(options_.session);
-    arguments.insert(arguments.end(), network.begin(), network.end());
-    if (options_.are_devices_insecure) arguments.emplace_back("--insecure-devices");
-    devices_.start(name, arguments);
-  }
-
   void start_others() {
     are_others_started_ = true;
     for (const Role role : wire::kNodeRoles) {
-      if (role != Role::io && is_ours(role)) start(role);
+      if (role != Role::io && programs_.is_ours(role)) start(role);
     }
-    for (const std::string& name : device_names_) start_device(name);
+    for (const std::string& name : device_names_) devices_.start(name, programs_.device_arguments(name));
     watcher_.begin();
   }
 
@@ -340,30 +272,9 @@ class Supervisor {
   void look_after_children() {
     for (Node& node : nodes_) {
       const bool has_ended = node.process->poll_end().has_value();
-      for (const std::string& line : node.process->take_lines()) take_line(line);
+      for (const std::string& line : node.process->take_lines()) output_.take(line);
       if (has_ended && !node.is_reported) report_end(node);
     }
-  }
-
-  void take_line(const std::string& line) {
-    constexpr std::string_view kPath = "recording: ";
-    if (line.starts_with(kPath)) {
-      recording_ = line.substr(kPath.size());
-      return;
-    }
-    // every node is refused alike: once is enough
-    constexpr std::string_view kRefused = "; to allow it, run as root, or set 'rtprio 95'";
-    if (line.find(kRefused) != std::string::npos) {
-      if (is_refusal_reported_) return;
-      is_refusal_reported_ = true;
-    }
-    // messages that follow from another node's failure are kept apart from the cause
-    const bool is_consequence = line.find("io ended the session") != std::string::npos ||
-                                line.find("because of a fault elsewhere") != std::string::npos;
-    const bool is_warning = line.find("warning") != std::string::npos;
-    if (is_warning || line.find("_node: ") == std::string::npos) return watcher_.report(line);
-    std::vector<std::string>& kept = is_consequence ? consequences_ : causes_;
-    if (std::find(kept.begin(), kept.end(), line) == kept.end()) kept.push_back(line);
   }
 
   void report_process_end(const Node& node, const std::string& what_follows) {
@@ -467,7 +378,7 @@ class Supervisor {
     if (is_ending_) return;
     is_ending_ = true;
     if (deadline_ns_ == 0) deadline_ns_ = end_deadline_ns();
-    if (is_ours(Role::io)) {
+    if (programs_.is_ours(Role::io)) {
       // io ends the session in order: END, the recorder closes, all nodes leave; its code is in the recording
       const bool is_ctrl_c = interrupt_code() == static_cast<int>(ExitCode::interrupted);
       nodes_.front().has_end_request = true;
@@ -544,20 +455,21 @@ class Supervisor {
     outcome.code = code();
     outcome.has_begun = are_others_started_ && observer_->view().has_session();
     // the message "io ended it" is left out when io has reported a cause
-    outcome.messages = causes_.empty() && !is_node_killed_ ? consequences_ : causes_;
-    outcome.recording = recording_;
+    outcome.messages = output_.causes().empty() && !is_node_killed_ ? output_.consequences() : output_.causes();
+    outcome.recording = output_.recording();
     outcome.devices = devices_.outcomes();
     for (const DeviceOutcome& device : outcome.devices) {
       if (!device.fault.empty() && outcome.code == ExitCode::ok) outcome.code = ExitCode::losses;
     }
-    if (recording_.empty() && is_ours(Role::recorder) && are_others_started_) outcome.recording = find_recording();
+    if (outcome.recording.empty() && programs_.is_ours(Role::recorder) && are_others_started_)
+      outcome.recording = find_recording();
     outcome.view = observer_->view();
     outcome.tally = std::move(tally_);
     outcome.begin = begin_;
     outcome.steps = std::max<StepIndex>(0, outcome.view.step() - begin_);
     outcome.wall_time = clock_.running();
     outcome.paused_time = clock_.paused();
-    outcome.is_refusal_reported = is_refusal_reported_;
+    outcome.is_refusal_reported = output_.is_refusal_reported();
     return outcome;
   }
 
@@ -565,8 +477,7 @@ class Supervisor {
   StepIndex begin_;  // step that the session goes on from
   RunWatcher& watcher_;
   Tally tally_;
-  std::uint32_t roles_;
-  std::vector<scene::CpuPlace> cpus_;
+  NodePrograms programs_;
   std::string name_;         // name of the scene
   std::vector<Node> nodes_;  // io first, when it is ours
   std::unique_ptr<Observer> observer_;
@@ -576,7 +487,7 @@ class Supervisor {
   bool is_node_killed_ = false;
   bool is_recorder_awaited_ = false;  // the recorder still writes after all others have ended
   bool is_ending_ = false;
-  bool is_refusal_reported_;
+  NodeOutput output_;
   DeviceProcesses devices_;
   std::vector<std::string> device_names_;
   int applied_ = 0;  // number of applied signals, and of applied Ctrl-Cs
@@ -586,9 +497,6 @@ class Supervisor {
   std::int64_t started_wall_ns_ = 0;
   bool has_stepped_ = false;
   RunClock clock_;
-  std::string recording_;
-  std::vector<std::string> causes_;
-  std::vector<std::string> consequences_;
 };
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "session/direct_session.h"
 #include "session/hash_blocks.h"
 #include "session/recorded.h"
+#include "session/recorded_epochs.h"
 #include "transport/cdr/codec.h"
 
 namespace slew::session {
@@ -40,7 +41,8 @@ class Replay {
         on_difference_(on_difference),
         scene_(recorded_scene(reader, assets)),
         session_(scene_),
-        end_(end) {
+        end_(end),
+        epochs_(reader) {
     set_floating_point_mode();
     if (scene_.session.mode == scene::ExchangeMode::free_running) {
       throw Failure(ExitCode::bad_input,
@@ -60,11 +62,9 @@ class Replay {
   }
 
   ReplayResult run() {
-    read_states();
-    if (!states_.empty()) read_first_ticks();
-    epoch_ = first_epoch();
+    epoch_ = epochs_.first();
     if (end_ != nullptr) {
-      last_epoch_ = last_epoch();
+      last_epoch_ = epochs_.last();
       config_ = io_node::make_config(scene_, "", io_node::Recording::none);
       follower_.emplace(config_);
     }
@@ -109,76 +109,6 @@ class Replay {
     }
   }
 
-  // ---- states -------------------------------------------------------------------------------------------------
-
-  // Epochs that begin with states, or have a gap, have them in the recording.
-  void read_states() {
-    recording::MessageFilter filter;
-    filter.topics.emplace_back(node::to_text(Topic::state));
-    std::map<std::tuple<std::uint32_t, StepIndex, Role>, node::CheckpointParts> parts;
-    wire::StatePart part;
-    const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
-      if (!transport::decode(message.payload, part)) return Visit::go_on;
-      node::CheckpointParts& of_role = parts[{part.header.epoch, part.header.step, part.role}];
-      if (of_role.take(part)) states_[part.header.epoch][part.header.step].push_back({part.role, of_role.checkpoint()});
-      return Visit::go_on;
-    });
-    if (!status.is_ok()) throw Failure(status.code, status.text);
-  }
-
-  // The first step of each epoch that has a tick.
-  void read_first_ticks() {
-    recording::MessageFilter filter;
-    filter.topics.emplace_back(node::to_text(Topic::tick));
-    wire::Header header;
-    const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
-      if (!transport::decode_header(message.payload, header) || header.phase != Phase::running) return Visit::go_on;
-      StepIndex& first = first_ticks_.try_emplace(header.epoch, header.step).first->second;
-      first = std::min(first, header.step);
-      return Visit::go_on;
-    });
-    if (!status.is_ok()) throw Failure(status.code, status.text);
-  }
-
-  // The states with which the epoch begins: no tick is older. None: it begins with INIT.
-  [[nodiscard]] const std::vector<io_node::SavedState>* first_states() const {
-    const auto states = states_.find(epoch_);
-    if (states == states_.end()) return nullptr;
-    const auto& [step, first] = *states->second.begin();
-    const auto tick = first_ticks_.find(epoch_);
-    return tick != first_ticks_.end() && tick->second < step ? nullptr : &first;
-  }
-
-  // A recording may begin later than its session.
-  [[nodiscard]] std::uint32_t first_epoch() const {
-    std::uint32_t epoch = 0;
-    bool has_tick = false;
-    wire::Header header;
-    recording::MessageFilter filter;
-    filter.topics.emplace_back(node::to_text(Topic::tick));
-    const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
-      has_tick = transport::decode_header(message.payload, header) && header.phase != Phase::join;
-      if (has_tick) epoch = header.epoch;
-      return has_tick ? Visit::stop : Visit::go_on;
-    });
-    if (!status.is_ok()) throw Failure(status.code, status.text);
-    // an INIT tick is published at the begin of its epoch, except the first
-    return has_tick && header.phase == Phase::init && epoch > 0 ? epoch - 1 : epoch;
-  }
-
-  [[nodiscard]] std::uint32_t last_epoch() const {
-    std::uint32_t epoch = 0;
-    wire::Header header;
-    recording::MessageFilter filter;
-    filter.topics.emplace_back(node::to_text(Topic::tick));
-    const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
-      if (transport::decode_header(message.payload, header)) epoch = std::max(epoch, header.epoch);
-      return Visit::go_on;
-    });
-    if (!status.is_ok()) throw Failure(status.code, status.text);
-    return epoch;
-  }
-
   // ---- the end ------------------------------------------------------------------------------------------------
 
   [[nodiscard]] bool is_at_end() const { return end_ != nullptr && epoch_ == last_epoch_ && next_ >= end_->step; }
@@ -221,7 +151,7 @@ class Replay {
     waiting_ticks_.clear();
     waiting_samples_.clear();
     std::ignore = blocks_.take_rest();
-    begin_from(first_states());
+    begin_from(epochs_.first_states(epoch_));
     init_hash_ = session_.init_hash();
   }
 
@@ -251,15 +181,9 @@ class Replay {
   // The tick of the next step never comes. The session is computed again from the first states behind it; what is
   // recorded in between is not reached. False: there are none.
   bool cross_gap() {
-    const auto states = states_.find(epoch_);
-    if (states == states_.end()) return false;
-    // all states are needed
-    const auto suits = [this](const auto& of_step) {
-      return of_step.first > next_ && of_step.second.size() == states_.at(epoch_).rbegin()->second.size();
-    };
-    const auto behind = std::find_if(states->second.begin(), states->second.end(), suits);
-    if (behind == states->second.end()) return false;
-    const StepIndex step = behind->first;
+    const RecordedEpochs::States* const behind = epochs_.states_behind(epoch_, next_);
+    if (behind == nullptr) return false;
+    const StepIndex step = behind->front().state.step;
     result_.gaps.push_back(
         fmt::format("gap: tick {} of epoch {} is missing, tick {} follows; computed again from the "
                     "states of step {} on",
@@ -281,7 +205,7 @@ class Replay {
       block.first_step < step ? leave_unreached(block) : blocks_.add(block);
     }
     session_.reset();
-    begin_from(&behind->second);
+    begin_from(behind);
     if (!has_stopped_) compare_waiting();
     if (!has_stopped_) compare_blocks();
     return true;
@@ -524,8 +448,7 @@ class Replay {
   ReplayEnd* end_;
   io_node::IoConfig config_;
   std::optional<io_node::TickFollower> follower_;
-  std::map<std::uint32_t, std::map<StepIndex, std::vector<io_node::SavedState>>> states_;  // by epoch and step
-  std::map<std::uint32_t, StepIndex> first_ticks_;                                         // by epoch
+  RecordedEpochs epochs_;
   bool has_stopped_ = false;
   std::uint32_t epoch_ = 0;
   std::uint32_t last_epoch_ = 0;

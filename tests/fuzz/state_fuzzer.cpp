@@ -78,7 +78,6 @@ void change(std::vector<std::byte>& bytes, fuzz::Choices& choices) {
 }
 
 // ---- physics nodes
-// ---------------------------------------------------------------------------------------------------
 
 scene::Scene load_scene(const std::string& file) {
   return scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + file);
@@ -212,7 +211,6 @@ void try_physics(const Loaded& of, bool has_right_sums, fuzz::Choices& choices) 
 }
 
 // ---- io
-// --------------------------------------------------------------------------------------------------------------
 
 io_node::IoConfig io_config() {
   io_node::IoConfig config;

@@ -7,14 +7,14 @@ import tempfile
 
 
 def take_domain():
-    """A DDS domain that no other test on this host uses (tests/support/test_domain.h)."""
+    """The number, as text, of a DDS domain that no other test on this host uses (tests/support/test_domain.h)."""
     for i in range(99):
         number = 1 + (os.getpid() + i) % 99
         path = f"{tempfile.gettempdir()}/slewring-test-domain-{number}"
         file = os.open(path, os.O_RDONLY | os.O_CREAT, 0o666)
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            return number
+            return str(number)
         except OSError:
             os.close(file)
     sys.exit("FAILED: all test domains are in use")

@@ -110,7 +110,9 @@ session.changed.on(() => {
   if (known === undefined || session.elements.size === 0 || known === scene) return;
   scene = known;
   isLoaded = false;
-  void store.load(scene).then((kept) => {
+  clearTimeout(timer); // what the page shows is not yet of this scene
+  void store.load(known).then((kept) => {
+    if (known !== scene) return;
     if (kept) show(kept);
     else plots.state = usualPlots();
     isLoaded = true;

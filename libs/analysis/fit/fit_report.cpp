@@ -34,7 +34,7 @@ std::string correlations_of(const Fit& fit, std::size_t width) {
   return '\n' + table.text("", width);
 }
 
-std::string text_of(const Undetermined& combination, const Fit& fit) {
+std::string combination_text(const Undetermined& combination, const Fit& fit) {
   std::string text;
   for (const Undetermined::Part& part : combination.parts) {
     const FittedValue& value = fit.values[part.value];
@@ -52,7 +52,7 @@ std::string undetermined_text(const Fit& fit) {
   if (fit.undetermined.empty()) text += ": a change of some of them together changes no signal";
   text += ".\n";
   for (const Undetermined& one : fit.undetermined) {
-    text += fmt::format("A change of {} {} no signal.\n", text_of(one, fit),
+    text += fmt::format("A change of {} {} no signal.\n", combination_text(one, fit),
                         one.parts.size() > 1 ? "changes practically" : "changes");
   }
   return text + "Fix a value by --set in the place of --free, or measure another signal.\n";

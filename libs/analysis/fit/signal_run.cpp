@@ -9,6 +9,7 @@
 #include "analysis/comparison/played_scene.h"
 #include "analysis/parameter_sweep/measure.h"
 #include "analysis/parameter_sweep/variable_values.h"
+#include "analysis/sweep/scene_job.h"
 #include "core/failure.h"
 
 namespace slew::analysis {
@@ -84,17 +85,14 @@ SignalOutcome run_signals(const SignalJob& job) {
 Json to_json(const SignalJob& job) {
   Json times = Json::array();
   for (const std::vector<double>& one : job.times) times.push_back(Json(one));
-  return {{"scene", job.scene.file},  {"overrides", job.scene.overrides}, {"duration", job.scene.duration},
-          {"input", job.scene.input}, {"expressions", job.expressions},   {"times", times}};
+  Json json = {{"expressions", job.expressions}, {"times", times}};
+  put_scene(json, job.scene);
+  return json;
 }
 
 SignalJob signal_job_from(const Json& json) {
   SignalJob job;
-  job.scene.file = json.at("scene").text();
-  job.scene.overrides = json.at("overrides").texts();
-  job.scene.duration = json.at("duration").text();
-  job.scene.input = json.at("input").text();
-  job.scene.is_recording = false;
+  job.scene = scene_in(json);
   job.expressions = json.at("expressions").texts();
   for (const Json& list : json.at("times").items()) {
     job.times.emplace_back();

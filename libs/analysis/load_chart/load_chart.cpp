@@ -202,10 +202,10 @@ class ChartMaker {
     const int from = multibody::find_body(model, chart_.from);
     if (from < 0) refuse_chart("--from: the scene has no body '" + chart_.from + "'", "name a body, or Ground");
     const Vec3 up = model.gravity * (-1 / norm(model.gravity));
-    const Vec3 way = Vec3(multibody::body_pose(model, ws, payload).center_of_mass) -
+    const Vec3 arm = Vec3(multibody::body_pose(model, ws, payload).center_of_mass) -
                      Vec3(multibody::body_pose(model, ws, from).position);
-    pose.height = dot(way, up);
-    pose.reach = norm(way - up * pose.height);
+    pose.height = dot(arm, up);
+    pose.reach = norm(arm - up * pose.height);
   }
 
   // (1), (2)

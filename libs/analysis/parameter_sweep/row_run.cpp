@@ -9,6 +9,7 @@
 #include "analysis/comparison/played_scene.h"
 #include "analysis/parameter_sweep/measure.h"
 #include "analysis/parameter_sweep/variable_values.h"
+#include "analysis/sweep/scene_job.h"
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 #include "core/state_hash.h"
@@ -96,20 +97,14 @@ RowOutcome run_row(const SweepJob& job, const scene::Overrides& settings) {
 }
 
 Json to_json(const SweepJob& job) {
-  return {{"scene", job.scene.file},
-          {"overrides", job.scene.overrides},
-          {"duration", job.scene.duration},
-          {"input", job.scene.input},
-          {"measures", job.measures}};
+  Json json = {{"measures", job.measures}};
+  put_scene(json, job.scene);
+  return json;
 }
 
 SweepJob sweep_job_from(const Json& json) {
   SweepJob job;
-  job.scene.file = json.at("scene").text();
-  job.scene.overrides = json.at("overrides").texts();
-  job.scene.duration = json.at("duration").text();
-  job.scene.input = json.at("input").text();
-  job.scene.is_recording = false;
+  job.scene = scene_in(json);
   job.measures = json.at("measures").texts();
   return job;
 }

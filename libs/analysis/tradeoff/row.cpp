@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 
+#include "analysis/sweep/scene_job.h"
 #include "core/failure.h"
 #include "core/json.h"
 
@@ -228,19 +229,16 @@ RowResult compute(const RowJob& job) {
 }
 
 Json to_json(const RowJob& job) {
-  return {{"scene", job.scene.file},        {"overrides", job.scene.overrides},
-          {"duration", job.scene.duration}, {"input", job.scene.input},
-          {"variables", job.variables},     {"is_reference", job.kind == RunKind::reference},
-          {"row_step", job.row_step},       {"samples", job.samples},
-          {"repeats", job.repeats},         {"time_limit", job.time_limit}};
+  Json json = {{"variables", job.variables}, {"is_reference", job.kind == RunKind::reference},
+               {"row_step", job.row_step},   {"samples", job.samples},
+               {"repeats", job.repeats},     {"time_limit", job.time_limit}};
+  put_scene(json, job.scene);
+  return json;
 }
 
 RowJob job_from(const Json& json) {
   RowJob job;
-  job.scene.file = json.at("scene").text();
-  job.scene.overrides = json.at("overrides").texts();
-  job.scene.duration = json.at("duration").text();
-  job.scene.input = json.at("input").text();
+  job.scene = scene_in(json);
   job.variables = json.at("variables").texts();
   job.kind = json.at("is_reference").boolean() ? RunKind::reference : RunKind::row;
   job.row_step = json.at("row_step").number();

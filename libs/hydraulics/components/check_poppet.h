@@ -95,8 +95,7 @@ class CheckPoppet {
   double K_ = 0, crack_ = 0, rise_ = 1, throttle_ = 0;
 };
 
-// Rules of check valves: fully open at the nominal drop (path: its key), two volumes on two ports.
+// A rule of check valves: fully open at the nominal drop. path: of its key.
 void check_nominal_drop(const std::string& path, const CheckParameters& common, Problems& errors);
-void check_distinct(const std::string& path, const std::string& first, const std::string& second, Problems& errors);
 
 }  // namespace slew::hydraulics

@@ -10,6 +10,7 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/shared_fields.h"
 #include "hydraulics/oil.h"
 #include "hydraulics/pump_lines.h"
 
@@ -210,11 +211,6 @@ ComponentType type_of(std::string_view name, std::span<const Field> fields, std:
 }
 
 }  // namespace
-
-void check_distinct(const std::string& path, const std::string& first, const std::string& second, Problems& errors) {
-  if (first != second || first.empty()) return;
-  errors.push_back({path, "it is connected to '" + first + "' as the port before it", "two volumes", ""});
-}
 
 void check_nominal_drop(const std::string& path, const CheckParameters& common, Problems& errors) {
   const double open = common.crack_pressure + common.opening_pressure_rise;

@@ -8,6 +8,7 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/shared_fields.h"
 #include "hydraulics/oil.h"
 #include "hydraulics/pump_lines.h"
 

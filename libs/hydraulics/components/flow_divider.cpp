@@ -5,7 +5,7 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
-#include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/shared_fields.h"
 #include "hydraulics/components/spring_spool.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
@@ -237,9 +237,7 @@ class GearFlowDivider final : public HydraulicComponent {
 template <typename Def>
 void validate_divider(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {
   const Def& def = static_cast<const Def&>(component);
-  check_distinct(def.name + ".port_2", def.port_1, def.port_2, errors);
-  check_distinct(def.name + ".port_3", def.port_1, def.port_3, errors);
-  check_distinct(def.name + ".port_3", def.port_2, def.port_3, errors);
+  check_three_ports(def, errors);
 }
 
 template <typename Def, typename Component>

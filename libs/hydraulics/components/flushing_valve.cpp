@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/flushing_valve.h"
 
-#include <cmath>
-
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
-#include "hydraulics/components/check_poppet.h"
-#include "hydraulics/components/spring_spool.h"
+#include "hydraulics/components/outlet_edges.h"
+#include "hydraulics/components/shared_fields.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -29,34 +27,24 @@ constexpr Field kFlushingValveFields[] = {
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "rise from shut to fully open"}),
 };
 
-constexpr double kFlushingEndWidth = 0.02;  // share of the spool's way, smoothing of its ends
+constexpr double kFlushingEndWidth = 0.02;  // share of the spool's travel, smoothing of its ends
 
 class FlushingValve final : public HydraulicComponent {
  public:
   FlushingValve(const FlushingValveDef& def, CircuitBuilder& builder)
-      : HydraulicComponent(def),
-        def_(def),
-        p_1_(builder.volume(def.port_1)),
-        p_2_(builder.volume(def.port_2)),
-        p_3_(builder.volume(def.port_3)),
-        transition_(builder.def().orifice_transition) {
+      : HydraulicComponent(def), def_(def), edges_(def, builder) {
     apply_parameters();
   }
-  void declare_dependencies(DependencyList& dependencies) const override {
-    for (const StateIndex row : {p_1_, p_2_, p_3_}) {
-      for (const StateIndex column : {p_1_, p_2_, p_3_}) dependencies.add(row, column);
-    }
-  }
+  void declare_dependencies(DependencyList& dependencies) const override { edges_.declare_dependencies(dependencies); }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
-    rates.move(p_1_, p_3_, flow(view, p_1_, p_2_).value);
-    rates.move(p_2_, p_3_, flow(view, p_2_, p_1_).value);
+    for (const int i : {0, 1}) edges_.move(i, flow(view, i).value, rates);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    for (const auto& [side, other] : {std::pair(p_1_, p_2_), std::pair(p_2_, p_1_)}) {
-      const EdgeFlow Q = flow(view, side, other);
-      jacobian.move(side, p_3_, side, Q.over_drop - Q.over_position);
-      jacobian.move(side, p_3_, p_3_, -Q.over_drop);
-      jacobian.move(side, p_3_, other, Q.over_position);
+    for (const int i : {0, 1}) {
+      const EdgeFlow Q = flow(view, i);
+      edges_.stamp(i, i, Q.over_drop - Q.over_position, jacobian);
+      edges_.stamp_outlet(i, -Q.over_drop, jacobian);
+      edges_.stamp(i, 1 - i, Q.over_position, jacobian);
     }
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
@@ -66,39 +54,33 @@ class FlushingValve final : public HydraulicComponent {
     variables.push_back(variable("flow_2", Dimension::volume_flow));
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
-    *values++ = opening(view, p_1_, p_2_).value;
-    *values++ = opening(view, p_2_, p_1_).value;
-    *values++ = flow(view, p_1_, p_2_).value;
-    *values++ = flow(view, p_2_, p_1_).value;
+    for (const int i : {0, 1}) *values++ = opening(view, i).value;
+    for (const int i : {0, 1}) *values++ = flow(view, i).value;
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
-  void apply_parameters() noexcept override { K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop); }
+  void apply_parameters() noexcept override { edges_.set(def_.nominal_flow, def_.nominal_pressure_drop); }
 
  private:
-  // (1) with its slope over the other side's pressure
-  [[nodiscard]] ValueSlope opening(const CircuitView& view, StateIndex side, StateIndex other) const noexcept {
+  // (1) of side i with its slope over the other side's pressure
+  [[nodiscard]] ValueSlope opening(const CircuitView& view, int i) const noexcept {
     const double rise = def_.opening_pressure_rise;
-    const ValueSlope u = unit_clip((view[other] - view[side] - def_.switching_pressure) / rise, kFlushingEndWidth);
+    const double above = view[edges_.inlet(1 - i)] - view[edges_.inlet(i)] - def_.switching_pressure;
+    const ValueSlope u = unit_clip(above / rise, kFlushingEndWidth);
     return {u.value, u.slope / rise};
   }
-  // (2); over_position: over the other side's pressure by the spool
-  [[nodiscard]] EdgeFlow flow(const CircuitView& view, StateIndex side, StateIndex other) const noexcept {
-    const ValueSlope u = opening(view, side, other), r = root(view[side] - view[p_3_], transition_);
-    return {u.value * K_ * r.value, u.value * K_ * r.slope, u.slope * K_ * r.value};
+  // (2)
+  [[nodiscard]] EdgeFlow flow(const CircuitView& view, int i) const noexcept {
+    return edges_.flow(view, i, opening(view, i));
   }
 
   FlushingValveDef def_;
-  StateIndex p_1_, p_2_, p_3_;
-  double transition_;
-  double K_ = 0;
+  OutletEdges edges_;
 };
 
 void validate_flushing_valve(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {
   const FlushingValveDef& def = static_cast<const FlushingValveDef&>(component);
-  check_distinct(def.name + ".port_2", def.port_1, def.port_2, errors);
-  check_distinct(def.name + ".port_3", def.port_1, def.port_3, errors);
-  check_distinct(def.name + ".port_3", def.port_2, def.port_3, errors);
+  check_three_ports(def, errors);
 }
 
 }  // namespace

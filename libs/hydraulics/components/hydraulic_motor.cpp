@@ -7,10 +7,10 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
-#include "hydraulics/components/check_poppet.h"
 #include "hydraulics/components/cylinder_fields.h"
 #include "hydraulics/components/cylinder_rules.h"
 #include "hydraulics/components/displacement_servo.h"
+#include "hydraulics/components/shared_fields.h"
 
 namespace slew::hydraulics {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
-#include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/shared_fields.h"
 #include "hydraulics/components/spring_spool.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
@@ -105,9 +105,7 @@ class PriorityValve final : public HydraulicComponent {
 
 void validate_priority_valve(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {
   const PriorityValveDef& def = static_cast<const PriorityValveDef&>(component);
-  check_distinct(def.name + ".port_2", def.port_1, def.port_2, errors);
-  check_distinct(def.name + ".port_3", def.port_1, def.port_3, errors);
-  check_distinct(def.name + ".port_3", def.port_2, def.port_3, errors);
+  check_three_ports(def, errors);
 }
 
 }  // namespace

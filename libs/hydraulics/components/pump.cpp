@@ -8,8 +8,8 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
-#include "hydraulics/components/check_poppet.h"
 #include "hydraulics/components/displacement_servo.h"
+#include "hydraulics/components/shared_fields.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 

@@ -2,12 +2,11 @@
 #include "hydraulics/components/shuttle_valve.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
-#include "hydraulics/components/check_poppet.h"
-#include "hydraulics/components/spring_spool.h"
+#include "hydraulics/components/outlet_edges.h"
+#include "hydraulics/components/shared_fields.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -26,36 +25,26 @@ constexpr Field kShuttleValveFields[] = {
                                                  .doc = "difference of the inlets that holds the ball on a seat"}),
 };
 
-constexpr double kBallEndWidth = 0.02;  // share of the ball's way, smoothing of its ends
+constexpr double kBallEndWidth = 0.02;  // share of the ball's travel, smoothing of its ends
 
 class ShuttleValve final : public HydraulicComponent {
  public:
   ShuttleValve(const ShuttleValveDef& def, CircuitBuilder& builder)
-      : HydraulicComponent(def),
-        def_(def),
-        p_1_(builder.volume(def.port_1)),
-        p_2_(builder.volume(def.port_2)),
-        p_3_(builder.volume(def.port_3)),
-        transition_(builder.def().orifice_transition) {
+      : HydraulicComponent(def), def_(def), edges_(def, builder) {
     apply_parameters();
   }
-  void declare_dependencies(DependencyList& dependencies) const override {
-    for (const StateIndex row : {p_1_, p_2_, p_3_}) {
-      for (const StateIndex column : {p_1_, p_2_, p_3_}) dependencies.add(row, column);
-    }
-  }
+  void declare_dependencies(DependencyList& dependencies) const override { edges_.declare_dependencies(dependencies); }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
-    rates.move(p_1_, p_3_, flow(view, p_1_).value);
-    rates.move(p_2_, p_3_, flow(view, p_2_).value);
+    for (const int i : {0, 1}) edges_.move(i, flow(view, i).value, rates);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    for (const StateIndex inlet : {p_1_, p_2_}) {
-      const SeatFlow Q = flow(view, inlet);
-      jacobian.move(inlet, p_3_, inlet, Q.over_inlet);
-      jacobian.move(inlet, p_3_, other(inlet), Q.over_other);
-      jacobian.move(inlet, p_3_, p_3_, -Q.over_inlet - Q.over_other);
-      jacobian.move(inlet, p_3_, p_1_, Q.over_position);
-      jacobian.move(inlet, p_3_, p_2_, -Q.over_position);
+    for (const int i : {0, 1}) {
+      const SeatFlow Q = flow(view, i);
+      edges_.stamp(i, i, Q.over_inlet, jacobian);
+      edges_.stamp(i, 1 - i, Q.over_other, jacobian);
+      edges_.stamp_outlet(i, -Q.over_inlet - Q.over_other, jacobian);
+      edges_.stamp(i, 0, Q.over_position, jacobian);
+      edges_.stamp(i, 1, -Q.over_position, jacobian);
     }
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
@@ -64,59 +53,53 @@ class ShuttleValve final : public HydraulicComponent {
     variables.push_back(variable("flow_2", Dimension::volume_flow));
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
-    *values++ = place(view).value;
-    *values++ = flow(view, p_1_).value;
-    *values++ = flow(view, p_2_).value;
+    *values++ = position(view).value;
+    for (const int i : {0, 1}) *values++ = flow(view, i).value;
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
-  void apply_parameters() noexcept override { K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop); }
+  void apply_parameters() noexcept override { edges_.set(def_.nominal_flow, def_.nominal_pressure_drop); }
 
  private:
   // (1) with its slope over p_1 - p_2
-  [[nodiscard]] ValueSlope place(const CircuitView& view) const noexcept {
-    const double x = (view[p_1_] - view[p_2_]) / def_.switching_pressure;
+  [[nodiscard]] ValueSlope position(const CircuitView& view) const noexcept {
+    const double x = (view[edges_.inlet(0)] - view[edges_.inlet(1)]) / def_.switching_pressure;
     const ValueSlope a = unit_clip(0.5 * (1 + x), kBallEndWidth);
     return {a.value, 0.5 * a.slope / def_.switching_pressure};
   }
   struct SeatFlow {
     double value, over_inlet, over_other, over_position;  // m3/s, m3/s/Pa; the position's over p_1 - p_2
   };
-  [[nodiscard]] StateIndex other(StateIndex inlet) const noexcept { return inlet == p_1_ ? p_2_ : p_1_; }
   // (2)
-  [[nodiscard]] SeatFlow flow(const CircuitView& view, StateIndex inlet) const noexcept {
-    const ValueSlope a = place(view);
-    const bool is_first = inlet == p_1_;
-    const double KA = (is_first ? a.value : 1 - a.value) * K_;
-    const ValueSlope in = driven(view[inlet] - view[p_3_]), back = driven(view[p_3_] - view[inlet]);
-    const ValueSlope share = rise(view[p_3_] - view[other(inlet)]);
+  [[nodiscard]] SeatFlow flow(const CircuitView& view, int i) const noexcept {
+    const ValueSlope a = position(view);
+    const double KA = (i == 0 ? a.value : 1 - a.value) * edges_.K();
+    const double p_3 = view[edges_.outlet()], drop = view[edges_.inlet(i)] - p_3;
+    const ValueSlope in = driven(drop), back = driven(-drop);
+    const ValueSlope share = rise(p_3 - view[edges_.inlet(1 - i)]);
     const double drive = in.value - share.value * back.value;
     return {KA * drive, KA * (in.slope + share.value * back.slope), KA * share.slope * back.value,
-            (is_first ? a.slope : -a.slope) * K_ * drive};
+            (i == 0 ? a.slope : -a.slope) * edges_.K() * drive};
   }
   // (4)
   [[nodiscard]] ValueSlope rise(double drop) const noexcept {
-    const double t = std::clamp(drop / transition_, 0.0, 1.0);
-    return {t * t * t * (10 + t * (6 * t - 15)), 30 * t * t * (1 - t) * (1 - t) / transition_};
+    const double t = std::clamp(drop / edges_.transition(), 0.0, 1.0);
+    return {t * t * t * (10 + t * (6 * t - 15)), 30 * t * t * (1 - t) * (1 - t) / edges_.transition()};
   }
   // (3)
   [[nodiscard]] ValueSlope driven(double drop) const noexcept {
     if (drop <= 0) return {0, 0};
-    const ValueSlope r = root(drop, transition_), s = rise(drop);
+    const ValueSlope r = root(drop, edges_.transition()), s = rise(drop);
     return {s.value * r.value, s.slope * r.value + s.value * r.slope};
   }
 
   ShuttleValveDef def_;
-  StateIndex p_1_, p_2_, p_3_;
-  double transition_;
-  double K_ = 0;
+  OutletEdges edges_;
 };
 
 void validate_shuttle_valve(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {
   const ShuttleValveDef& def = static_cast<const ShuttleValveDef&>(component);
-  check_distinct(def.name + ".port_2", def.port_1, def.port_2, errors);
-  check_distinct(def.name + ".port_3", def.port_1, def.port_3, errors);
-  check_distinct(def.name + ".port_3", def.port_2, def.port_3, errors);
+  check_three_ports(def, errors);
 }
 
 }  // namespace

@@ -1,25 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spool or plate on a spring, part of a valve: its delay, its orifices, and the fields of both.
+// Spool or plate on a spring, part of a valve: its delay and its edges.
 //
 //   tau u' = u_command - u,   tau = step_response / 3                                                           (1)
-//   Q = u K root(d),   K = nominal_flow / sqrt(nominal_pressure_drop)                                           (2)
 // u position or opening [1], a state; u_command and the opening of each edge are the valve's own laws. Damping
 // outweighs the spool's mass: d x' + k x = A p_e with tau = d/k gives (1). Source: Merritt 1967, section 8.2.
 #pragma once
 
 #include <cmath>
-#include <string_view>
 
-#include "core/field.h"
 #include "hydraulics/component.h"
+#include "hydraulics/components/edge_flow.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
-
-// Flow through an edge [m3/s] with its slopes over the drop [m3/s/Pa] and over the spool's position [m3/s].
-struct EdgeFlow {
-  double value = 0, over_drop = 0, over_position = 0;
-};
 
 class SpringSpool {
  public:
@@ -54,10 +47,9 @@ class SpringSpool {
     jacobian.add(u_, falls, -d);
   }
 
-  // (2) at an opening with its slope over u
+  // at an opening with its slope over u
   [[nodiscard]] EdgeFlow edge(const ValueSlope& opening, double drop) const noexcept {
-    const ValueSlope r = root(drop, transition_);
-    return {opening.value * K_ * r.value, opening.value * K_ * r.slope, opening.slope * K_ * r.value};
+    return edge_flow(opening, K_, drop, transition_);
   }
   void stamp_edge(StateIndex from, StateIndex to, const EdgeFlow& Q, JacobianStamp& jacobian) const noexcept {
     jacobian.move(from, to, from, Q.over_drop);
@@ -70,21 +62,5 @@ class SpringSpool {
   double transition_;
   double K_ = 0, rate_ = 0;
 };
-
-[[nodiscard]] constexpr FieldOptions port_options(std::string_view doc) {
-  return {.presence = Presence::required, .reference = "volume", .doc = doc};
-}
-[[nodiscard]] constexpr FieldOptions nominal_flow_options(std::string_view doc) {
-  return {.dimension = Dimension::volume_flow,
-          .range = kPositive,
-          .presence = Presence::required,
-          .change = Change::live,
-          .doc = doc};
-}
-inline constexpr FieldOptions kNominalPressureDrop{
-    .dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of nominal_flow"};
-[[nodiscard]] constexpr FieldOptions step_response_options(std::string_view doc) {
-  return {.dimension = Dimension::time, .range = kPositive, .change = Change::live, .doc = doc};
-}
 
 }  // namespace slew::hydraulics

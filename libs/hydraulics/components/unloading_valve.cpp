@@ -3,7 +3,7 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
-#include "hydraulics/components/check_poppet.h"
+#include "hydraulics/components/shared_fields.h"
 #include "hydraulics/components/spring_spool.h"
 #include "hydraulics/smooth.h"
 

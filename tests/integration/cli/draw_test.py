@@ -11,14 +11,13 @@ import sys
 import tempfile
 import xml.etree.ElementTree
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../support"))
+from waiting import require  # noqa: E402
+
 SLEWRING, SCENES = sys.argv[1:3]
 SOME = ("truck_crane", "excavator_20t", "single_cylinder_counterbalance", "engine_two_pumps", "joints/universal",
         "forces/rope", "contact/shapes")
-
-
-def require(condition, text):
-    if not condition:
-        sys.exit(f"FAILED: {text}")
 
 
 def run(*words):

@@ -49,7 +49,7 @@ class Crane:
         self.rig, self.dash = free_port(), free_port()
         self.process = None
         # a machine under load may stop a process for longer than the scene allows
-        self.arguments = [SLEWRING, "run", SCENE, "--set", "session.give_up_after=60", "--domain", str(domain),
+        self.arguments = [SLEWRING, "run", SCENE, "--set", "session.give_up_after=60", "--domain", domain,
                           "--out", f"{folder}/runs", "--quiet", "--json", "--set", "Rig.timeout=5s",
                           "--set", f"Rig.listen=127.0.0.1:{self.rig}", "--set", f"Dash.send=127.0.0.1:{self.dash}", *more]
 
@@ -83,7 +83,7 @@ class Crane:
         """Until the session has published it; the recording then has it too."""
         def is_published():
             done = subprocess.run([SLEWRING, "watch", name, "--session", "truck_crane_devices", "--domain",
-                                   str(self.domain), "--count", "1", "--json"], capture_output=True, text=True)
+                                   self.domain, "--count", "1", "--json"], capture_output=True, text=True)
             return done.returncode == 0 and json.loads(done.stdout)["values"].get(name) == expected
 
         wait_for(f"{name} = {expected}", is_published)
@@ -91,7 +91,7 @@ class Crane:
     def stop(self, code):
         if self.process.poll() is None:
             done = subprocess.run([SLEWRING, "control", "stop", "--session", "truck_crane_devices", "--domain",
-                                   str(self.domain)], capture_output=True, text=True, timeout=DEADLINE)
+                                   self.domain], capture_output=True, text=True, timeout=DEADLINE)
             require(done.returncode == 0, f"stop: {done.stdout}{done.stderr}")
         self.process.wait(DEADLINE)
         require(self.process.returncode == code, f"the run ended with {self.process.returncode}, not {code}:\n{self.err()}")
@@ -243,7 +243,7 @@ def case_without_a_scene(folder, domain):
     link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     link.bind(("127.0.0.1", port))
     link.settimeout(DEADLINE)
-    common = ["--domain", str(domain), "--session-timeout", str(DEADLINE)]
+    common = ["--domain", domain, "--session-timeout", str(DEADLINE)]
     device = None
     try:
         crane.start()
@@ -343,7 +343,7 @@ def case_recorded_can(folder, domain):
     try:
         crane.start()
         device = subprocess.Popen([SLEWRING, "device", "run", "Panel", "--devices", "panel.yaml", "--session",
-                                   "truck_crane_devices", "--domain", str(domain), "--session-timeout", str(DEADLINE),
+                                   "truck_crane_devices", "--domain", domain, "--session-timeout", str(DEADLINE),
                                    "--json"], stdout=open(f"{folder}/panel.out", "w"), stderr=subprocess.STDOUT, cwd=folder)
         wait_for("the end of the frames", lambda: "the recorded frames are over" in text_of(f"{folder}/panel.out"))
         wait_for("neutral", lambda: "no values: its inputs go to neutral" in text_of(f"{folder}/panel.out"))
@@ -375,7 +375,7 @@ def case_can_utils(folder, domain):
         crane.start()
         for name in ("Panel", "Load"):
             others.append(subprocess.Popen([SLEWRING, "device", "run", name, "--devices", "panel.yaml", "--session",
-                                            "truck_crane_devices", "--domain", str(domain), "--session-timeout",
+                                            "truck_crane_devices", "--domain", domain, "--session-timeout",
                                             str(DEADLINE)], stdout=open(f"{folder}/{name}.out", "w"),
                                            stderr=subprocess.STDOUT, cwd=folder))
         dump = subprocess.run(["candump", "-n", "20", "slewvcan,101:7FF"], capture_output=True, text=True, timeout=DEADLINE)

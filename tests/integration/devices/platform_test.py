@@ -189,7 +189,7 @@ def felt(before, now, dt):
 
 
 def run(folder, domain, port):
-    arguments = [SLEWRING, "run", SCENE, "--domain", str(domain), "--out", f"{folder}/runs", "--quiet", "--json",
+    arguments = [SLEWRING, "run", SCENE, "--domain", domain, "--out", f"{folder}/runs", "--quiet", "--json",
                  "--input", f"{folder}/turn.csv", "--set", f"Seat.send=127.0.0.1:{port}"]
     with open(f"{folder}/turn.csv", "w", encoding="utf-8") as file:
         file.write(INPUT)

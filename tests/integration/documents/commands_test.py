@@ -11,26 +11,17 @@ next session or its end, and which ones are changed: other options, since the te
 that the document prints (the block that holds a text) as a file; a shell line before it; another exit code.
 Lines printed below a command are compared where their beginning is one of kCompared: computed values and refusals.
 """
-import fcntl, os, pathlib, re, shutil, signal, subprocess, sys, tempfile, time, tomllib
+import os, pathlib, re, shutil, signal, subprocess, sys, tempfile, time, tomllib
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from domains import take_domain  # noqa: E402
 
 kCompared = re.compile(r"range  |note  |motions  |merged  |ports  |inputs  |inertia  |equal bit for bit|slewring: refused|"
                        r"largest liftable|limited by|\d+ (?:kept|dropped)  |\d+ modes: |modes 1 to|lowest \d|static compl|"
                        r"share of the|mass \d|[xyz]  +\d|\S+\.yaml:\d+:\d+: ")
 kDeadline = 120  # s: until a session that was started is listed
 kRecording = re.compile(r"\b(\w+)/(\w+)-(\d{8}-\d{6}|\.\.\.)")
-
-
-def take_domain():
-    """A DDS domain that no other test on this host uses (tests/support/test_domain.h)."""
-    for i in range(99):
-        number = 1 + (os.getpid() + i) % 99
-        file = os.open(f"{tempfile.gettempdir()}/slewring-test-domain-{number}", os.O_RDONLY | os.O_CREAT, 0o666)
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            return str(number)
-        except OSError:
-            os.close(file)
-    sys.exit("FAILED: all test domains are in use")
 
 
 def code_lines(text):

@@ -138,6 +138,13 @@ async function drivesByKeysAndGamepad(page) {
   await waitFor("the key", async () => (await raw(page, "Input_Lift")) === -1);
   await page.keyboard.up("KeyS");
   await waitFor("neutral after the key", async () => (await raw(page, "Input_Lift")) === 0);
+  // released while a command key is down
+  await page.keyboard.down("KeyS");
+  await waitFor("the key again", async () => (await raw(page, "Input_Lift")) === -1);
+  await page.keyboard.down("Control");
+  await page.keyboard.up("KeyS");
+  await page.keyboard.up("Control");
+  await waitFor("neutral after a command", async () => (await raw(page, "Input_Lift")) === 0);
   // axis 1 of the standard layout points down; half of the way behind a dead zone of 0.12
   await page.evaluate(() => (window.axes = [0, -0.56, 0, 0]));
   await waitFor("the gamepad", async () => Math.abs((await raw(page, "Input_Lift")) - 0.5) < 2e-3);

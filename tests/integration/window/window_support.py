@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the cases of window_test.py share: programs, packages, requests, and a client of the protocol."""
 import csv
-import fcntl
 import hashlib
 import http.client
 import json
@@ -12,7 +11,6 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../support"))
@@ -21,19 +19,6 @@ from waiting import DEADLINE, require, skip, text_of, wait_for  # noqa: E402
 SOURCES, SLEWRING, PACKAGES, CASE = sys.argv[1:5]
 HERE = os.path.dirname(os.path.abspath(__file__))
 SESSION = "window_test"
-
-
-def take_domain():
-    """A DDS domain that no other test on this host uses (tests/support/test_domain.h)."""
-    for i in range(99):
-        number = 1 + (os.getpid() + i) % 99
-        file = os.open(f"{tempfile.gettempdir()}/slewring-test-domain-{number}", os.O_RDONLY | os.O_CREAT, 0o666)
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            return str(number)
-        except OSError:
-            os.close(file)
-    sys.exit("FAILED: all test domains are in use")
 
 
 def install_packages(source=HERE, files=None):

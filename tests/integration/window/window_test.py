@@ -18,11 +18,11 @@ import xml.etree.ElementTree
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../support"))
+from domains import take_domain  # noqa: E402
 from waiting import DEADLINE, require, text_of, wait_for  # noqa: E402
 from window_support import (  # noqa: E402
     CASE, Client, HERE, PACKAGES, Program, SESSION, SLEWRING, SOURCES, UPGRADE, copy_page, install_packages,
-    need_page, open_websocket, record, request, run_client, run_page, send, send_raw, start_scene, take_domain,
-    values_of)
+    need_page, open_websocket, record, request, run_client, run_page, send, send_raw, start_scene, values_of)
 
 
 def page_live(folder, case="live"):

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/status.h"
+#include "observer/silence_watch.h"
 #include "transport/cdr/codec.h"
 #include "transport/topics.h"
 
@@ -394,6 +395,24 @@ TEST_F(SessionViewTest, RubbishIsPassedOver) {
   const std::vector<std::byte> rubbish(17, std::byte{0xAB});
   for (std::size_t topic = 0; topic < wire::kTopics; ++topic) view.take(static_cast<wire::Topic>(topic), rubbish);
   EXPECT_TRUE(view.variables().empty());
+}
+
+TEST_F(SessionViewTest, ASessionWithoutHealthMessagesFallsSilentOnceAndComesBack) {
+  SessionView view("crane");
+  take_message(view, session_);
+  SilenceWatch silence;
+  std::int64_t now_ns = 1'000'000'000;
+  const auto pass = [&](SimDuration time) { return silence.has_changed(view, now_ns += time.ns); };
+  EXPECT_FALSE(pass({}));
+  EXPECT_FALSE(pass(kSilentSession));
+  EXPECT_TRUE(pass(milliseconds(1)));
+  EXPECT_TRUE(silence.is_silent());
+  EXPECT_FALSE(pass(milliseconds(1)));
+  wire::Health health;
+  health.header = header(Role::mechanics);
+  take_message(view, health);
+  EXPECT_TRUE(pass(milliseconds(1)));
+  EXPECT_FALSE(silence.is_silent());
 }
 
 }  // namespace session_view_test

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace slew::recording {
 namespace state_hashes_test {
 
@@ -55,6 +57,15 @@ TEST(StateHashes, GoThroughTheFile) {
   EXPECT_EQ(read.digest, written.digest);
   bytes.pop_back();
   EXPECT_FALSE(decode_state_hashes(bytes, read)) << "cut";
+}
+
+// a reader counts from the first to the last step
+TEST(StateHashes, OfAStepThatHasNoNextOneAreRefused) {
+  StateHashes last = of({std::numeric_limits<StepIndex>::max()});
+  Bytes bytes;
+  encode_state_hashes(last, bytes);
+  StateHashes read;
+  EXPECT_FALSE(decode_state_hashes(bytes, read));
 }
 
 TEST(StateHashes, OfStepsOfTwoBlocksOrNoneAreRefused) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The values that this page sends to the inputs, and the holders of the inputs.
 //
-// Each source (pointer, keyboard, gamepad, a table of recorded values) has a wish for an input; the one farthest from neutral counts. An input is
-// leased when it first leaves neutral. While it is away from neutral, and for kTailMs after, its value is sent every
-// kSendEveryMs. A page that is hidden or suspended sends nothing more: the window then puts the input to neutral.
+// Each source (pointer, keyboard, gamepad, a table of recorded values) has a wish for an input; the one farthest from
+// neutral counts. An input is leased when it first leaves neutral. While it is away from neutral, and for kTailMs after,
+// its value is sent every kSendEveryMs. A page that is hidden or suspended sends nothing more: the window then puts the
+// input to neutral.
 import { Emitter } from "../dom";
 import type { Session } from "../session";
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Inputs by keys: while the keyboard is switched on and no field has the focus.
+// Inputs by keys: while the keyboard is switched on and no field has the focus. With Ctrl, Alt or the system's key they
+// are commands of the browser.
 import { Emitter } from "../dom";
 import type { Driver } from "./driver";
 
@@ -55,15 +56,12 @@ export class Keyboard {
   }
 
   #take(event: KeyboardEvent, isDown: boolean): void {
-    if (
-      event.defaultPrevented ||
-      !this.#isOn ||
-      event.ctrlKey ||
-      event.metaKey ||
-      event.altKey ||
-      (isDown && this.#isTyping())
-    )
-      return;
+    if (!this.#isOn) return;
+    if (isDown) {
+      // not all browsers report the release of a key during a command: every input goes to neutral
+      if (event.ctrlKey || event.metaKey || event.altKey) return this.#releaseAll();
+      if (event.defaultPrevented || this.#isTyping()) return;
+    }
     const at = pairs.findIndex((pair) => (pair as readonly string[]).includes(event.code));
     if (at < 0 || at >= this.#inputs.length) return;
     event.preventDefault();

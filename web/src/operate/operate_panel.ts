@@ -31,6 +31,7 @@ export class OperatePanel {
   #record: InputRecord;
   #driven: string[] = []; // names of the inputs that this page may drive
   #rows: Row[] = [];
+  #stopWatching: (() => void)[] = []; // of the inputs in the list
   #list = h("div", { class: "inputs" });
   #sticks = h("div", { class: "sticks", hidden: true });
   #map = h("div", { class: "map", hidden: true });
@@ -91,6 +92,7 @@ export class OperatePanel {
     const names = JSON.stringify([session.maySteer, session.isRecording, inputs]);
     if (names === this.#names) return;
     this.#names = names;
+    for (const stop of this.#stopWatching.splice(0)) stop();
     this.#rows = [];
     this.#list.replaceChildren();
     const driven = session.maySteer ? inputs.filter((input) => !input.is_lockstep) : [];
@@ -134,7 +136,7 @@ export class OperatePanel {
         isDriven && button,
       ),
     );
-    session.watch(name);
+    this.#stopWatching.push(session.watch(name));
   }
 
   async #changeLease(input: string): Promise<void> {

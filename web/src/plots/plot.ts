@@ -232,6 +232,7 @@ export class Plot {
   async #saveCsv(): Promise<void> {
     const { session } = this.#context;
     const curves = this.#curves;
+    if (curves.length === 0) return;
     try {
       const table = await this.#store.exactTable(curves, ...this.#axis.range);
       const heads = curves.map(({ name, recording }) => {

@@ -61,6 +61,13 @@ export class PointMarks {
     return true;
   }
 
+  // After a change of the machine's frames.
+  showAgain(): void {
+    const points = this.#shown;
+    this.#shown = [];
+    this.show(points);
+  }
+
   // The nearest one that the ray meets.
   pick(ray: THREE.Raycaster): NamedPoint | undefined {
     return ray.intersectObjects(this.#marks, false)[0]?.object.userData["point"] as NamedPoint | undefined;

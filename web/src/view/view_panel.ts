@@ -127,6 +127,7 @@ export class ViewPanel {
 
   #takeScene(): void {
     this.#bending.rebuild();
+    this.#points.showAgain();
     this.#offerBodies();
     this.#highlight();
     if (this.#isFramed) this.#setExtent();
