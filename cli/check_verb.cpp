@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "analysis/coupling_check.h"
 #include "analysis/description/liftable_load.h"
+#include "analysis/start_check.h"
 #include "cli/problems_json.h"
 #include "cli/verbs.h"
 #include "core/display.h"
@@ -87,7 +87,7 @@ ExitCode check(const CheckOptions& options) {
     check_payload(scene);
     std::vector<std::string> warnings = scene.warnings;
     for (std::string& warning : session::unrecorded_plots(scene)) warnings.push_back(std::move(warning));
-    for (std::string& warning : analysis::coupling_warnings(scene, session)) warnings.push_back(std::move(warning));
+    for (std::string& warning : analysis::start_warnings(scene, session)) warnings.push_back(std::move(warning));
     const double bytes = session::recorded_bytes(scene, session::recorded_numbers(scene, session));
     if (options.is_json) {
       fmt::print("{}\n", Json({{"ok", true},

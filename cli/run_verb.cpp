@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "analysis/coupling_check.h"
+#include "analysis/start_check.h"
 #include "cli/keyboard.h"
 #include "cli/problems_json.h"
 #include "cli/run_report.h"
@@ -148,7 +148,7 @@ ExitCode run_session(session::RunOptions options, const io_node::SessionScene& s
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
   for (const std::string& warning : session::unrecorded_plots(scene))
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
-  for (const std::string& warning : analysis::coupling_warnings(scene))
+  for (const std::string& warning : analysis::start_warnings(scene))
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
   if (options.session.session.empty()) options.session.session = node::session_name_of(scene.name);
   if (options.is_in_process && !options.remote.empty()) {

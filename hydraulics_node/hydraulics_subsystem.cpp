@@ -78,6 +78,7 @@ bool HydraulicsSubsystem::first_sample(coupling::OwnSample&) noexcept {
 
 Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coupling::OwnSample& sample) {
   std::array<double, kMaxPorts> x{}, v{}, F{};
+  std::span<const double> W;
   if (m_ > 0) {
     if (partners.mechanism == nullptr || partners.mechanism->x.size() != m_) {
       return Status::error(ExitCode::failed, "mechanics states " +
@@ -88,15 +89,16 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
     const coupling::MechanismSample& mechanism = *partners.mechanism;
     std::copy(mechanism.x.begin(), mechanism.x.end(), x.begin());
     std::copy(mechanism.v.begin(), mechanism.v.end(), v.begin());
+    W = mechanism.W.span();
     if (scene_.hydraulics.start == hydraulics::StartState::equilibrium &&
-        !coupling::static_forces(mechanism.W.span(), mechanism.a_free.span(), {F.data(), m_})) {
+        !coupling::static_forces(W, mechanism.a_free.span(), {F.data(), m_})) {
       return Status::error(ExitCode::failed, std::string(coupling::kNoStaticForces));
     }
     if (scene_.hydraulics.start == hydraulics::StartState::equilibrium) {
-      if (Status status = check_pressures(scene_, *circuit_, {F.data(), m_}); !status.is_ok()) return status;
+      if (Status status = check_pressures(scene_, *circuit_, {F.data(), m_}, W); !status.is_ok()) return status;
     }
   }
-  integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_});
+  integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_}, W);
   apply_levels();
   integrator_->refresh();
   publish(sample.actuators, 0, false);

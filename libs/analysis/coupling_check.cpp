@@ -130,11 +130,4 @@ std::vector<std::string> coupling_warnings(const scene::Scene& scene, const sess
   return warnings;
 }
 
-std::vector<std::string> coupling_warnings(const scene::Scene& scene) {
-  if (scene.ports.empty()) return {};
-  session::DirectSession session(scene);
-  if (!session.start().is_ok()) return {};
-  return coupling_warnings(scene, session);
-}
-
 }  // namespace slew::analysis

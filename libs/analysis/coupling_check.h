@@ -15,7 +15,4 @@ namespace slew::analysis {
 [[nodiscard]] std::vector<std::string> coupling_warnings(const scene::Scene& scene,
                                                          const session::DirectSession& session);
 
-// The same for a scene that is not started yet; none when it cannot start, which its run reports.
-[[nodiscard]] std::vector<std::string> coupling_warnings(const scene::Scene& scene);
-
 }  // namespace slew::analysis

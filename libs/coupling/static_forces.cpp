@@ -6,46 +6,15 @@
 
 #include "core/check.h"
 #include "coupling/samples.h"
+#include "math/range_projector.h"
 #include "math/small_solve.h"
 
 namespace slew::coupling {
 
 namespace {
 
-// share of the earlier pivots below which a port's remaining mobility counts as zero
-constexpr double kRankTolerance = 1e-10;
 // limit of the remaining accelerations, relative to the largest free one
 constexpr double kResidualTolerance = 1e-8;
-
-// W = L L^T by Cholesky with complete pivoting; L: m x r, row-major with m columns.
-std::size_t factorise(std::span<const double> W, std::size_t m, PortMatrix& L) noexcept {
-  L.resize(m * m);
-  std::fill(L.begin(), L.end(), 0.0);
-  PortArray left;
-  left.resize(m);
-  for (std::size_t i = 0; i < m; ++i) left[i] = W[i * m + i];
-  for (std::size_t r = 0; r < m; ++r) {
-    std::size_t pivot = m;
-    double largest = kRankTolerance;
-    for (std::size_t i = 0; i < m; ++i) {
-      const double share = W[i * m + i] > 0 ? left[i] / W[i * m + i] : 0;
-      if (share > largest) {
-        largest = share;
-        pivot = i;
-      }
-    }
-    if (pivot == m) return r;
-    const double root = std::sqrt(left[pivot]);
-    for (std::size_t i = 0; i < m; ++i) {
-      double sum = W[i * m + pivot];
-      for (std::size_t k = 0; k < r; ++k) sum -= L[i * m + k] * L[pivot * m + k];
-      L[i * m + r] = sum / root;
-    }
-    for (std::size_t i = 0; i < m; ++i) left[i] -= L[i * m + r] * L[i * m + r];
-    left[pivot] = 0;
-  }
-  return m;
-}
 
 // The F of least norm with W F = b: F = L (L^T L)^-2 L^T b.
 bool share_between_ports(const PortMatrix& L, std::size_t m, std::size_t rank, std::span<double> F) noexcept {
@@ -92,7 +61,10 @@ bool static_forces(std::span<const double> W, std::span<const double> a_free, st
   SLEW_CHECK(m <= kMaxPorts && F.size() == m && W.size() == m * m);
   for (std::size_t i = 0; i < m; ++i) F[i] = -a_free[i];
   PortMatrix L;
-  const std::size_t rank = factorise(W, m, L);
+  PortArray left;
+  L.resize(m * m);
+  left.resize(m);
+  const std::size_t rank = math::pivoted_cholesky(W, L.span(), left.span());
   if (rank < m) return share_between_ports(L, m, rank, F) && holds(W, a_free, F);
   PortMatrix matrix;
   matrix.resize(m * m);

@@ -29,6 +29,7 @@
 #include "hydraulics/hydraulics_def.h"
 #include "hydraulics/line_chambers.h"
 #include "hydraulics/oil.h"
+#include "hydraulics/start_pressures.h"
 #include "hydraulics/vapour.h"
 
 namespace slew::hydraulics {
@@ -88,16 +89,18 @@ class Circuit {
   [[nodiscard]] double lowest_pressure() const noexcept { return oil_.lowest_pressure(); }
 
   // start states [y without x and v; the caller sets those]
-  // Equilibrium: linear cylinders hold F with the rod side at the return pressure, slew cylinders around their mean
-  // pressure; when a pressure would fall below 1 bar the pair is raised. Volumes of parallel cylinders take the mean.
-  // Components with states of their own begin at rest under these pressures.
-  void start_in_equilibrium(std::span<const double> F, std::span<double> y) const;
+  // Equilibrium: the pressures hold F (start_pressures.h), W is the mobility of the actuators' coordinates, empty
+  // where each has its own. Components with states of their own begin at rest under these pressures.
+  void start_in_equilibrium(std::span<const double> F, std::span<double> y, std::span<const double> W = {}) const;
+  // Part of F that the pressures of common volumes cannot hold, by actuator [N or Nm]. Allocates.
+  [[nodiscard]] std::vector<double> unheld_at_start(std::span<const double> F, std::span<const double> W) const;
   // The volume whose start pressure exceeds its limit most: above the pressure at which its relief and shock valves are
   // fully open, above kMostHeld without any, or below zero. None: all hold.
-  [[nodiscard]] std::optional<StartDemand> demand_beyond_limits(std::span<const double> F) const;
+  [[nodiscard]] std::optional<StartDemand> demand_beyond_limits(std::span<const double> F,
+                                                                std::span<const double> W = {}) const;
   void start_at_initial_pressures(std::span<double> y) const;
   // The start that the Def selects.
-  void start(std::span<const double> F, std::span<double> y) const;
+  void start(std::span<const double> F, std::span<double> y, std::span<const double> W = {}) const;
 
   // inputs
   [[nodiscard]] int find_control(std::string_view component) const noexcept;  // -1: none
@@ -238,14 +241,13 @@ class Circuit {
     std::size_t begin = 0, end = 0;  // in pieces_
   };
 
-  // Mean and number of the pressures that the actuators on a volume require; absolute, of any size.
-  struct Asked {
-    double sum = 0;
-    int actuators = 0;
-    int last = 0;  // last of the volume's actuators
-    [[nodiscard]] double pressure() const noexcept { return sum / actuators; }
+  struct Equilibrium {
+    std::vector<double> held_by_brakes;  // N or Nm, by actuator
+    StartPressures start;
   };
-  [[nodiscard]] std::vector<Asked> asked_in_equilibrium(std::span<const double> F) const;
+  // y: initial pressures, supply at the pump pressure.
+  [[nodiscard]] Equilibrium equilibrium(std::span<const double> F, std::span<const double> W,
+                                        std::span<double> y) const;
   // Forces of the brakes at an equilibrium start; y has the start pressures.
   [[nodiscard]] std::vector<double> held_by_brakes(std::span<const double> F, const double* y) const;
   void start_supply(std::span<double> y) const;

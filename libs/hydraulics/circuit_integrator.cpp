@@ -125,11 +125,11 @@ CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
   refresh();
 }
 
-void CircuitIntegrator::start(std::span<const double> x, std::span<const double> v,
-                              std::span<const double> F) noexcept {
+void CircuitIntegrator::start(std::span<const double> x, std::span<const double> v, std::span<const double> F,
+                              std::span<const double> W) noexcept {
   SLEW_CHECK(x.size() == m_ && v.size() == m_ && F.size() == m_);
   for (std::size_t j = 0; j < m_; ++j) circuit_.lump_line(static_cast<int>(j), y_.data());
-  circuit_.start(F, y_);
+  circuit_.start(F, y_, W);
   for (std::size_t j = 0; j < m_; ++j) {
     y_[static_cast<std::size_t>(circuit_.position(static_cast<int>(j)))] = x[j];
     y_[static_cast<std::size_t>(circuit_.speed(static_cast<int>(j)))] = v[j];

@@ -71,8 +71,10 @@ class CircuitIntegrator final : private math::StiffSystem {
   // circuit outlives the integrator. def: validated.
   CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def);
 
-  // Start state as the Def selects; F: static forces of the actuators [N]. Clears the step size and failures.
-  void start(std::span<const double> x, std::span<const double> v, std::span<const double> F) noexcept;
+  // Start state as the Def selects; F: static forces of the actuators [N]; W: as Circuit::start_in_equilibrium().
+  // Clears the step size and failures.
+  void start(std::span<const double> x, std::span<const double> v, std::span<const double> F,
+             std::span<const double> W = {}) noexcept;
 
   // Stability of rk4 at the present state, for steps of H seconds; all zero for the other solvers, which have no limit.
   [[nodiscard]] ExplicitStability explicit_stability(double H, const PistonMotion& motion);

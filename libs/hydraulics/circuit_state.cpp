@@ -2,7 +2,6 @@
 // Start states of a circuit, and the volume-consistent motion of its pistons.
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/reductions.h"
 #include "hydraulics/circuit.h"
@@ -10,30 +9,8 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr double kLowestStart = 1e5;     // Pa; below it an anti-cavitation valve would be open from the start
 constexpr double kLargestChange = 0.02;  // share of a pressure, per part of a piston's displacement
 constexpr int kMostParts = 64;
-
-struct Pair {
-  double a, b;
-};
-
-// Pressures that hold F; b is `aim`, or higher if a would be too low. Pre-condition here and below: a setting of 1.
-Pair held_by_return_side(const Actuator& actuator, double F, double aim) noexcept {
-  Pair p{(F + aim * actuator.area_b) / actuator.area_a, aim};
-  if (p.a < kLowestStart && actuator.area_b > 0) {
-    p.a = kLowestStart;
-    p.b = (p.a * actuator.area_a - F) / actuator.area_b;
-  }
-  return p;
-}
-
-// Pressures that hold F around `mean`, which is raised if one would be too low.
-Pair held_around_mean(const Actuator& actuator, double F, double mean) noexcept {
-  const double half = F / (actuator.area_a + actuator.area_b);
-  mean = std::max(mean, kLowestStart + std::fabs(half));
-  return {mean + half, mean - half};
-}
 
 }  // namespace
 
@@ -48,24 +25,16 @@ void Circuit::start_components(std::span<double> y) const {
   for (const HydraulicComponent* component : active_) component->start(y.data());
 }
 
-std::vector<Circuit::Asked> Circuit::asked_in_equilibrium(std::span<const double> F) const {
-  std::vector<Asked> asked(volume_name_.size());
-  for (std::size_t j = 0; j < actuators_.size(); ++j) {
-    const Actuator& actuator = actuators_[j];
-    const std::size_t a = static_cast<std::size_t>(actuator.port_a), b = static_cast<std::size_t>(actuator.port_b);
-    const double F_full = F[j] / actuator.setting.at_start;  // of the whole areas
-    Pair p = actuator.start == StartRule::return_pressure ? held_by_return_side(actuator, F_full, start_return_)
-                                                          : held_around_mean(actuator, F_full, start_slew_);
-    // a chamber on a fixed volume keeps its pressure, the other one holds
-    if (is_fixed_[b]) p.a = (F_full + initial_pressure_[b] * actuator.area_b) / actuator.area_a;
-    if (is_fixed_[a] && actuator.area_b > 0) p.b = (initial_pressure_[a] * actuator.area_a - F_full) / actuator.area_b;
-    for (const auto& [volume, pressure] : {std::pair(a, p.a), std::pair(b, p.b)}) {
-      asked[volume].sum += pressure;
-      ++asked[volume].actuators;
-      asked[volume].last = static_cast<int>(j);
-    }
-  }
-  return asked;
+// The pressures hold what the brakes leave of the forces.
+Circuit::Equilibrium Circuit::equilibrium(std::span<const double> F, std::span<const double> W,
+                                          std::span<double> y) const {
+  start_at_initial_pressures(y);
+  start_supply(y);
+  Equilibrium found{held_by_brakes(F, y.data()), {}};
+  std::vector<double> by_pressure(F.begin(), F.end());
+  for (std::size_t j = 0; j < by_pressure.size(); ++j) by_pressure[j] -= found.held_by_brakes[j];
+  found.start = start_pressures({actuators_, is_fixed_, initial_pressure_, start_return_, start_slew_}, by_pressure, W);
+  return found;
 }
 
 void Circuit::start_supply(std::span<double> y) const {
@@ -86,36 +55,31 @@ std::vector<double> Circuit::held_by_brakes(std::span<const double> F, const dou
   return held;
 }
 
-void Circuit::start_in_equilibrium(std::span<const double> F, std::span<double> y) const {
-  start_at_initial_pressures(y);
-  start_supply(y);
-  const std::vector<double> held = held_by_brakes(F, y.data());
-  std::vector<double> by_pressure(F.begin(), F.end());
-  for (std::size_t j = 0; j < held.size(); ++j) by_pressure[j] -= held[j];
-  // a volume shared by several cylinders takes the mean of the required pressures
-  const std::vector<Asked> asked = asked_in_equilibrium(by_pressure);
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    if (asked[i].actuators > 0 && is_fixed_[i] == 0) y[i] = std::max(asked[i].pressure(), floor_);
+void Circuit::start_in_equilibrium(std::span<const double> F, std::span<double> y, std::span<const double> W) const {
+  const Equilibrium found = equilibrium(F, W, y);
+  for (std::size_t i = 0; i < is_fixed_.size(); ++i) {
+    if (found.start.actuator[i] >= 0 && is_fixed_[i] == 0) y[i] = std::max(found.start.pressure[i], floor_);
   }
   start_components(y);
-  for (std::size_t j = 0; j < held.size(); ++j) {
+  for (std::size_t j = 0; j < actuators_.size(); ++j) {
     const Brake& brake = actuators_[j].brake;
-    if (brake.state >= 0) y[static_cast<std::size_t>(brake.state)] = held[j] / brake.force;
+    if (brake.state >= 0) y[static_cast<std::size_t>(brake.state)] = found.held_by_brakes[j] / brake.force;
   }
 }
 
-std::optional<StartDemand> Circuit::demand_beyond_limits(std::span<const double> F) const {
+std::vector<double> Circuit::unheld_at_start(std::span<const double> F, std::span<const double> W) const {
+  std::vector<double> y(static_cast<std::size_t>(size_));
+  return equilibrium(F, W, y).start.missing;
+}
+
+std::optional<StartDemand> Circuit::demand_beyond_limits(std::span<const double> F, std::span<const double> W) const {
   std::optional<StartDemand> worst;
   double farthest = 0;
-  std::vector<double> y(static_cast<std::size_t>(size_)), by_pressure(F.begin(), F.end());
-  start_at_initial_pressures(y);
-  start_supply(y);
-  const std::vector<double> held = held_by_brakes(F, y.data());
-  for (std::size_t j = 0; j < held.size(); ++j) by_pressure[j] -= held[j];
-  const std::vector<Asked> asked = asked_in_equilibrium(by_pressure);
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    if (asked[i].actuators == 0 || is_fixed_[i] != 0) continue;
-    StartDemand demand{static_cast<int>(i), asked[i].last, asked[i].pressure(), kMostHeld, {}};
+  std::vector<double> y(static_cast<std::size_t>(size_));
+  const StartPressures start = equilibrium(F, W, y).start;
+  for (std::size_t i = 0; i < is_fixed_.size(); ++i) {
+    if (start.actuator[i] < 0 || is_fixed_[i] != 0) continue;
+    StartDemand demand{static_cast<int>(i), start.actuator[i], start.pressure[i], kMostHeld, {}};
     for (const Relief& relief : reliefs_) {
       if (relief.volume != static_cast<int>(i)) continue;
       const double limit = initial_pressure_[static_cast<std::size_t>(relief.outlet)] + relief.fully_open;
@@ -131,9 +95,9 @@ std::optional<StartDemand> Circuit::demand_beyond_limits(std::span<const double>
   return worst;
 }
 
-void Circuit::start(std::span<const double> F, std::span<double> y) const {
+void Circuit::start(std::span<const double> F, std::span<double> y, std::span<const double> W) const {
   if (start_ == StartState::equilibrium) {
-    start_in_equilibrium(F, y);
+    start_in_equilibrium(F, y, W);
   } else {
     start_at_initial_pressures(y);
   }

@@ -173,11 +173,12 @@ std::string SceneEquations::touching_pair() const {
 // ---- start and changes ----------------------------------------------------------------------------------------
 
 // line forces that would hold the ports where they are, joint laws included: W F = -(a_free + W_ar f_r)
-Status SceneEquations::find_static_forces(std::span<double> F) {
+Status SceneEquations::find_static_forces(std::span<double> F, std::vector<double>& mobility) {
   const std::size_t m = ports_.size(), rows = model_.rows.size();
   multibody::evaluate(model_, state_, workspace_);
   const std::span<const double> W = multibody::row_mobility(workspace_);
-  std::vector<double> matrix(m * m), a_free(m);
+  mobility.resize(m * m);
+  std::vector<double> a_free(m);
   for (std::size_t i = 0; i < m; ++i) {
     double a = workspace_.row_a_free[i];
     for (std::size_t r = m; r < rows; ++r) {
@@ -185,9 +186,9 @@ Status SceneEquations::find_static_forces(std::span<double> F) {
            multibody::joint_force(model_, r, workspace_.row_x, workspace_.row_v, 0, bristle_of(r)).force;
     }
     a_free[i] = ports_[i].ratio * a;
-    for (std::size_t j = 0; j < m; ++j) matrix[i * m + j] = ports_[i].ratio * W[i * rows + j] * ports_[j].ratio;
+    for (std::size_t j = 0; j < m; ++j) mobility[i * m + j] = ports_[i].ratio * W[i * rows + j] * ports_[j].ratio;
   }
-  if (coupling::static_forces(matrix, a_free, F)) return Status::ok();
+  if (coupling::static_forces(mobility, a_free, F)) return Status::ok();
   return Status::error(ExitCode::failed, std::string(coupling::kNoStaticForces));
 }
 
@@ -202,10 +203,11 @@ Status SceneEquations::start(std::span<double> y) {
   std::fill(control_slope_.begin(), control_slope_.end(), 0.0);
   if (circuit_ == nullptr) return Status::ok();
   std::fill(F_.begin(), F_.end(), 0.0);
+  std::vector<double> mobility;
   if (start_ == hydraulics::StartState::equilibrium) {
-    if (const Status status = find_static_forces(F_); !status.is_ok()) return status;
+    if (const Status status = find_static_forces(F_, mobility); !status.is_ok()) return status;
   }
-  circuit_->start(F_, circuit_y_);
+  circuit_->start(F_, circuit_y_, mobility);
   std::copy_n(circuit_y_.begin(), component_ - p_, y.begin() + static_cast<std::ptrdiff_t>(p_));
   std::copy(circuit_y_.begin() + circuit_->first_component_state(), circuit_y_.end(),
             y.begin() + static_cast<std::ptrdiff_t>(component_));

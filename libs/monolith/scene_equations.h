@@ -135,7 +135,7 @@ class SceneEquations {
   }
   void take_controls(double t) noexcept;
   void evaluate_ports() noexcept;
-  [[nodiscard]] Status find_static_forces(std::span<double> F);
+  [[nodiscard]] Status find_static_forces(std::span<double> F, std::vector<double>& mobility);
   void list_variables();
 
   multibody::Model model_;

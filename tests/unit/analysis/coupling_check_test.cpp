@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Warnings about the step and the coupling levels before a run.
-#include "analysis/coupling_check.h"
+#include "analysis/start_check.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace slew::analysis {
 namespace coupling_check_test {
 
 std::vector<std::string> warnings(const std::string& file, const scene::Overrides& overrides) {
-  return coupling_warnings(scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + file, overrides));
+  return start_warnings(scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + file, overrides));
 }
 
 TEST(CouplingCheck, HasNoWarningForTheScenes) {
