@@ -93,6 +93,16 @@ bool static_line_forces(multibody::Model& model, const multibody::State& state, 
   return coupling::static_forces(W.span(), a_free.span(), F);
 }
 
+std::vector<double> port_mobility(const multibody::Model& model, const multibody::Workspace& ws,
+                                  std::span<const double> ratio) {
+  const std::size_t m = ratio.size(), rows = model.rows.size();
+  std::vector<double> W(m * m);
+  for (std::size_t i = 0; i < m; ++i) {
+    for (std::size_t j = 0; j < m; ++j) W[i * m + j] = ratio[i] * ws.row_W[i * rows + j] * ratio[j];
+  }
+  return W;
+}
+
 void payload_slopes(multibody::Model& model, const multibody::State& state, multibody::Workspace& ws,
                     std::span<const double> ratio, int payload, double mass, std::span<double> slopes) noexcept {
   const std::size_t m = ratio.size();

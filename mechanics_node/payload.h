@@ -28,6 +28,10 @@ namespace slew::mechanics_node {
                                       std::span<const double> ratio, int payload, double mass,
                                       std::span<double> F) noexcept;
 
+// W of (1), row-major, of the workspace that static_line_forces() evaluated. Allocates.
+[[nodiscard]] std::vector<double> port_mobility(const multibody::Model& model, const multibody::Workspace& ws,
+                                                std::span<const double> ratio);
+
 // (2) [m/s2] at `mass`; zero where no forces hold the ports, or without payload. The payload of the model keeps 1 kg
 // more. Does not allocate.
 void payload_slopes(multibody::Model& model, const multibody::State& state, multibody::Workspace& ws,

@@ -50,11 +50,28 @@ hydraulics::Stall LargestForces::stall(std::size_t command) const {
 }
 
 LargestForce LargestForces::of(std::size_t port, double direction) const {
-  LargestForce largest;
+  std::vector<double> weights(circuit_.actuators().size(), 0.0);
+  weights[port] = direction;
+  return of_command(port, direction, best_command(weights));
+}
+
+std::size_t LargestForces::best_command(std::span<const double> weights) const {
+  const auto sum = [&](std::size_t command) {
+    double of_ports = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) of_ports += weights[i] * stalls_[command].forces[i];
+    return of_ports;
+  };
+  std::size_t best = 0;
   for (std::size_t c = 1; c < stalls_.size(); ++c) {
-    if (direction * stalls_[c].forces[port] > direction * stalls_[largest.command].forces[port]) largest.command = c;
+    if (sum(c) > sum(best)) best = c;
   }
-  const hydraulics::Stall& best = stalls_[largest.command];
+  return best;
+}
+
+LargestForce LargestForces::of_command(std::size_t port, double direction, std::size_t command) const {
+  LargestForce largest;
+  largest.command = command;
+  const hydraulics::Stall& best = stalls_[command];
   const hydraulics::Actuator& actuator = circuit_.actuators()[port];
   const int chamber = direction > 0 ? actuator.port_a : actuator.port_b;
   largest.chamber = circuit_.volume_name(chamber);
@@ -67,6 +84,37 @@ LargestForce LargestForces::of(std::size_t port, double direction) const {
   // friction reduces the force and does not reverse it
   largest.force = F - direction * std::min(std::fabs(F), largest_friction(law, F, direction));
   return largest;
+}
+
+int LargestForces::shared_volume(std::size_t port, std::size_t other) const {
+  const hydraulics::Actuator &one = circuit_.actuators()[port], &two = circuit_.actuators()[other];
+  for (const int volume : {one.port_a, one.port_b}) {
+    if (!circuit_.is_fixed(volume) && (volume == two.port_a || volume == two.port_b)) return volume;
+  }
+  return -1;
+}
+
+bool LargestForces::is_held(int volume, std::size_t command) {
+  const auto [found, is_new] = is_held_.try_emplace({command, volume}, true);
+  if (is_new) {
+    found->second =
+        hydraulics::unheld_volumes(scene_.hydraulics, strokes_, commands_[command].held, {&volume, 1}).empty();
+  }
+  return found->second;
+}
+
+int LargestForces::unheld_between(std::size_t port, std::size_t other, double direction, std::size_t command) {
+  if (port == other) return -1;
+  const hydraulics::Actuator &one = circuit_.actuators()[port], &two = circuit_.actuators()[other];
+  const int loaded = direction > 0 ? one.port_a : one.port_b;
+  for (const int volume : {one.port_a, one.port_b}) {
+    const bool is_shared = volume == two.port_a || volume == two.port_b;
+    const bool is_between =
+        (volume == one.port_a && volume == two.port_b) || (volume == one.port_b && volume == two.port_a);
+    if (!is_shared || circuit_.is_fixed(volume) || !(is_between || volume == loaded)) continue;
+    if (!is_held(volume, command)) return volume;
+  }
+  return -1;
 }
 
 }  // namespace slew::analysis

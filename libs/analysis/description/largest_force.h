@@ -8,8 +8,10 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hydraulics/circuit.h"
@@ -36,8 +38,19 @@ class LargestForces {
 
   // direction: +1 or -1, the sign of the force that carries the load.
   [[nodiscard]] LargestForce of(std::size_t port, double direction) const;
+  [[nodiscard]] LargestForce of_command(std::size_t port, double direction, std::size_t command) const;
+  // The command with the largest sum of the ports' stall forces times their weights.
+  [[nodiscard]] std::size_t best_command(std::span<const double> weights) const;
   // The circuit with the present settings of the scene under a command.
   [[nodiscard]] hydraulics::Stall stall(std::size_t command) const;
+
+  [[nodiscard]] const std::string& name(std::size_t port) const { return scene_.ports[port].name; }
+  [[nodiscard]] const std::string& volume_name(int volume) const { return circuit_.volume_name(volume); }
+  // A volume without a fixed pressure on which both ports are; -1: none.
+  [[nodiscard]] int shared_volume(std::size_t port, std::size_t other) const;
+  // The same if no flow holds its pressure under the command (hydraulics::unheld_volumes()), and it is the chamber that
+  // the port presses with in the direction, or port A of one and port B of the other; -1: none. Runs the circuit.
+  [[nodiscard]] int unheld_between(std::size_t port, std::size_t other, double direction, std::size_t command);
 
  private:
   struct Command {
@@ -46,12 +59,14 @@ class LargestForces {
     hydraulics::HeldControl held;
   };
   void find_commands();
+  [[nodiscard]] bool is_held(int volume, std::size_t command);
 
   const scene::Scene& scene_;
   hydraulics::Circuit circuit_;
   std::vector<double> strokes_;
   std::vector<Command> commands_;
   std::vector<hydraulics::Stall> stalls_;
+  std::map<std::pair<std::size_t, int>, bool> is_held_;  // by command and volume: those that were looked for
 };
 
 }  // namespace slew::analysis

@@ -10,6 +10,7 @@
 
 #include "analysis/description/instant.h"
 #include "analysis/description/largest_force.h"
+#include "analysis/description/port_limits.h"
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
@@ -20,8 +21,6 @@
 namespace slew::analysis {
 namespace {
 
-// a cylinder whose force changes by less with 1 kg does not carry the load: a hundred thousandth of its weight
-constexpr double kNoShare = 1e-4;    // m/s2
 constexpr double kLowered = 0.01;    // part of a setting
 constexpr double kOfSetting = 0.25;  // effect from which a setting limits
 
@@ -36,8 +35,7 @@ class Finder {
     if (!scene_.has_mechanics() || scene_.ports.empty()) return result;
     find_static_forces(result);
     if (result.payload.empty() || !result.refusal.empty()) return result;
-    find_largest_forces(result);
-    choose(result);
+    find_limits(result);
     if (settings == ListedSettings::named && result.has_answer()) {
       name_settings(result.ports[static_cast<std::size_t>(result.limiting)]);
     }
@@ -73,10 +71,13 @@ class Finder {
                               .stroke = port.offset + port.ratio * ws.row_x[i],
                               .static_force = F[i]});
     }
+    W_ = mechanics_node::port_mobility(model, ws, ratio);
     mechanics_node::payload_slopes(model, state, ws, ratio, payload, result.mass, slope);
     for (std::size_t i = 0; i < m; ++i) {
       if (std::fabs(slope[i]) >= kNoShare) result.ports[i].force_per_kg = slope[i];
     }
+    F_ = std::move(F);
+    slope_ = std::move(slope);
   }
 
   // "Joint=20 deg"
@@ -106,35 +107,31 @@ class Finder {
         read_option("--pose", text.substr(equals + 1), turns ? Dimension::angle : Dimension::length);
   }
 
-  // (2)
-  void find_largest_forces(LiftableLoad& result) {
+  // (2), (3)
+  void find_limits(LiftableLoad& result) {
     std::vector<double> strokes;
     for (const LiftingPort& port : result.ports) strokes.push_back(port.stroke);
     largest_.emplace(scene_, std::move(strokes));
+    const PortLimits limits = find_port_limits(*largest_, {W_, F_, slope_, result.mass});
+    result.refusal = limits.refusal;
+    if (!result.refusal.empty()) return;
     command_of_.assign(result.ports.size(), 0);
     for (std::size_t i = 0; i < result.ports.size(); ++i) {
+      const PortLimit& limit = limits.ports[i];
       LiftingPort& port = result.ports[i];
-      if (!port.carries()) continue;
+      if (!limit.carries) continue;
       const double direction = port.force_per_kg > 0 ? 1 : -1;
-      const LargestForce largest = largest_->of(i, direction);
-      command_of_[i] = largest.command;
-      port.largest_force = largest.force;
-      port.pressure = largest.pressure;
-      port.chamber = largest.chamber;
-      port.input = largest.input;
-      port.stick = largest.stick;
-      port.is_steady = largest.is_steady;
+      command_of_[i] = limit.largest.command;
+      port.largest_force = limit.largest.force;
+      port.pressure = limit.largest.pressure;
+      port.chamber = limit.largest.chamber;
+      port.input = limit.largest.input;
+      port.stick = limit.largest.stick;
+      port.is_steady = limit.largest.is_steady;
+      port.load = limit.load;
+      for (const std::size_t other : limit.with) port.with.push_back(result.ports[other].name);
       const coupling::LineForceDef& ends = scene_.ports[i].line_force;
       port.is_at_end = direction > 0 ? port.stroke >= ends.stroke_max : port.stroke <= ends.stroke_min;
-    }
-  }
-
-  // (3)
-  static void choose(LiftableLoad& result) {
-    for (std::size_t i = 0; i < result.ports.size(); ++i) {
-      LiftingPort& port = result.ports[i];
-      if (!port.carries()) continue;
-      port.load = result.mass + (port.largest_force - port.static_force) / port.force_per_kg;
       if (!result.has_answer() || port.load < result.limit().load) result.limiting = static_cast<int>(i);
     }
   }
@@ -168,6 +165,7 @@ class Finder {
   const LiftingPose& pose_;
   std::optional<LargestForces> largest_;
   std::vector<std::size_t> command_of_;  // by port
+  std::vector<double> W_, F_, slope_;    // of StaticLoad
 };
 
 std::string settings_text(const LiftingPort& port) {
@@ -209,9 +207,10 @@ std::string force_text(const LiftingPort& port, double F) {
 
 std::string limit_text(const LiftableLoad& load) {
   const LiftingPort& port = load.limit();
-  return fmt::format("{} kg of {}: {} presses with {} at most, {} in {}", std::round(std::max(0.0, port.load)),
+  const std::string with = port.with.empty() ? "" : fmt::format(" beside {}", fmt::join(port.with, ", "));
+  return fmt::format("{} kg of {}: {} presses with {} at most, {} in {}{}", std::round(std::max(0.0, port.load)),
                      load.payload, port.name, force_text(port, std::fabs(port.largest_force)),
-                     quantity_text(port.pressure, "Pa"), port.chamber);
+                     quantity_text(port.pressure, "Pa"), port.chamber, with);
 }
 
 std::string report_text(const LiftableLoad& load, std::size_t width) {
@@ -259,6 +258,7 @@ Json report_json(const LiftableLoad& load) {
                     {"input", port.input},
                     {"stick", port.stick},
                     {"load", port.load},
+                    {"with", port.with},
                     {"at_end", port.is_at_end},
                     {"steady", port.is_steady},
                     {"settings", settings}});

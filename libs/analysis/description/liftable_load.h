@@ -3,7 +3,7 @@
 //
 //   F_i(m) = F_i(m_0) + s_i (m - m_0)                line force that holds port i with the payload m             (1)
 //   F_i,max = F_stall - F_mu(F_stall)                line force when the valves press with all they have         (2)
-//   m_i = m_0 + (F_i,max - F_i(m_0)) / s_i,   answer: the smallest m_i                                         (3)
+//   m_i by port_limits.h,   answer: the smallest m_i                                                           (3)
 // (1): mechanics_node/payload.h. (2): largest_force.h. A limiting setting is found by lowering each pressure of each
 // component by 1 % and stalling again: what lowers the pressure in the loaded chamber by kOfSetting of its own change
 // or more is named.
@@ -38,7 +38,8 @@ struct LiftingPort {
   std::string chamber{};                    // volume
   std::string input{};                      // input that loads it; empty: none needed
   double stick = 0;                         // +1 or -1: its direction, at full stick
-  double load = 0;                          // kg, (3); below 0: it does not hold the machine alone
+  double load = 0;                          // kg, (3); below 0: it does not hold the machine
+  std::vector<std::string> with{};          // cylinders on the same volumes that lift together with it
   bool is_at_end = false;                   // the piston stands in the end stop that it would have to leave
   bool is_steady = true;                    // false: the pressure still rose after 30 s
   std::vector<LimitingSetting> settings{};  // largest effect first; only for the limiting port

@@ -12,6 +12,7 @@
 
 #include "analysis/description/instant.h"
 #include "analysis/description/largest_force.h"
+#include "analysis/description/port_limits.h"
 #include "analysis/load_chart/tipping.h"
 #include "analysis/parameter_sweep/variation.h"
 #include "core/failure.h"
@@ -29,8 +30,6 @@ using math::Vec3;
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-// a cylinder whose force changes by less with 1 kg does not carry the load: a hundred thousandth of its weight
-constexpr double kCarriesNothing = 1e-4;  // m/s2
 
 [[noreturn]] void refuse_chart(const std::string& what, const std::string& remedy) {
   throw Failure(ExitCode::bad_input, fmt::format("{}; nothing was computed; {}", what, remedy));
@@ -188,9 +187,11 @@ class ChartMaker {
       return;
     }
     for (std::size_t i = 0; i < m; ++i) stroke[i] = scene.ports[i].offset + ratio[i] * ws.row_x[i];
+    const std::vector<double> W = mechanics_node::port_mobility(model, ws, ratio);
     mechanics_node::payload_slopes(model, state, ws, ratio, payload, chart_.mass, slope);
     pose.loads.assign(chart_.limits.size(), kNever);
-    add_cylinders(F, slope, stroke, pose);
+    add_cylinders({W, F, slope, chart_.mass}, stroke, pose);
+    if (!pose.refusal.empty()) return;
     if (has_tipping_) {
       multibody::observe(model, state, ws);
       pose.loads.back() = smallest_tipping_load(model, ws, payload);
@@ -209,20 +210,24 @@ class ChartMaker {
   }
 
   // (1), (2)
-  void add_cylinders(const std::vector<double>& F, const std::vector<double>& slope, const std::vector<double>& stroke,
-                     ChartPose& pose) {
+  void add_cylinders(const StaticLoad& load, const std::vector<double>& stroke, ChartPose& pose) {
     if (!largest_) largest_.emplace(*base_, stroke);
-    std::size_t next = F.size();
-    for (std::size_t i = 0; i < F.size(); ++i) {
-      const bool carries = std::fabs(slope[i]) >= kCarriesNothing;
-      const double direction = slope[i] > 0 ? 1 : -1;
-      if (carries) {
-        const LargestForce largest = largest_->of(i, direction);
-        if (!largest.is_steady) unsteady_.insert(i);
-        pose.loads[i] = chart_.mass + (largest.force - F[i]) / slope[i];
+    const PortLimits limits = find_port_limits(*largest_, load);
+    if (!limits.refusal.empty()) {
+      pose.refusal = limits.refusal;
+      pose.loads.clear();
+      return;
+    }
+    std::size_t next = stroke.size();
+    for (std::size_t i = 0; i < stroke.size(); ++i) {
+      const bool carries = std::fabs(load.slope[i]) >= kNoShare;
+      const double direction = load.slope[i] > 0 ? 1 : -1;
+      if (limits.ports[i].carries) {
+        if (!limits.ports[i].largest.is_steady) unsteady_.insert(i);
+        pose.loads[i] = limits.ports[i].load;
       }
       if (!std::isfinite(allowed_[i])) continue;
-      if (carries) pose.loads[next] = chart_.mass + (direction * allowed_[i] - F[i]) / slope[i];
+      if (carries) pose.loads[next] = chart_.mass + (direction * allowed_[i] - load.F[i]) / load.slope[i];
       ++next;
     }
   }

@@ -3,7 +3,7 @@
 //
 // The machine stands at every pose of a grid of one or two joint coordinates. At each pose the static line forces are
 // linear in the payload's mass m, and every limit gives a load:
-//   cylinder   m_i = m_0 + (F_i,max - F_i(m_0)) / s_i                       description/liftable_load.h          (1)
+//   cylinder   m_i = m_0 + (F_i,max - F_i(m_0)) / s_i                       description/port_limits.h            (1)
 //   structure  m_i = m_0 + (+-F_i,allowed - F_i(m_0)) / s_i                 for cylinders with an allowed force  (2)
 //   tipping    m = -M_0 / s                                                 tipping.h                            (3)
 // The load of the pose is the smallest of them, at least 0. F_i,max is what the valves press with when the pistons are
