@@ -12,7 +12,7 @@ enum class StepFlag : std::uint32_t {
   limit_hit = 1u << 2,      // a joint limit or an end stop is in contact
   clamp_active = 1u << 3,   // a quantity was held at a bound of its validity (pressure floor, input range)
   late_input = 1u << 4,     // the partner's sample was older than the validity of the copy of its model
-  overrun = 1u << 5,        // the step of a physics node ended after its deadline
+  overrun = 1u << 5,        // the deadline passed; reserved, io counts slips instead
   non_finite = 1u << 6,     // the state became NaN or infinite: latched, outputs are the last good ones
   coupling_creates_energy = 1u << 7,
   cavitating = 1u << 8,
