@@ -2,6 +2,7 @@
 // `slewring check SCENE`: reads a scene as strictly as a run does, builds its models and finds its start state.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -13,6 +14,7 @@
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/printable.h"
+#include "core/suggestion.h"
 #include "io_node/scene_config.h"
 #include "io_node/session_variables.h"
 #include "scene/canonical.h"
@@ -34,18 +36,37 @@ struct CheckOptions {
   bool is_expanded = false;
 };
 
-// Checks names that only the built models have: plotted and recorded variables must exist.
+// Checks names that only the built models have: variables of plots, outputs and devices must exist, in the dimension of
+// what they are compared with.
 void check_variables(const scene::Scene& scene, const session::DirectSession& session) {
-  std::vector<std::string> names;
+  std::vector<std::string> names, units;
   for (const Role role : wire::kPhysicsRoles) {
     if (session.subsystem(role) == nullptr) continue;
-    for (const ElementVariable& variable : session.subsystem(role)->variables()) names.push_back(variable.name);
+    for (const ElementVariable& variable : session.subsystem(role)->variables()) {
+      names.push_back(variable.name);
+      units.emplace_back(info(variable.dimension).si_unit);
+    }
   }
   std::vector<std::string> inputs;
   for (const scene::InputDef& input : scene.inputs) inputs.push_back(input.name);
   for (wire::VariableEntry& own :
        io_node::own_variables(inputs, io_node::required_roles(scene, io_node::Recording::none))) {
     names.push_back(std::move(own.name));
+    units.push_back(std::move(own.unit));
+  }
+  for (const scene::NamedVariable& one : scene::variables_of(scene.devices, scene.outputs)) {
+    const auto found = std::find(names.begin(), names.end(), one.variable);
+    if (found == names.end()) {
+      const std::string meant = closest(one.variable, {names.begin(), names.end()});
+      throw Failure(ExitCode::bad_input, fmt::format("{}: there is no variable '{}'; {}", one.path, one.variable,
+                                                     meant.empty() ? "'slewring variables SCENE' lists them"
+                                                                   : fmt::format("did you mean '{}'?", meant)));
+    }
+    const std::string& unit = units[static_cast<std::size_t>(found - names.begin())];
+    if (scene::is_same_dimension(one.unit, unit)) continue;
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: '{}' is in {}, not in {}; state a quantity of the same dimension", one.path,
+                              one.variable, unit, one.unit));
   }
   for (const scene::PlotDef& plot : scene.plots) {
     try {

@@ -373,7 +373,7 @@ void add_describe(options::Command& program) {
       "  slewring describe scenes/truck_crane.yaml\n"
       "  slewring describe scenes/truck_crane.yaml --cost\n"
       "  slewring describe scenes/truck_crane.yaml --eigenvalues --at 5s\n"
-      "  slewring describe scenes/truck_crane.yaml --liftable --pose 'Body_LiftBoom=20 deg'");
+      "  slewring describe scenes/truck_crane.yaml --liftable --pose 'Pillar_LiftBoom=20 deg'");
   verb.action([options] { return show(*options); });
 }
 

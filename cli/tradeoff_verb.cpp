@@ -115,7 +115,7 @@ void add_what(options::Command& verb, TradeoffOptions& options) {
   repeated(
       "--variables", settings.variables,
       "variables whose error is shown: names, or patterns with * and ?; repeat for more; without it the forces of the "
-      "actuators and the place of the payload (mechanics.payload)",
+      "actuators and the place of the payload (payload)",
       "PATTERN");
   verb.flag("--full", options.is_full, "the whole product of the scene's own axes: may take hours");
   verb.option("--until", settings.scene.duration,

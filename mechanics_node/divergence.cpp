@@ -77,6 +77,22 @@ bool DivergenceWatch::name_bent_body(const multibody::Model& model, const multib
   return true;
 }
 
+bool DivergenceWatch::name_turned_bushing(const multibody::Model& model, const multibody::Workspace& ws) noexcept {
+  for (const multibody::Bushing& bushing : model.elements.bushings) {
+    if (!multibody::holds_rotation(bushing)) continue;
+    const multibody::FramePair& pair = bushing.frames;
+    const double turn =
+        norm(multibody::deflection_of(pair, ws.motion[at(pair.link1)], ws.motion[at(pair.link2)]).theta);
+    if (!(turn > multibody::kMostBushingRotation)) continue;
+    write(
+        "{}: its frames are turned by {:.4g} deg against each other, and at 180 deg a bushing's moment jumps. Use a "
+        "joint's rotational spring, or limits that keep the frames below 170 deg",
+        bushing.name, turn * 180 / std::numbers::pi);
+    return true;
+  }
+  return false;
+}
+
 bool DivergenceWatch::name_suspect(const multibody::Model& model, const multibody::State& state,
                                    const multibody::Workspace& ws, double h) noexcept {
   constexpr const char* kOften = "of late more steps did not converge than did";
@@ -106,7 +122,7 @@ bool DivergenceWatch::name_suspect(const multibody::Model& model, const multibod
 
 bool DivergenceWatch::ends_run(const multibody::Model& model, const multibody::State& state,
                                const multibody::Workspace& ws, double h) noexcept {
-  if (name_bent_body(model, state, ws)) return true;
+  if (name_bent_body(model, state, ws) || name_turned_bushing(model, ws)) return true;
   if (unconverged_ < kMostUnconverged) return false;
   return name_suspect(model, state, ws, h);
 }

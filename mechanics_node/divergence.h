@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ends a run whose motion has left the mechanism's while its numbers are still finite.
 //
-// Two rules, checked after every step:
+// Three rules, checked after every step:
 //   - The excess of steps that did not converge over those that did reaches kMostUnconverged (more than half of the
 //     steps), and the motion shows an error: a body is bent beyond small deflections, turns by half a turn or moves by
 //     a metre in a sub-step, or a joint is open. The count decreases by one with each converged step, down to zero, so
 //     that single steps never add up to an end. Without such an error (a wheel of 6000 rpm on its axis, a load that is
 //     pressed onto a stiff stop) the steps are only flagged.
 //   - A flexible body is bent by more than kLostDeflection of its length (multibody/flexible/deflection.h).
+//   - A bushing that holds rotation is turned by more than kMostBushingRotation, short of the jump of its moment.
 // Not covered: motion that is finite, small and converged, and wrong.
 #pragma once
 
@@ -55,6 +56,7 @@ class DivergenceWatch {
  private:
   [[nodiscard]] bool name_bent_body(const multibody::Model& model, const multibody::State& state,
                                     const multibody::Workspace& ws) noexcept;
+  [[nodiscard]] bool name_turned_bushing(const multibody::Model& model, const multibody::Workspace& ws) noexcept;
   [[nodiscard]] bool name_suspect(const multibody::Model& model, const multibody::State& state,
                                   const multibody::Workspace& ws, double h) noexcept;
   template <typename... Values>

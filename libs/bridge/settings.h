@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the bridge to LCM and the export of a log are told: channels, signal lists, and the scene of the session.
+// Settings of the bridge to LCM and of the export of a log: channels, signal lists, and the scene of the session.
 #pragma once
 
 #include <span>

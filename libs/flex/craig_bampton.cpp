@@ -138,8 +138,10 @@ FixedInterface fixed_interface_modes(const FeModel& model, const Partition& p, c
     throw InputError(fmt::format("{}.fixed_interface_modes: only {} of {} modes have mass; expected at most these",
                                  model.name, modes.lambda.size(), count));
   FixedInterface out{modes.lambda, MatrixXd::Zero(model.freedoms(), modes.vectors.cols())};
-  for (std::size_t i = 0; i < p.interior.size(); ++i)
-    out.Phi.row(p.interior[i]) = modes.vectors.row(static_cast<Index>(i));
+  for (Index k = 0; k < modes.vectors.cols(); ++k) {
+    for (std::size_t i = 0; i < p.interior.size(); ++i)
+      out.Phi(p.interior[i], k) = modes.vectors(static_cast<Index>(i), k);
+  }
   separate_repeated(model, out.lambda, out.Phi);
   choose_signs(model, out.Phi);
   // a group of one frequency stays whole: half of a pair would stiffen one plane of a square section only

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "transport/roles.h"
-#include "transport/session_state.h"
 #include "transport/topics.h"
 
 namespace slew::node {
@@ -16,20 +15,10 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-bool is_over(NodeState state) {
-  return state == NodeState::ended || state == NodeState::fault;
-}
-
 // Distinguishes processes of one role. Never 0.
 std::uint32_t incarnation_of(const Identity& identity) {
   const std::uint64_t mixed = static_cast<std::uint64_t>(identity.started_ns) * 0x9e3779b97f4a7c15u + identity.pid;
   return static_cast<std::uint32_t>(mixed >> 32) | 1u;
-}
-
-constexpr std::size_t kMaxPendingStatuses = 64;
-
-bool is_ready_state(NodeState state) {
-  return state >= NodeState::ready && state < NodeState::ended;
 }
 
 }  // namespace
@@ -96,21 +85,6 @@ void SessionMember::renew(const wire::SessionDescription& session, std::int64_t 
   forget_given_up(now_ns);
   // new processes receive the present status
   status_changed_ = true;
-}
-
-void SessionMember::forget_given_up(std::int64_t now_ns) {
-  for (const wire::GivenUp& gone : session_.given_up) {
-    const auto index = static_cast<std::size_t>(gone.role);
-    if (index >= wire::kRoles || !peers_[index].is_known || peers_[index].incarnation != gone.incarnation) continue;
-    peers_[index] = Peer{};
-    if (const auto claimant = std::exchange(claimants_[index], std::nullopt)) {
-      static_cast<void>(take_status(*claimant, now_ns));
-    }
-  }
-}
-
-bool SessionMember::is_given_up(Role role, std::uint32_t incarnation) const noexcept {
-  return transport::is_given_up(session_, role, incarnation);
 }
 
 Status SessionMember::problem_of_protocol() const {
@@ -193,13 +167,6 @@ void SessionMember::yield() {
   step_aside(why.code, why.text);
 }
 
-Status SessionMember::given_to_another() const {
-  return Status::error(ExitCode::node_lost, "the role " + std::string(to_text(role_)) + " of session '" +
-                                                session_.name +
-                                                "' was given to another process, because no message from this one "
-                                                "arrived; this one ends, and the session goes on without it");
-}
-
 void SessionMember::withdraw() {
   if (only_) return step_aside(ExitCode::bad_input, "io ended the session: another one holds its name");
   step_aside(ExitCode::ok, "");
@@ -222,269 +189,8 @@ void SessionMember::publish_status_if_changed() {
   publish(Topic::node_status, status_);
 }
 
-Status SessionMember::on_node_status(std::span<const std::byte> bytes, std::int64_t now_ns) {
-  if (!transport::decode(bytes, received_status_)) {
-    ++refusals_.undecodable;
-    return Status::ok();
-  }
-  if (!has_session_) {
-    if (pending_statuses_.size() < kMaxPendingStatuses) pending_statuses_.push_back(received_status_);
-    return Status::ok();
-  }
-  return take_status(received_status_, now_ns);
-}
-
-Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t now_ns) {
-  if (status.header.session != session_.header.session) {
-    ++refusals_.other_session;
-    return Status::ok();
-  }
-  const Role role = status.header.role;
-  const auto index = static_cast<std::size_t>(role);
-  if (index >= wire::kRoles) return Status::ok();
-  if (role == role_) return on_own_role(status);
-  Peer& peer = peers_[index];
-  if (is_given_up(role, status.header.incarnation)) {
-    ++refusals_.unexpected_writer;
-    return Status::ok();
-  }
-  if (!may_hold(status, peer)) {
-    if (role != Role::io) claimants_[index] = status;
-    ++refusals_.unexpected_writer;
-    return Status::ok();
-  }
-  if (peer.is_known && peer.incarnation != status.header.incarnation) peer = Peer{};
-  if (!peer.is_known) {
-    if (status.host == identity_.host && status.pid != identity_.pid) peer.process = ProcessWatch(status.pid);
-    compare_builds(status);
-  }
-  peer.is_known = true;
-  peer.incarnation = status.header.incarnation;
-  peer.status = status;
-  peer.last_received_ns = now_ns;
-  if (role_ == Role::io) acknowledge(status.header, Topic::node_status, now_ns);
-  return role == Role::io ? follow_choice(now_ns) : Status::ok();
-}
-
-// The process of the role that io has chosen.
-std::optional<std::uint32_t> SessionMember::holder(Role role) const noexcept {
-  const std::vector<wire::Heard>& choices = role_ == Role::io ? status_.heard : peer(Role::io).status.heard;
-  const auto chosen = std::find_if(choices.rbegin(), choices.rend(), [&](const wire::Heard& entry) {
-    return entry.role == role && entry.topic == static_cast<std::uint8_t>(Topic::node_status) &&
-           !is_given_up(role, entry.incarnation);
-  });
-  return chosen == choices.rend() ? std::nullopt : std::optional(chosen->incarnation);
-}
-
-// The writer of this status has the role, as far as this node has received: the session's owner, the process that io
-// has chosen, or before its choice the first process received that has not ended.
-bool SessionMember::may_hold(const wire::NodeStatus& status, const Peer& peer) const noexcept {
-  const std::uint32_t claimant = status.header.incarnation;
-  if (status.header.role == Role::io) return claimant == session_.header.incarnation;
-  if (peer.is_known && peer.incarnation == claimant) return true;
-  if (peer.is_known && peer.is_lost) return false;
-  const bool is_vacant = !peer.is_known || (is_over(peer.status.state) && !is_over(status.state));
-  if (role_ == Role::io) return is_vacant;
-  const std::optional<std::uint32_t> chosen = holder(status.header.role);
-  return chosen ? *chosen == claimant : is_vacant;
-}
-
-// io has published its choice: peers that it has not chosen are dropped.
-Status SessionMember::follow_choice(std::int64_t now_ns) {
-  for (std::size_t index = 0; index < wire::kRoles; ++index) {
-    const std::optional<std::uint32_t> chosen = holder(static_cast<Role>(index));
-    Peer& peer = peers_[index];
-    if (!chosen || !peer.is_known || peer.is_lost || peer.incarnation == *chosen) continue;
-    peer = Peer{};
-    if (const auto claimant = std::exchange(claimants_[index], std::nullopt))
-      static_cast<void>(take_status(*claimant, now_ns));
-  }
-  was_chosen_ = was_chosen_ || holds_role();
-  const auto claimant = claimants_[static_cast<std::size_t>(role_)];
-  return claimant && !holds_role() ? on_own_role(*claimant) : Status::ok();
-}
-
-void SessionMember::warn_of_claim(const wire::NodeStatus& status) {
-  // a process that was just started receives from io that the role is held; a later process may have been given it
-  const bool is_usual = !is_ready_state(status.state) || status.started_ns > identity_.started_ns;
-  if (is_usual || std::exchange(has_warned_of_claim_, true)) return;
-  warn("process " + std::to_string(status.pid) + " on " + machine_of(status.host) + ", started " +
-       time_text(status.started_ns) + ", claims the role " + std::string(to_text(role_)) + " of session '" +
-       session_.name + "'; this process keeps the role and ignores the other one; stop the other process");
-}
-
-// Another process claims the role of this one.
-Status SessionMember::on_own_role(const wire::NodeStatus& status) {
-  if (status.header.incarnation == incarnation_ || is_over(status.state)) return Status::ok();
-  if (is_given_up(role_, status.header.incarnation)) return Status::ok();
-  claimants_[static_cast<std::size_t>(role_)] = status;
-  const std::optional<std::uint32_t> chosen = role_ == Role::io ? incarnation_ : holder(role_);
-  if (chosen == incarnation_) {
-    ++refusals_.unexpected_writer;
-    warn_of_claim(status);
-  }
-  if (!chosen || *chosen != status.header.incarnation) return Status::ok();
-  // io's update that this process was given up may arrive after its new choice
-  if (was_chosen_) return given_to_another();
-  return Status::error(ExitCode::bad_input,
-                       "the role " + std::string(to_text(role_)) + " of session '" + session_.name +
-                           "' is held by process " + std::to_string(status.pid) + " on " + machine_of(status.host) +
-                           ", started " + time_text(status.started_ns) +
-                           "; this second one ends; stop the first, or choose another --session name");
-}
-
-void SessionMember::compare_builds(const wire::NodeStatus& status) {
-  // only the owner compares, so that each difference is reported once
-  if (role_ != Role::io) return;
-  const std::string peer = std::string(to_text(status.header.role)) + " on " + machine_of(status.host);
-  if (status.self_test != identity_.self_test) {
-    warnings_.push_back(
-        peer + " computes the arithmetic self-test with another result than io: this session's bits " +
-        "cannot be compared with those of another layout; use processors of one family and one C library");
-  } else if (status.build != identity_.build) {
-    warnings_.push_back(peer + " is of build '" + status.build + "', io of '" + identity_.build +
-                        "': bits may differ from those of one build; install one build on all machines");
-  }
-}
-
 std::vector<std::string> SessionMember::take_warnings() {
   return std::exchange(warnings_, {});
-}
-
-void SessionMember::on_health(std::span<const std::byte> bytes, std::int64_t now_ns) {
-  wire::Health health;
-  if (!transport::decode(bytes, health) || !has_session_ || health.header.session != session_.header.session) return;
-  const auto index = static_cast<std::size_t>(health.header.role);
-  if (index < wire::kRoles && peers_[index].incarnation == health.header.incarnation) {
-    peers_[index].last_received_ns = now_ns;
-    peers_[index].step = health.header.step;
-    peers_[index].step_epoch = health.header.epoch;
-  }
-}
-
-bool SessionMember::may_be_replaced(Role role) const noexcept {
-  return is_physics(role) && session_.rejoin_ns > 0;
-}
-
-void SessionMember::excuse_peers(std::int64_t now_ns) noexcept {
-  const std::int64_t gap_ns = watched_ns_ == 0 ? 0 : now_ns - watched_ns_;
-  watched_ns_ = now_ns;
-  // time spent in sending after the last check read the clock counts too
-  const std::int64_t sending_ns = sending_ns_ + std::exchange(sent_before_ns_, sending_ns_);
-  sending_ns_ = 0;
-  if (gap_ns <= kUsualLook.ns) return;
-  if (gap_ns > session_.give_up_ns) {
-    stood_still_ns_ = gap_ns;
-    stood_until_ns_ = now_ns;
-    stood_sending_ = sending_ns > gap_ns / 2;
-  }
-  // a long gap is excused once, since a peer may have ended in it; each shorter one, since a part of it still counts
-  const bool is_long = gap_ns > kStoodStill.ns;
-  for (Peer& peer : peers_) {
-    if (is_long && peer.last_received_ns == peer.excused_ns) continue;
-    const bool was_excused = peer.last_received_ns == peer.excused_ns;
-    peer.last_received_ns = std::min(now_ns, peer.last_received_ns + gap_ns - (is_long ? 0 : kUsualLook.ns));
-    if (is_long || was_excused) peer.excused_ns = peer.last_received_ns;
-  }
-}
-
-PeerEvent SessionMember::look_at(Peer& peer, Role role, std::int64_t now_ns) noexcept {
-  const std::int64_t silent_ns = now_ns - peer.last_received_ns;
-  // its last message, with the reason, may be in flight
-  const bool is_gone = peer.exit_seen_ns != 0 && now_ns - peer.exit_seen_ns >= kInFlight.ns;
-  if (peer.gone_ns != 0) {
-    // io decides about its place; a peer whose messages arrive again was cut off from this process only
-    if (!is_gone && silent_ns <= kSilentAfter.ns) {
-      peer.gone_ns = 0;
-      peer.is_lost = peer.is_silent = false;
-      return PeerEvent::back;
-    }
-    if (now_ns - peer.gone_ns <= session_.rejoin_ns + session_.give_up_ns) return PeerEvent::none;
-    peer.gone_ns = 0;
-    return PeerEvent::lost;
-  }
-  if (peer.is_lost) return PeerEvent::none;
-  if (is_gone || silent_ns > session_.give_up_ns) {
-    peer.is_lost = true;
-    if (!may_be_replaced(role)) return PeerEvent::lost;
-    peer.gone_ns = now_ns;
-    return PeerEvent::gone;
-  }
-  if (silent_ns > kSilentAfter.ns && !peer.is_silent) {
-    peer.is_silent = true;
-    return PeerEvent::silent;
-  }
-  if (silent_ns <= kSilentAfter.ns && peer.is_silent) {
-    peer.is_silent = false;
-    return PeerEvent::back;
-  }
-  return PeerEvent::none;
-}
-
-PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
-  excuse_peers(now_ns);
-  const bool looks_for_processes = now_ns - processes_ns_ >= kProcessLook.ns;
-  if (looks_for_processes) processes_ns_ = now_ns;
-  for (const Role role : wire::kNodeRoles) {
-    if (role == role_ || !requires_role(role)) continue;
-    Peer& peer = peers_[static_cast<std::size_t>(role)];
-    if (!peer.is_known || peer.status.state >= NodeState::ended) continue;
-    about = role;
-    if (looks_for_processes && peer.exit_seen_ns == 0 && peer.process.has_exited()) peer.exit_seen_ns = now_ns;
-    if (const PeerEvent event = look_at(peer, role, now_ns); event != PeerEvent::none) return event;
-  }
-  return PeerEvent::none;
-}
-
-std::optional<Role> SessionMember::silent_peer() const noexcept {
-  for (const Role role : wire::kNodeRoles) {
-    const Peer& peer = this->peer(role);
-    if (requires_role(role) && peer.is_silent && !peer.is_lost && !is_over(peer.status.state)) return role;
-  }
-  return std::nullopt;
-}
-
-std::string SessionMember::describe_peer(Role role) const {
-  const Peer& peer = this->peer(role);
-  std::string text(to_text(role));
-  if (!peer.is_known) return text;
-  return text + " (process " + std::to_string(peer.status.pid) + " on " + machine_of(peer.status.host) + ")";
-}
-
-std::string SessionMember::silence_text(Role role) const {
-  return "waits for " + describe_peer(role) + ", which has been silent for 0.3 s at step " +
-         std::to_string(status_.header.step) + "; it is given up after " + give_up_text();
-}
-
-std::string SessionMember::give_up_text() const {
-  return seconds_text(give_up_after()) + " (session.give_up_after)";
-}
-
-std::string SessionMember::end_text(Role about, const std::string& reason) const {
-  const Peer& peer = this->peer(about);
-  const std::string own_loss = std::string(to_text(role_)) + " (process " + std::to_string(identity_.pid) + " on " +
-                               machine_of(identity_.host) + ") is gone";
-  const bool is_given_up = peer.status.reason.find(own_loss) != std::string::npos;
-  const std::string stood_still =
-      "stood still for " + seconds_text({stood_still_ns_}) + (stood_sending_ ? " while it sent" : "");
-  // a process that was stopped may have been sending just then
-  const std::string remedy =
-      std::string("; look for what stopped the process (a signal, a debugger, lack of memory or of processors)") +
-      (stood_sending_ ? " or took nothing from it (a cable that is out, an interface that is down)" : "");
-  if (is_given_up && stood_still_ns_ > 0) {
-    return "this node " + stood_still + " at step " + std::to_string(status_.header.step) + " and was given up after " +
-           give_up_text() + "; session '" + session_.name + "' has ended" + remedy;
-  }
-  if (is_given_up) {
-    return "this node ran, but its messages did not arrive for " + give_up_text() +
-           " and it was given up; check the network from this machine to the others; " + reason;
-  }
-  // the peers may have given this node up and exited
-  if (peer.is_lost && stood_still_ns_ > 0 && watched_ns_ - stood_until_ns_ <= session_.give_up_ns + linger().ns) {
-    return reason + "; this node itself had " + stood_still + ", and after " + give_up_text() +
-           " the others give a node up" + remedy;
-  }
-  return reason;
 }
 
 bool SessionMember::all_required(NodeState at_least) const noexcept {

@@ -100,7 +100,9 @@ void add_scene_options(options::Command& app, SceneOptions& options) {
       .one_of({"real", "free"})
       .value_name("PACE")
       .group("Scene");
-  app.option("--input", options.input, "script (the scene's own), none, keyboard, or a .csv, .yaml or .lcm file")
+  app.option("--input", options.input,
+             "script (the scene's own), none, keyboard, or a .csv, .yaml or .lcm file; changes of parameters in the "
+             "scene's script stay (without them: --set 'script.parameters=[]')")
       .value_name("SOURCE")
       .show_default()
       .group("Scene");
@@ -124,13 +126,16 @@ scene::Overrides of_session(const SceneOptions& options) {
   return overrides;
 }
 
+// Changes of parameters are no input: those of the scene stay where a file has none of its own.
 scene::Scene with_input(scene::Scene scene, const SceneOptions& options) {
   if (options.input == "script") return scene;
+  std::vector<scene::ScriptChange> changes = std::move(scene.script.changes);
   if (options.has_script()) {
     replace_script(scene, options.input);
   } else {
     scene.script = {};
   }
+  if (scene.script.changes.empty()) scene.script.changes = std::move(changes);
   scene.expanded_text = scene::canonical_text(scene);
   return scene;
 }

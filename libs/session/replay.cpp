@@ -231,11 +231,13 @@ class Replay {
                      waiting_ticks_.begin()->first));
   }
 
-  // Steps that were computed and have no sample in the recording.
+  // Steps that were computed and have no sample in the recording. What answers the last tick is expected behind an END
+  // alone: a slice ends between both.
   void count_unrecorded(EpochEnd end) {
     for (const Hashes& of_role : hashes_) {
       std::size_t expected = of_role.is_compared.size();
       while (end == EpochEnd::reset && expected > 0 && !of_role.is_compared[expected - 1]) --expected;
+      if (end == EpochEnd::recording && !has_ended_ && expected > 0 && !of_role.is_compared[expected - 1]) --expected;
       for (std::size_t i = 0; i < expected; ++i) {
         if (!of_role.is_compared[i]) ++result_.unrecorded;
       }

@@ -61,9 +61,15 @@ class MeasureNames final : public scene::ExpressionNames {
       if (parameter.name == name) return scene::quantity_of(parameter.value, units_);
     }
     for (const scene::ParameterInfo& value : values_) {
-      if (value.path == name && !value.is_choice()) {
-        return {scene::Quantity{value.value, info(value.dimension).exponent, false}, std::nullopt};
+      if (value.path != name || value.is_choice()) continue;
+      for (const scene::ScriptChange& change : scene_.script.changes) {
+        if (change.set != name) continue;
+        return {std::nullopt, scene::ValueProblem{
+                                  fmt::format("the script changes '{}' from {} s on, and a measure has one value of it",
+                                              name, change.at),
+                                  "a variable, or the number that is meant", ""}};
       }
+      return {scene::Quantity{value.value, info(value.dimension).exponent, false}, std::nullopt};
     }
     if (belongs_to_controller(name)) {
       return {std::nullopt,

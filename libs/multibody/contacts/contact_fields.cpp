@@ -67,7 +67,7 @@ constexpr Field kMeshFields[] = {
     kBody,
     kShapePosition,
     kShapeOrientation,
-    field<&ShapeDef::file>("file", {.doc = "mesh file beside the scene: .stl, .obj, .dae or .3ds"}),
+    field<&ShapeDef::file>("file", {.doc = "mesh file beside the scene: .stl, .obj, .dae, .3ds, .glb or .fbx"}),
     field<&ShapeDef::file_unit>(
         "unit",
         {.dimension = length, .range = kPositive, .doc = "length of one unit of the file, `1 mm`; required with file"}),

@@ -15,8 +15,6 @@
 namespace slew::multibody {
 namespace {
 
-constexpr double kMostRotation = 170 * M_PI / 180;  // rad: the rotation vector jumps at half a turn
-
 // constants of a bushing along its three axes, or about them
 template <auto Member>
 constexpr Field bushing_triple(std::string_view key, Dimension dimension, const Range& range, std::string_view doc) {
@@ -126,6 +124,17 @@ double row_times(const SixBySix& matrix, std::size_t i, const Six& x) noexcept {
 
 }  // namespace
 
+bool holds_rotation(const Bushing& bushing) noexcept {
+  for (std::size_t i = 3; i < 6; ++i) {
+    if (bushing.spring[i] != 0 || bushing.damping[i] != 0) return true;
+    for (std::size_t j = 0; j < 6; ++j) {
+      if (bushing.K[6 * i + j] != 0 || bushing.D[6 * i + j] != 0) return true;
+    }
+  }
+  return std::any_of(bushing.curves.begin(), bushing.curves.end(),
+                     [](const DirectionCurve& one) { return one.direction >= 3; });
+}
+
 Six force_of(const Bushing& bushing, const Deflection& deflection) noexcept {
   Six Q;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -224,7 +233,7 @@ void BushingRow::check(const BushingDef& def, ElementRules& rules) {
 
 void BushingRow::check_start(const BushingDef& def, ElementStartRules& rules) {
   const double turn = norm(rules.deflection(def.frames).theta);
-  if (turn < kMostRotation) return;
+  if (turn < kMostBushingRotation) return;
   rules.add(def.name + ".orientation2",
             fmt::format("the frames are turned by {:.4g} deg at the start", turn * 180 / M_PI),
             "frames turned by less than 170 deg");

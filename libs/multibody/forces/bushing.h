@@ -57,6 +57,11 @@ struct Bushing {
   std::vector<DirectionCurve> curves{};
 };
 
+// rad: short of half a turn, where the rotation vector jumps.
+inline constexpr double kMostBushingRotation = 170 * M_PI / 180;
+// Its moment depends on the rotation.
+[[nodiscard]] bool holds_rotation(const Bushing& bushing) noexcept;
+
 [[nodiscard]] Six force_of(const Bushing& bushing, const Deflection& deflection) noexcept;
 // position (K + k + s') + rate (D + d + b'), tables' slopes where they rise.
 [[nodiscard]] SixBySix slopes_of(const Bushing& bushing, const Deflection& deflection, ChangeWeights weights) noexcept;

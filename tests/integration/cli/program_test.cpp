@@ -228,6 +228,22 @@ TEST_F(Program, CheckPrintsEveryProblemWithItsPlace) {
   EXPECT_EQ(json.at("problems").at(0).at("line"), 2);
 }
 
+TEST_F(Program, CheckJudgesTheVariablesOfOutputsByNameAndDimension) {
+  std::filesystem::copy_file(scene_file("first_steps.yaml"), work_.path() / "first_steps.yaml");
+  std::ofstream(work_.path() / "lamps.yaml") << "include: first_steps.yaml\n"
+                                                "outputs:\n  Lamp: {condition: 'Hinge.position < -10 deg'}\n";
+  const auto check = [&](const std::string& condition) {
+    return slewring({"check", "lamps.yaml", "--set", "Lamp.condition=" + condition});
+  };
+  EXPECT_EQ(check("Hinge.position < -10 deg").code, 0) << check("Hinge.position < -10 deg").err;
+  const CommandResult bar = check("Hinge.position < 1 bar");
+  EXPECT_EQ(bar.code, 2);
+  EXPECT_TRUE(contains(bar.err, "Lamp.condition: 'Hinge.position' is in rad, not in bar")) << bar.err;
+  const CommandResult other = check("Hinge.positon < 10 deg");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_TRUE(contains(other.err, "did you mean 'Hinge.position'?")) << other.err;
+}
+
 TEST_F(Program, CheckAcceptsTheScenesOfTheRepository) {
   for (const char* scene :
        {"first_steps.yaml", "truck_crane.yaml", "truck_crane_flexible.yaml", "truck_crane_flexible_soft.yaml",

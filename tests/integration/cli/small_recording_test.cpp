@@ -162,5 +162,16 @@ TEST_F(SmallRecording, IsSlicedAndMergedAndIsTheSame) {
   EXPECT_NE(slewring({"info", "second.mcap"}).out.find("a slice of session.mcap from 0.4 s to 1 s"), std::string::npos);
 }
 
+// the samples that answer its last tick are behind its end
+TEST_F(SmallRecording, OfASliceFromTheStartReplaysWithoutLosses) {
+  const std::string recording = in_process("whole", "truck_crane.yaml", "0.5", {"--record-steps", "all"});
+  EXPECT_EQ(slewring({"slice", recording, "--to", "0.3s", "-o", "first.mcap"}).code, 0);
+  const nlohmann::json replay = json_of({"replay", "first.mcap", "--verify", "--json"});
+  EXPECT_EQ(replay.at("steps"), 300);
+  EXPECT_EQ(replay.at("unrecorded"), 0);
+  EXPECT_EQ(replay.at("different"), 0);
+  EXPECT_EQ(slewring({"replay", "first.mcap", "--verify"}).code, 0);
+}
+
 }  // namespace small_recording_test
 }  // namespace slew::testing

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene in the page.
-import { readFileSync } from "node:fs";
+import { readFileSync, renameSync } from "node:fs";
 import { placeOfColor, require, rest, run, select, waitFor } from "./support.mjs";
 
 // The named point of Bag is drawn on the bag; a click puts it into the field that was used last.
@@ -60,6 +60,11 @@ export async function edit({ page }) {
   await page.waitForSelector('.row.is-new[data-element="Bag_2"]');
   await picksAPoint(page);
   page.on("dialog", (dialog) => dialog.accept()); // what was not saved
+  // a file that cannot be read just then takes nothing away
+  renameSync(file, `${file}.away`);
+  await page.reload();
+  await page.locator(".notices p", { hasText: "nothing was changed" }).first().waitFor();
+  renameSync(`${file}.away`, file);
   await page.reload();
   await page.waitForSelector('.row[data-element="Bag_2"]');
   await select(page, "Bag");

@@ -196,6 +196,14 @@ TEST_F(MeasureTest, RefusesWithThePlaceBeforeAnyRun) {
   EXPECT_NE(refusal("max(word)"), "accepted");
 }
 
+TEST_F(MeasureTest, RefusesAValueThatTheScriptChanges) {
+  EXPECT_EQ(refusal("max(mechanics.gravity.y * (1 s))"), "accepted");
+  scene_.script.changes.push_back({.at = 0.5, .set = "mechanics.gravity.y", .value = -1});
+  EXPECT_NE(refusal("max(mechanics.gravity.y * (1 s))")
+                .find("the script changes 'mechanics.gravity.y' from 0.5 s on, and a measure has one value of it"),
+            std::string::npos);
+}
+
 // ---- statistics
 
 // the numbers 1 to 10; the t quantile with 9 degrees of freedom is 2.262 in every table

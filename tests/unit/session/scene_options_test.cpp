@@ -90,6 +90,23 @@ TEST_F(SceneOptionsTest, NoneAndKeyboardLeaveNoScript) {
   }
 }
 
+// a table of levers that was exported from a run with faults is played with the same faults
+TEST_F(SceneOptionsTest, AnotherInputLeavesTheScriptsChangesOfParameters) {
+  options_.file = std::string(SLEWRING_SOURCE_DIR) + "/scenes/tipper_faults.yaml";
+  const std::size_t changes = scene::load_scene(options_).script.changes.size();
+  ASSERT_GT(changes, 0u);
+  for (const std::string& input :
+       {std::string("none"), std::string("keyboard"), write("input.csv", "time,Input_Tip\n0,0\n1,0.5\n"),
+        write("input.yaml", "inputs:\n  Input_Tip: [[0 s, 0], [1 s, 1]]\n")}) {
+    options_.input = input;
+    const scene::Scene scene = scene::load_scene(options_);
+    EXPECT_EQ(scene.script.changes.size(), changes) << input;
+    EXPECT_NE(scene.expanded_text.find("\n  parameters:\n"), std::string::npos) << input;
+  }
+  options_.overrides = {"script.parameters=[]"};
+  EXPECT_TRUE(scene::load_scene(options_).script.changes.empty());
+}
+
 TEST_F(SceneOptionsTest, AContinuedSessionMayHaveAnotherControllerOfAnInput) {
   options_.overrides = {"Input_Lift.controller=lockstep", "Input_Lift.controller_delay=3"};
   const scene::Scene saved = scene::load_scene(options_);

@@ -208,6 +208,35 @@ TEST(Divergence, IsNoneOfAWheelThatIsFastOnItsAxis) {
   }
 }
 
+MechanicsDef turning_bushing(double rotational_stiffness) {
+  MechanicsDef def;
+  def.gravity = {};
+  BodyDef body;
+  body.name = "Arm", body.mass = 1, body.inertia = {1, 1, 1};
+  def.bodies.push_back(body);
+  JointDef joint;
+  joint.name = "Pin", joint.type = JointType::revolute, joint.body2 = "Arm", joint.initial_velocity = 5;
+  def.joints.push_back(joint);
+  BushingDef bushing;
+  bushing.name = "Mount", bushing.frames.body1 = "Ground", bushing.frames.body2 = "Arm";
+  bushing.stiffness = {1, 1, 1}, bushing.rotational_stiffness = {0, 0, rotational_stiffness};
+  def.bushings.push_back(bushing);
+  return def;
+}
+
+// at half a turn the moment would jump from one side to the other: it does so without a sign in the energy of a step
+TEST(Divergence, NamesABushingThatTurnsTooFar) {
+  MechanicsAlone held(scene_of(turning_bushing(0.1))), free(scene_of(turning_bushing(0)));
+  const StepIndex end = run_until_end(held, 3000);
+  // x = 5/w sin(w t), w2 = k/J
+  const double w = std::sqrt(0.1);
+  EXPECT_NEAR(end * 1e-3, std::asin(170 * M_PI / 180 * w / 5) / w, 2e-3);
+  EXPECT_NE(std::string(held.subsystem.failure_text()).find("Mount: its frames are turned by 170"), std::string::npos)
+      << held.subsystem.failure_text();
+  EXPECT_EQ(run_until_end(free, 3000), 3000);
+  EXPECT_NEAR(free.value("Pin.position"), 15, 1e-9);
+}
+
 // the count is part of the state: saved on the way, the run ends at the same step with the same words
 TEST(Divergence, ContinuesFromASavedState) {
   const MechanicsDef def = rotor(Formulation::lagrange);

@@ -297,6 +297,7 @@ export class SceneFile {
     if (text === null) return;
     const kept = JSON.parse(text) as Kept;
     void this.open().then((isOpen) => {
+      if (!isOpen) sessionStorage.setItem(kKeptKey, text); // for the next try: there was a notice
       if (!isOpen || kept.path !== this.path) return;
       this.#savedText = kept.savedText;
       this.#tag = kept.tag;
