@@ -8,7 +8,7 @@
 
 #include "core/index.h"
 #include "math/semidefinite.h"
-#include "math/small_cholesky.h"
+#include "math/subspace.h"
 #include "multibody/constraints/constraint.h"
 #include "multibody/constraints/loops.h"
 #include "multibody/contacts/contact_passes.h"
@@ -17,6 +17,14 @@
 #include "multibody/model/observe.h"
 
 namespace slew::multibody {
+
+using math::add;
+using math::falling_direction;
+using math::make_unit;
+using math::orthonormal;
+using math::product;
+using math::solve_definite;
+
 namespace {
 
 constexpr int kMostDisplacements = 400;
@@ -32,79 +40,9 @@ constexpr double kStillByRounding = 1e-6;  // the same, where stiff elements lea
 constexpr double kUnstable = 1e-4;         // negative square of a natural frequency, of gravity over size
 constexpr int kMostSoftenings = 30;
 constexpr double kShortestRemainder = 1e-6;  // of the scaled unit speeds without the row space
-constexpr double kSoftest = 1e-3;          // smallest mu above zero, of gravity over size
+constexpr double kSoftest = 1e-3;            // smallest mu above zero, of gravity over size
 
 using Vector = std::vector<double>;
-
-double product(const Vector& a, const Vector& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-void add(double factor, const Vector& from, Vector& to) {
-  for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * from[i];
-}
-
-void make_unit(Vector& v) {
-  const double size = std::sqrt(product(v, v));
-  if (!(size > 0)) return;
-  for (double& one : v) one /= size;
-}
-
-// Orthonormal basis of what `vectors` span: the longest remainder is the next one, until all are below `shortest`.
-std::vector<Vector> orthonormal(std::vector<Vector> vectors, double shortest) {
-  std::vector<Vector> basis;
-  while (!vectors.empty()) {
-    const auto longest = std::max_element(vectors.begin(), vectors.end(), [](const Vector& a, const Vector& b) {
-      return product(a, a) < product(b, b);
-    });
-    if (!(std::sqrt(product(*longest, *longest)) > shortest)) break;
-    Vector next = std::move(*longest);
-    vectors.erase(longest);
-    make_unit(next);
-    // once more: rounding of a short remainder
-    for (const Vector& known : basis) add(-product(known, next), known, next);
-    make_unit(next);
-    for (Vector& one : vectors) add(-product(next, one), next, one);
-    basis.push_back(std::move(next));
-  }
-  return basis;
-}
-
-// Solves (K + mu G) x = f, dense by rows. False if the matrix is not positive definite.
-bool solve(const Vector& K, const Vector& G, double mu, const Vector& f, Vector& x) {
-  Vector A = K;
-  add(mu, G, A);
-  const int size = static_cast<int>(f.size());
-  x = f;
-  if (!math::factorize_cholesky(A.data(), size)) return false;
-  math::substitute_forward(A.data(), size, x.data());
-  math::substitute_backward(A.data(), size, x.data());
-  return true;
-}
-
-// A direction d with d^T A d <= 0; empty if A is positive definite. From the first leading block that is not:
-// d = (-A_11^-1 a_1, 1, 0).
-Vector falling_direction(const Vector& A, std::size_t size) {
-  for (std::size_t k = 0; k < size; ++k) {
-    Vector block;
-    for (std::size_t r = 0; r <= k; ++r) block.insert(block.end(), &A[r * size], &A[r * size] + k + 1);
-    if (math::factorize_cholesky(block.data(), static_cast<int>(k) + 1)) continue;
-    Vector leading, column;
-    for (std::size_t r = 0; r < k; ++r) {
-      leading.insert(leading.end(), &A[r * size], &A[r * size] + k);
-      column.push_back(-A[r * size + k]);
-    }
-    Vector d;
-    if (!solve(leading, Vector(k * k), 0, column, d)) d.assign(k, 0.0);
-    d.resize(size);
-    d[k] = 1;
-    make_unit(d);
-    return d;
-  }
-  return {};
-}
 
 class Rest {
  public:
@@ -134,7 +72,7 @@ class Rest {
       if (T.empty()) return {.is_stable = true};
       const Vector f = force(state_.q, T), G = masses(state_.q, T), K = stiffness(T);
       Vector a;
-      if (!solve(G, Vector(G.size()), 0, f, a)) return failure(T, f);
+      if (!solve_definite(G, Vector(G.size()), 0, f, a)) return failure(T, f);
       double fastest = 0;
       for (const double one : a) fastest = std::max(fastest, std::isfinite(one) ? std::fabs(one) : HUGE_VAL);
       bool is_still = fastest <= kStill * frequency2;
@@ -156,7 +94,7 @@ class Rest {
     const std::vector<Vector> T = free_speeds(state_.q);
     const Vector f = force(state_.q, T), G = masses(state_.q, T);
     Vector a;
-    static_cast<void>(solve(G, Vector(G.size()), 0, f, a));
+    static_cast<void>(solve_definite(G, Vector(G.size()), 0, f, a));
     return failure(T, a);
   }
 
@@ -373,7 +311,7 @@ class Rest {
     mu = mu / 10 < softest ? 0 : mu / 10;
     for (int i = 0; i < kMostSoftenings; ++i, mu = std::max(softest, 10 * mu)) {
       Vector dx, q;
-      if (!solve(K, G, mu, f, dx)) continue;
+      if (!solve_definite(K, G, mu, f, dx)) continue;
       const double size = std::sqrt(product(dx, dx));
       if (!std::isfinite(size)) continue;
       for (double& one : dx) one *= std::min(1.0, kMostDisplacement / size);
@@ -389,8 +327,8 @@ class Rest {
   RestSearch failure(const std::vector<Vector>& T, const Vector& a) const {
     Vector u(n_);
     for (std::size_t k = 0; k < T.size(); ++k) add(a[k], T[k], u);
-    const auto fastest = std::max_element(
-        u.begin(), u.end(), [](double one, double other) { return std::fabs(one) < std::fabs(other); });
+    const auto fastest = std::max_element(u.begin(), u.end(),
+                                          [](double one, double other) { return std::fabs(one) < std::fabs(other); });
     const auto j = static_cast<std::size_t>(fastest - u.begin());
     return {.is_stable = false,
             .joint = std::string(joint_of(model_, model_.coordinate_count() + static_cast<int>(j))),

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Static equilibrium of the joints that nothing holds, with actuators and stated coordinates where they are.
 //
-// C u = 0 are the speeds that keep all closing rows, prescribed motions, held rows and held coordinates. T is a basis of
-// these speeds, scaled by the size of the mechanism, and x the displacement along it, after which the rows are closed
-// again. With u'_free the accelerations of the mechanism at rest without row forces, M its mass matrix:
+// C u = 0 are the speeds that keep all closing rows, prescribed motions, held rows and held coordinates. T is a basis
+// of these speeds, scaled by the size of the mechanism, and x the displacement along it, after which the rows are
+// closed again. With u'_free the accelerations of the mechanism at rest without row forces, M its mass matrix:
 //   f = T^T M u'_free                 generalised force along x; forces of C do no work there                  (1)
 //   (K + mu G) dx = f,  K = -df/dx,  G = T^T M T                                                               (2)
-// mu >= 0 is the smallest of its steps for which (2) is positive definite, dx is at most kMostDisplacement, and the work
-// (f_before + f_after) dx / 2 is positive: the potential falls until f = 0. The result is stable if K is positive
+// mu >= 0 is the smallest of its steps for which (2) is positive definite, dx is at most kMostDisplacement, and the
+// work (f_before + f_after) dx / 2 is positive: the potential falls until f = 0. The result is stable if K is positive
 // (semi)definite; from an unstable equilibrium the search goes on beside it. M comes from the kinetic energy,
 // v^T M w = (E(v + w) - E(v - w)) / 2; K from central differences.
 // Source: Nocedal and Wright 2006, sections 3.4 and 18.4 (modified Newton on the null space of the constraints).
