@@ -70,7 +70,7 @@ TEST(AlgebraicPressures, BalanceBehindAShutReliefValve) {
   }
 }
 
-// two nodes with a shut check valve between them: the first knows of the relief valve only through the second
+// two nodes with a shut check valve between them: the first reaches the relief valve only through the second
 TEST(AlgebraicPressures, BalanceThroughAShutValveOneByOne) {
   HydraulicsDef def;
   def.start = StartState::table13;

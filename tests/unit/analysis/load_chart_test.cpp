@@ -121,7 +121,7 @@ TEST(LoadChart, TheBagOfTheCraneHangsPlumb) {
     LoadChartOptions options{.scene = crane, .over = {"Pillar_LiftBoom=0deg..60deg:2"}};
     const std::size_t number = angle == 0 ? 0 : 1;
     const ChartPose pose = chart_of(options).poses.at(number);
-    // the bag's angle in the scene is 25 deg less than the boom's start of 15 deg asks for
+    // the bag's angle in the scene that makes it plumb: 25 deg less than the boom's
     options.overrides = {"Bag.orientation=[" + std::to_string(angle - 25) + " deg, 0, 0]"};
     const ChartPose plumb = chart_of(options).poses.at(number);
     EXPECT_NEAR(pose.reach, plumb.reach, 1e-7);
