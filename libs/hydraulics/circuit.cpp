@@ -61,7 +61,7 @@ inline Circuit::Capacity Circuit::capacity(std::size_t volume, const double* y) 
     return {vapour_.capacity[volume], 0, V, 0};
   }
   const ValueSlope oil = oil_.at(p);
-  double V = contents.volume, lumped = contents.volume, walls = contents.wall, d_walls = 0;
+  double V = contents.volume, lumped = contents.volume + contents.nominal, walls = contents.wall, d_walls = 0;
   for (std::size_t k = contents.begin; k < contents.end; ++k) {
     const Piece& piece = pieces_[k];
     const double V_k = piece.content_at(y);

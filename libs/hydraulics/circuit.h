@@ -238,6 +238,7 @@ class Circuit {
   struct VolumeContent {
     double volume = 0;               // m3
     double wall = 0;                 // m3/Pa, sum of volume x wall compressibility
+    double nominal = 0;              // m3, oil that scales the row of a quasi-static volume without content
     std::size_t begin = 0, end = 0;  // in pieces_
   };
 

@@ -12,7 +12,8 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr double kNearFloor = 2;  // in pressure scales: range where air makes oil soft
+constexpr double kNearFloor = 2;          // in pressure scales: range where air makes oil soft
+constexpr double kNominalContent = 1e-6;  // m3, of a quasi-static volume without content
 
 }  // namespace
 
@@ -99,6 +100,10 @@ void Circuit::add_contents(const CircuitBuilder& builder) {
       }
     }
     volume.end = pieces_.size();
+    // validated: quasi-static, and its row is the flows over a capacity
+    if (volume.volume == 0 && volume.end == volume.begin && !is_fixed_[static_cast<std::size_t>(i)]) {
+      volume.nominal = kNominalContent;
+    }
     const auto is_chamber = [](const Piece& piece) { return piece.position >= 0; };
     if (std::any_of(pieces_.begin() + static_cast<std::ptrdiff_t>(volume.begin), pieces_.end(), is_chamber)) {
       with_chambers_.push_back(static_cast<std::size_t>(i));

@@ -77,13 +77,9 @@ std::size_t at(int i) noexcept {
   return static_cast<std::size_t>(i);
 }
 
-constexpr int kMostCorrections = 40;    // iterations of the quasi-static pressures; steps to a far solution are
-                                        // halved often
-constexpr double kConsistent = 1e-3;    // share of the solver's tolerance
 constexpr double kMisplacedOil = 1e-3;  // share of a pressure's size in an Euler sub-step: a volume that empties from
                                         // 150 to 4 bar gives up 1.1 to 1.2 times its oil, without this bound 5 times
-constexpr double kLargestCorrection = 0.5;  // share of a pressure and its scale, per iteration
-constexpr int kRadiusIterations = 200;      // iterations of the one estimate before a run
+constexpr int kRadiusIterations = 200;  // iterations of the one estimate before a run
 
 }  // namespace
 
@@ -165,40 +161,8 @@ void CircuitIntegrator::list_quasi_static() {
   }
   if (solver_->takes_algebraic_rows()) solver_->set_mass(mass_);
   algebraic_ = math::DenseLu(quasi_static_.size());
-}
-
-// Newton on the pressures of the quasi-static volumes, all other states held, for flows that add up to zero. The rows
-// are those flows over C: without the slope of C the iteration would converge to soft oil instead of balanced flows.
-bool CircuitIntegrator::make_consistent() noexcept {
-  const std::size_t n = quasi_static_.size();
-  if (n == 0) return true;
-  const auto stride = static_cast<std::size_t>(circuit_.state_count());
-  for (int k = 0; k < kMostCorrections; ++k) {
-    circuit_.rates(y_.data(), f_.data());
-    const double* const J = circuit_.jacobian(y_.data(), f_.data());
-    const std::span<double> a = algebraic_.matrix();
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto row = static_cast<std::size_t>(quasi_static_[i]);
-      for (std::size_t j = 0; j < n; ++j) a[i * n + j] = -J[row * stride + static_cast<std::size_t>(quasi_static_[j])];
-      a[i * n + i] -= f_[row] * circuit_.capacity_growth(quasi_static_[i], y_.data());
-      outflow_[i] = f_[row];
-    }
-    if (!algebraic_.factorise()) return false;
-    algebraic_.solve({outflow_.data(), n});
-    double largest = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto row = static_cast<std::size_t>(quasi_static_[i]);
-      const double size = options_.scale[row] + std::fabs(y_[row]);
-      if (!std::isfinite(outflow_[i])) return false;
-      y_[row] += std::clamp(outflow_[i], -kLargestCorrection * size, kLargestCorrection * size);
-      largest = std::max(largest, std::fabs(outflow_[i]) / size);
-    }
-    const bool is_bound = circuit_.bound(y_.data());
-    if (largest > kConsistent * options_.relative_tolerance) continue;
-    was_clamped_ = was_clamped_ || is_bound;
-    return true;
-  }
-  return false;
+  before_.assign(quasi_static_.size(), 0.0);
+  balanced_ = before_;
 }
 
 // Reports a step change of an input to a multistep solver.

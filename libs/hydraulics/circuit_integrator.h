@@ -142,6 +142,8 @@ class CircuitIntegrator final : private math::StiffSystem {
   void list_quasi_static();
   void note_inputs() noexcept;
   [[nodiscard]] bool make_consistent() noexcept;
+  [[nodiscard]] bool correct_by_newton() noexcept;
+  [[nodiscard]] bool balance(std::size_t row) noexcept;
   [[nodiscard]] StepFlag failure_flag() const noexcept {
     return report_.is_impossible ? StepFlag::ended : StepFlag::non_finite;
   }
@@ -168,6 +170,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   double quasi_static_above_;   // 1/s
   std::vector<char> may_be_quasi_static_, is_marked_, is_quasi_static_;  // by volume
   std::vector<StateIndex> quasi_static_;
+  std::vector<double> before_, balanced_;  // Pa, by quasi-static volume
   std::vector<double> mass_;
   math::DenseLu algebraic_;  // matrix of the quasi-static rows and columns
   bool is_consistent_ = true;

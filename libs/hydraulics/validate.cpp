@@ -186,10 +186,10 @@ void check_volumes(const HydraulicsDef& def, Problems& errors) {
   for (const VolumeDef& volume : def.volumes) {
     check_fields(volume.name, kVolumeFields, &volume, errors);
     check_quasi_static(def, volume, errors);
-    if (!has_content(def, volume)) {
+    if (!volume.quasi_static && !has_content(def, volume)) {
       errors.push_back({volume.name + ".rigid_volume",
                         "the volume has no content: no hose, line or chamber is connected",
-                        "a hose, a cylinder, a rigid_volume, or fixed: true", ""});
+                        "a hose, a cylinder, a rigid_volume, quasi_static: true, or fixed: true", ""});
     }
   }
 }

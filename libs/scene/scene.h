@@ -102,6 +102,7 @@ struct Scene {
   std::vector<Asset> assets;
   std::vector<TableFile> table_files;          // tables that stay in their files; the read ones are among the assets
   std::vector<std::string> other_payloads;     // bodies that the machine lifts beside mechanics.payload
+  std::vector<std::string> started_joints;     // joints that `start:` names; none in a scene from its expanded text
   std::vector<ParameterText> parameter_texts;  // of the scene's own file; none in a scene from its expanded text
   std::vector<MeshInertia> mesh_inertias;      // results of the files read; none in a scene from its expanded text
 

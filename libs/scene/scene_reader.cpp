@@ -30,6 +30,7 @@
 #include "scene/start_reader.h"
 #include "scene/table_file.h"
 #include "scene/units.h"
+#include "scene/unsettled_start.h"
 #include "scene/without_effect.h"
 
 namespace slew::scene {
@@ -75,7 +76,10 @@ class SceneReader {
     check_content();
     find_changes_behind_the_end();
     if (report_.is_clean() && !lacks_files()) {
-      check_problems([&](Problems&, Problems& warnings) { find_without_effect(scene_, warnings); });
+      check_problems([&](Problems&, Problems& warnings) {
+        find_without_effect(scene_, warnings);
+        find_unsettled_start(scene_, warnings);
+      });
     }
     if (report_.is_clean()) add_assets_of_tables();
     if (report_.is_clean()) {

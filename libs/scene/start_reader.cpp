@@ -93,7 +93,9 @@ class StartReader {
 void read_start(const Node& start, Scene& scene, const ReadContext& context, Problems& problems) {
   const std::size_t known = context.report.size();
   const auto coordinates = StartReader(scene.mechanics, context).read(start);
-  if (context.report.size() == known) multibody::put_joints(scene.mechanics, coordinates, problems);
+  if (context.report.size() > known) return;
+  for (const multibody::StartCoordinate& coordinate : coordinates) scene.started_joints.push_back(coordinate.joint);
+  multibody::put_joints(scene.mechanics, coordinates, problems);
 }
 
 void read_payload(const Node& payload, Scene& scene, const ReadContext& context) {

@@ -11,6 +11,7 @@
 #include "analysis/description/instant.h"
 #include "analysis/description/largest_force.h"
 #include "analysis/description/port_limits.h"
+#include "analysis/description/settled_pose.h"
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
@@ -51,9 +52,14 @@ class Finder {
     multibody::Model model = mechanics.model();
     multibody::State state = mechanics.state();
     std::fill(state.u.begin(), state.u.end(), 0.0);
-    for (const std::string& joint : pose_.joints) put(joint, model, state);
     const int payload = mechanics_node::payload_of(scene_.mechanics, model);
     if (payload == 0) return;
+    if (!pose_.joints.empty()) {
+      std::vector<std::string> held;
+      for (const std::string& joint : pose_.joints) held.push_back(put(joint, model, state));
+      result.refusal = settle_free_joints(model, scene_.ports.size(), held, state);
+      if (!result.refusal.empty()) return;
+    }
     multibody::Workspace ws(model);
     const std::size_t m = scene_.ports.size();
     std::vector<double> ratio, F(m), slope(m);
@@ -80,8 +86,8 @@ class Finder {
     slope_ = std::move(slope);
   }
 
-  // "Joint=20 deg"
-  static void put(const std::string& text, const multibody::Model& model, multibody::State& state) {
+  // "Joint=20 deg"; gives the joint's name
+  static std::string put(const std::string& text, const multibody::Model& model, multibody::State& state) {
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
     const int index = equals == std::string::npos ? -1 : multibody::find_joint(model, name);
@@ -105,6 +111,7 @@ class Finder {
     }
     state.q[static_cast<std::size_t>(link.q)] =
         read_option("--pose", text.substr(equals + 1), turns ? Dimension::angle : Dimension::length);
+    return name;
   }
 
   // (2), (3)

@@ -13,6 +13,7 @@
 #include "analysis/description/instant.h"
 #include "analysis/description/largest_force.h"
 #include "analysis/description/port_limits.h"
+#include "analysis/description/settled_pose.h"
 #include "analysis/load_chart/tipping.h"
 #include "analysis/parameter_sweep/variation.h"
 #include "core/failure.h"
@@ -174,6 +175,8 @@ class ChartMaker {
     multibody::Workspace ws(model);
     const int payload = mechanics_node::payload_of(scene.mechanics, model);
     if (payload == 0) refuse_chart("the scene has no payload that moves", "name one by `payload:`");
+    pose.refusal = settle_free_joints(model, scene.ports.size(), scene.started_joints, state);
+    if (!pose.refusal.empty()) return;
     multibody::observe(model, state, ws);
     chart_.payload = model.bodies[at(payload)].name;
     chart_.mass = mechanics_node::mass_of(model, payload);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <numbers>
 
 #include "core/index.h"
 #include "multibody/build/build_rows.h"
@@ -95,7 +97,17 @@ class ForceBuilder {
       }
       entry.turn = entry.sign * (math::dot(joint_axis, axis) > 0 ? 1.0 : -1.0);
       element.offset -= entry.turn * model_.start_q[at(link.q)];
+      const std::int64_t turns = start_turns_of(entry.link);
+      if (turns != 0) element.offset += entry.turn * 2 * std::numbers::pi * static_cast<double>(turns);
     }
+  }
+
+  // of a link that a revolute joint moves
+  [[nodiscard]] std::int64_t start_turns_of(int link) const {
+    for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+      if (model_.joints[j].link == link) return def_.joints[j].first.start_turns;
+    }
+    return 0;
   }
 
   const MechanicsDef& def_;

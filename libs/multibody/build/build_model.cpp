@@ -175,13 +175,16 @@ class Builder {
   bool begin_drives(int joint) {
     const JointDef& def = def_.joints[at(joint)];
     const Pose &body1 = poses_[at(body_index(def.body1))], &body2 = poses_[at(body_index(def.body2))];
-    return multibody::begin_drives(def_, joint, start_coordinates(def.type, joint_frames(def, body1, body2)), model_);
+    return multibody::begin_drives(def_, joint, start_coordinates(def, joint_frames(def, body1, body2)), model_);
   }
 
   // coordinates at the start as the tree walks the joint: from the poses, and from the laws of those that have one
   [[nodiscard]] std::array<double, 2> coordinates_of(const JointDef& def, const TreeEdge& edge,
                                                      const JointFrames& frames) const {
-    std::array<double, 2> q = start_coordinates(def.type, frames);
+    // in the order of the tree, but with the turns of a joint that it walks backwards
+    JointDef walked = def;
+    if (edge.is_reversed && def.type == JointType::universal) std::swap(walked.first, walked.second);
+    std::array<double, 2> q = start_coordinates(walked, frames);
     for (const Drive& drive : model_.drives) {
       if (drive.joint == edge.joint) q[at(place_of(drive, edge))] = evaluate(drive.law, 0).position;
     }

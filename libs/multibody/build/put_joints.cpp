@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -32,12 +33,18 @@ constexpr double kRoughTolerance = 0.1;
 constexpr double kTurnOfStep = 0.05;   // rad
 constexpr double kSlideOfStep = 0.05;  // m
 constexpr int kMostStartSteps = 200;
+constexpr int kMostGearedSteps = 2000;  // of gears, which whole turns move too
+constexpr double kTurn = 2 * std::numbers::pi;
 // change of a pose that is rounding [m, rad]
 constexpr double kSamePose = 1e-12;
 
 const JointDef& joint_named(const MechanicsDef& mechanics, const std::string& name) {
   return *std::find_if(mechanics.joints.begin(), mechanics.joints.end(),
                        [&](const JointDef& joint) { return joint.name == name; });
+}
+
+JointAxisDef& axis_of(JointDef& joint, int number) {
+  return number == 1 ? joint.second : joint.first;
 }
 
 // Bodies, joints and gears alone; limits and speeds belong to the start that is looked for.
@@ -49,7 +56,8 @@ MechanicsDef without_laws(const MechanicsDef& mechanics) {
   def.joints = mechanics.joints;
   def.gears = mechanics.gears;
   for (JointDef& joint : def.joints) {
-    joint.first = joint.second = {};
+    joint.first = {.start_turns = joint.first.start_turns};
+    joint.second = {.start_turns = joint.second.start_turns};
     joint.initial_velocity = joint.initial_velocity_2 = kNotGiven;
     joint.initial_translation = joint.initial_rotation = kNoneGiven;
   }
@@ -97,10 +105,12 @@ class StartPlacement {
       const bool turns = is_angle(joint_named(def_, coordinate.joint).type, coordinate.number);
       from.push_back(coordinates_of(joint_named(def_, coordinate.joint), poses)[at(coordinate.number)]);
       const double gap = coordinate.value - from.back();
-      travel.push_back(turns ? std::remainder(gap, 2 * std::numbers::pi) : gap);
+      // a pose has no whole turns, but a gear moves its other joint by them
+      travel.push_back(turns && def_.gears.empty() ? std::remainder(gap, kTurn) : gap);
       steps = std::max(steps, std::ceil(std::fabs(travel.back()) / (turns ? kTurnOfStep : kSlideOfStep)));
     }
-    const int count = has_loops() ? static_cast<int>(std::min<double>(steps, kMostStartSteps)) : 1;
+    const int most = def_.gears.empty() ? kMostStartSteps : kMostGearedSteps;
+    const int count = has_loops() ? static_cast<int>(std::min<double>(steps, most)) : 1;
     for (int step = 1; step <= count && problems_.size() == known; ++step) {
       std::vector<double> values;
       for (std::size_t k = 0; k < from.size(); ++k) {
@@ -116,12 +126,61 @@ class StartPlacement {
     return problems_.size() > known ? std::vector<Pose>() : poses;
   }
 
+  // Whole turns of the named joints and of geared ones, after place(), into the joints of the definition.
+  void keep_turns(const std::vector<Pose>& poses, std::vector<JointDef>& joints) {
+    for (const StartCoordinate& coordinate : coordinates_) {
+      JointDef& joint = def_.joints[at(index_of(coordinate.joint))];
+      if (!is_angle(joint.type, coordinate.number)) continue;
+      const double shown = start_coordinates(joint.type, frames_of(joint, poses))[at(coordinate.number)];
+      const auto turns = static_cast<std::int64_t>(std::round((coordinate.value - shown) / kTurn));
+      if (is_in_tree(coordinate.joint)) {
+        axis_of(joint, coordinate.number).start_turns = turns;
+      } else if (turns != 0 && has_limits(axis_of(joints[at(index_of(coordinate.joint))], coordinate.number))) {
+        problems_.push_back(
+            {"start." + coordinate.joint,
+             fmt::format("{:.6g} rad is beyond half a turn, and the limits of a joint that closes a loop "
+                         "are compared with an angle between -pi and pi",
+                         coordinate.value),
+             "no limits at this joint, or a coordinate of another joint of the loop", ""});
+      }
+    }
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      joints[j].first.start_turns = def_.joints[j].first.start_turns;
+      joints[j].second.start_turns = def_.joints[j].second.start_turns;
+    }
+  }
+
  private:
   static std::size_t at(int number) { return static_cast<std::size_t>(number); }
 
+  [[nodiscard]] JointFrames frames_of(const JointDef& joint, const std::vector<Pose>& poses) const {
+    return joint_frames(joint, poses[at(number_of_(joint.body1))], poses[at(number_of_(joint.body2))]);
+  }
+
   [[nodiscard]] std::array<double, 2> coordinates_of(const JointDef& joint, const std::vector<Pose>& poses) const {
-    const Pose &body1 = poses[at(number_of_(joint.body1))], &body2 = poses[at(number_of_(joint.body2))];
-    return start_coordinates(joint.type, joint_frames(joint, body1, body2));
+    return start_coordinates(joint, frames_of(joint, poses));
+  }
+
+  [[nodiscard]] int index_of(const std::string& joint) const {
+    return static_cast<int>(&joint_named(def_, joint) - def_.joints.data());
+  }
+
+  [[nodiscard]] bool is_in_tree(const std::string& joint) const {
+    const int index = index_of(joint);
+    return std::any_of(tree_.begin(), tree_.end(), [index](const TreeEdge& edge) { return edge.joint == index; });
+  }
+
+  // the tree's coordinates of geared joints count whole turns
+  void follow_turns(const Model& model, const State& state, const std::vector<Pose>& poses) {
+    for (const GearDef& gear : def_.gears) {
+      for (const std::string& name : {gear.joint1, gear.joint2}) {
+        JointDef& joint = def_.joints[at(index_of(name))];
+        if (joint.type != JointType::revolute) continue;
+        const Link& link = model.links[at(model.joints[at(index_of(name))].link)];
+        const double shown = start_coordinates(joint.type, frames_of(joint, poses))[0];
+        joint.first.start_turns = static_cast<std::int64_t>(std::round((state.q[at(link.q)] - shown) / kTurn));
+      }
+    }
   }
 
   // The tree with the named coordinates at these values and all others as they are.
@@ -179,6 +238,7 @@ class StartPlacement {
       poses[i] = {math::rotation_of({w, x, y, z}), Vec3(found.position)};
     }
     take(poses);
+    follow_turns(model, state, poses);
     // rows may be open before the last step, where the machine passes a dead centre
     if (is_last) report_open(model, report);
     return poses;
@@ -215,8 +275,10 @@ void put_joints(MechanicsDef& mechanics, std::span<const StartCoordinate> coordi
                         "poses of the bodies", ""});
     return;
   }
-  const std::vector<Pose> poses = StartPlacement(mechanics, coordinates, problems).place();
+  StartPlacement placement(mechanics, coordinates, problems);
+  const std::vector<Pose> poses = placement.place();
   if (poses.empty()) return;
+  placement.keep_turns(poses, mechanics.joints);
   const BodyNumbers number_of(mechanics);
   for (std::size_t i = 0; i < mechanics.bodies.size(); ++i) {
     BodyDef& body = mechanics.bodies[i];

@@ -5,7 +5,8 @@
 // named here then go to their coordinates in small steps; the tree beyond them moves along, its other joints as they
 // are. At each step, Newton's method (assembly.h) closes all loops and gears while the named coordinates are held as
 // prescribed motions are, so that a loop stays on the branch on which the poses begin. The bodies that follow are those
-// that the joints' rows move in the metric of the masses.
+// that the joints' rows move in the metric of the masses. An angle beyond half a turn gives the joint its whole turns
+// (JointAxisDef::start_turns), and those joints that gears turn with it.
 //
 // Not covered: flexible and segmented bodies, joints without coordinates (spherical, fixed).
 #pragma once
@@ -24,9 +25,10 @@ struct StartCoordinate {
   double value = 0;  // rad or m
 };
 
-// Changes position and orientation of the bodies in `mechanics`; a body whose pose relative to its `relative_to` stays
-// keeps its numbers. Appends to problems where the poses are no beginning, or where loops cannot close; paths begin
-// with "start.". Pre-condition: all names exist, every number is one of its joint. Builds models: takes milliseconds.
+// Changes position and orientation of the bodies in `mechanics`, and the whole turns of its joints; a body whose pose
+// relative to its `relative_to` stays keeps its numbers. Appends to problems where the poses are no beginning, or where
+// loops cannot close; paths begin with "start.". Pre-condition: all names exist, every number is one of its joint.
+// Builds models: takes milliseconds.
 void put_joints(MechanicsDef& mechanics, std::span<const StartCoordinate> coordinates, Problems& problems);
 
 }  // namespace slew::multibody

@@ -2,6 +2,9 @@
 #include "multibody/build/start_pose.h"
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
 
 namespace slew::multibody {
 
@@ -45,6 +48,15 @@ std::array<double, 2> start_coordinates(JointType type, const JointFrames& frame
     default:
       return {};
   }
+}
+
+std::array<double, 2> start_coordinates(const JointDef& joint, const JointFrames& frames) noexcept {
+  std::array<double, 2> q = start_coordinates(joint.type, frames);
+  const std::int64_t turns[] = {joint.first.start_turns, joint.second.start_turns};
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (turns[k] != 0) q[k] += 2 * std::numbers::pi * static_cast<double>(turns[k]);
+  }
+  return q;
 }
 
 Pose frame_at(JointType type, const Pose& frame1, const std::array<double, 2>& q) noexcept {

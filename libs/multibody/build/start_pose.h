@@ -14,6 +14,9 @@ namespace slew::multibody {
 // Coordinates of a joint at the start, as model.h lists them, unused ones zero: angles in (-pi, pi].
 [[nodiscard]] std::array<double, 2> start_coordinates(JointType type, const JointFrames& frames) noexcept;
 
+// The same with the joint's whole turns at the start.
+[[nodiscard]] std::array<double, 2> start_coordinates(const JointDef& joint, const JointFrames& frames) noexcept;
+
 // Frame 2 for given coordinates. Pre-condition: the joint has one or two.
 [[nodiscard]] Pose frame_at(JointType type, const Pose& frame1, const std::array<double, 2>& q) noexcept;
 

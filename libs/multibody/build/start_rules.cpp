@@ -139,7 +139,7 @@ class StartRules {
   // a start beyond a limit would throw the machine
   void check_limits(const JointDef& joint, const JointFrames& frames) {
     for (int number = 0; number < coordinate_count(joint.type); ++number) {
-      check_limits(joint, number, start_coordinates(joint.type, frames)[static_cast<std::size_t>(number)]);
+      check_limits(joint, number, start_coordinates(joint, frames)[static_cast<std::size_t>(number)]);
     }
   }
 

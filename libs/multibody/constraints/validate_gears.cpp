@@ -81,7 +81,7 @@ class GearRules {
     const JointDef& joint = *joint_of(name);
     const Pose& body1 = poses[static_cast<std::size_t>(find_body(m_, joint.body1))];
     const Pose& body2 = poses[static_cast<std::size_t>(find_body(m_, joint.body2))];
-    return start_coordinate(joint.type, joint_frames(joint, body1, body2));
+    return start_coordinates(joint, joint_frames(joint, body1, body2))[0];
   }
 
   const MechanicsDef& m_;

@@ -83,6 +83,14 @@ constexpr std::array<Field, 10> axis_rows(const AxisDimensions& d, const AxisKey
                                        {.range = kFromOne, .doc = "breakaway over dry friction, of bristles"})};
 }
 
+// of an angle
+template <auto Axis>
+constexpr std::array<Field, 1> turns_row(std::string_view key) {
+  return {field<Axis, &JointAxisDef::start_turns>(
+      key, {.range = {.min = -1e6, .max = 1e6},
+            .doc = "whole turns of the coordinate at the start, beyond the half turn that poses can show"})};
+}
+
 template <std::size_t... Sizes>
 constexpr auto joined(const std::array<Field, Sizes>&... parts) {
   std::array<Field, (Sizes + ...)> all{};
@@ -103,7 +111,8 @@ constexpr std::array<Field, 1> initial_velocity_row(const AxisDimensions& d) {
 }
 
 constexpr auto kRevoluteFields =
-    joined(kFrames, initial_velocity_row(kRotation), axis_rows<&JointDef::first>(kRotation, kPlain));
+    joined(kFrames, initial_velocity_row(kRotation), axis_rows<&JointDef::first>(kRotation, kPlain),
+           turns_row<&JointDef::first>("start_turns"));
 constexpr auto kPrismaticFields =
     joined(kFrames, initial_velocity_row(kTranslation), axis_rows<&JointDef::first>(kTranslation, kPlain));
 
@@ -133,16 +142,19 @@ constexpr std::array<Field, 2> kUniversalSpeeds = {
                                        {.dimension = angular_velocity, .doc = "rate about z of frame 1 at the start"}),
     field<&JointDef::initial_velocity_2>(
         "initial_velocity_2", {.dimension = angular_velocity, .doc = "rate about z of frame 2 at the start"})};
-constexpr auto kUniversalFields = joined(kFrames, kUniversalSpeeds, axis_rows<&JointDef::first>(kRotation, kFirst),
-                                         axis_rows<&JointDef::second>(kRotation, kSecond));
+constexpr auto kUniversalFields =
+    joined(kFrames, kUniversalSpeeds, axis_rows<&JointDef::first>(kRotation, kFirst),
+           turns_row<&JointDef::first>("start_turns_1"), axis_rows<&JointDef::second>(kRotation, kSecond),
+           turns_row<&JointDef::second>("start_turns_2"));
 
 constexpr std::array<Field, 2> kCylindricalSpeeds = {
     field<&JointDef::initial_velocity>("initial_angular_velocity",
                                        {.dimension = angular_velocity, .doc = "rate about z at the start"}),
     field<&JointDef::initial_velocity_2>("initial_velocity",
                                          {.dimension = velocity, .doc = "rate along z at the start"})};
-constexpr auto kCylindricalFields = joined(kFrames, kCylindricalSpeeds, axis_rows<&JointDef::first>(kRotation, kAngle),
-                                           axis_rows<&JointDef::second>(kTranslation, kPlain));
+constexpr auto kCylindricalFields =
+    joined(kFrames, kCylindricalSpeeds, axis_rows<&JointDef::first>(kRotation, kAngle),
+           turns_row<&JointDef::first>("start_turns_angle"), axis_rows<&JointDef::second>(kTranslation, kPlain));
 
 constexpr Field kInPlaneFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2};
 constexpr Field kInLineFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2};

@@ -94,6 +94,7 @@ struct JointAxisDef {
   double bristle_stiffness = 0;    // N m/rad or N/m; > 0: bristles that hold at rest, instead of smoothing
   double bristle_damping = 0;      // N m s/rad or N s/m, of the bristles
   double breakaway_ratio = 1;      // breakaway over coulomb_friction, >= 1; falls with friction_speed
+  std::int64_t start_turns = 0;    // whole turns that an angle has at the start beyond the (-pi, pi] of the poses
 };
 
 // One struct for every joint type; each type's field table lists the members that it has, in its own dimensions.

@@ -11,6 +11,7 @@
 #include "multibody/build/assembly.h"
 #include "multibody/build/start_pose.h"
 #include "multibody/forces/validate_elements.h"
+#include "multibody/joints/joint_axes.h"
 #include "multibody/model/field_tables.h"
 #include "multibody/motions/build_drives.h"
 
@@ -60,10 +61,13 @@ class MotionRules {
     const auto number = static_cast<std::size_t>(driven_coordinate(motion, joint.type));
     const Pose& body1 = poses[static_cast<std::size_t>(number_of_(joint.body1))];
     const Pose& body2 = poses[static_cast<std::size_t>(number_of_(joint.body2))];
-    const double pose = start_coordinates(joint.type, joint_frames(joint, body1, body2))[number];
+    const double pose = start_coordinates(joint, joint_frames(joint, body1, body2))[number];
     const MotionValue begin = evaluate(motion_law(motion, pose), 0);
     const bool is_angle = motion.kind == MotionKind::rotation;
-    const double gap = is_angle ? std::remainder(begin.position - pose, 2 * std::numbers::pi) : begin.position - pose;
+    // without stated turns the poses alone are compared
+    const bool has_turns = axis_of(joint, static_cast<int>(number)).start_turns != 0;
+    double gap = begin.position - pose;
+    if (is_angle && !has_turns) gap = std::remainder(gap, 2 * std::numbers::pi);
     const double tolerance = std::max(m_.assembly_tolerance, kFrameTolerance);
     const char* unit = is_angle ? "rad" : "m";
     if (!(std::fabs(gap) <= tolerance)) {

@@ -3,6 +3,7 @@
 //   M u' = Q + J^T f,   J u' = 0,   J = e_2 - r e_1 for each gear.
 #include <gtest/gtest.h>
 
+#include "multibody/build/put_joints.h"
 #include "multibody/constraints/gear.h"
 #include "multibody/formulations/dynamics.h"
 #include "tests/properties/multibody/assembled.h"
@@ -126,6 +127,25 @@ TEST(GearedTrees, MoveAlikeInEveryFormulation) {
       }
     }
   });
+}
+
+// a start of 200 degrees, of which poses show -160: every formulation takes over the coordinate and its gear
+TEST(Gears, StartBeyondHalfATurnInEveryFormulation) {
+  MechanicsDef def;
+  def.bodies = {{.name = "A", .mass = 1, .inertia = {1, 1, 1}},
+                {.name = "B", .position = {1, 0, 0}, .mass = 1, .inertia = {1, 1, 1}}};
+  def.joints = {{.name = "J1", .body2 = "A", .initial_velocity = 1}, {.name = "J2", .point1 = {1, 0, 0}, .body2 = "B"}};
+  def.gears = {{.name = "G", .joint1 = "J1", .joint2 = "J2", .ratio = 0.5, .offset = 0}};
+  Problems problems;
+  put_joints(def, std::vector<StartCoordinate>{{"J1", 0, 200 * M_PI / 180}}, problems);
+  ASSERT_TRUE(problems.empty());
+  for (const Formulation formulation : kFormulations) {
+    def.formulation = formulation;
+    Formulated moving(def);
+    moving.run(0.1, 1e-3);
+    EXPECT_NEAR(moving.state.q[0], 200 * M_PI / 180 + 0.1, 1e-6) << name_of(formulation);
+    EXPECT_NEAR(moving.state.q[1], 100 * M_PI / 180 + 0.05, 1e-6) << name_of(formulation);
+  }
 }
 
 }  // namespace gears_test

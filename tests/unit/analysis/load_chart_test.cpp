@@ -87,6 +87,64 @@ TEST(LoadChart, OfTwoBarsIsTheBalanceOfMoments) {
   EXPECT_GT(limiting[3], 0) << "tipping far from it";
 }
 
+// The load hangs on a free hinge at the boom's end, so it pulls there, below it, at every pose; the chassis of 2 t tips
+// about x = 1.4 m.
+TEST(LoadChart, ALoadOnAFreeHingeHangsBelowTheBoomsEnd) {
+  const LoadChart chart = chart_of({.scene = SLEWRING_SOURCE_DIR "/tests/unit/analysis/hinged_load.yaml",
+                                    .over = {"Foot=-20deg..20deg:3"},
+                                    .lines = {"1.4 -1 -1.1, 1.4 1 -1.1"},
+                                    .structure = {"L_Cyl=70kN"}});
+  ASSERT_EQ(chart.poses.size(), 3u);
+  const double step = 1e-6;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const ChartPose& pose = chart.poses[i];
+    ASSERT_TRUE(pose.has_load()) << pose.refusal;
+    const double a = (-20 + 20 * static_cast<double>(i)) * kDegree, c = std::cos(a), s = std::sin(a);
+    const double tip = 3 * c - 0.2 * s, boom = 1.5 * c - 0.1 * s;
+    EXPECT_NEAR(pose.reach, tip, 1e-7);
+    EXPECT_NEAR(pose.height, 3 * s + 0.2 * c - 1.3, 1e-7);
+    // by virtual work on two equal cylinders
+    const auto length = [](double angle) {
+      return std::hypot(std::cos(angle) + 0.1 * std::sin(angle) - 0.5, std::sin(angle) - 0.1 * std::cos(angle) + 1.1);
+    };
+    const double lever = 2 * (length(a + step) - length(a - step)) / (2 * step);
+    EXPECT_NEAR(pose.loads[2], (70e3 * lever / kGravity - 300 * boom) / tip, 0.5);
+    const double tipping = (2000 * (1.4 + 0.5) + 300 * (1.4 - boom)) / (tip - 1.4);
+    EXPECT_NEAR(pose.loads.back(), tipping, 1e-5 * tipping) << pose.settings[0];
+  }
+}
+
+// the crane's bag on its ball, as if it had been put plumb by hand
+TEST(LoadChart, TheBagOfTheCraneHangsPlumb) {
+  const std::string crane = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
+  for (const double angle : {0.0, 60.0}) {
+    LoadChartOptions options{.scene = crane, .over = {"Pillar_LiftBoom=0deg..60deg:2"}};
+    const std::size_t number = angle == 0 ? 0 : 1;
+    const ChartPose pose = chart_of(options).poses.at(number);
+    // the bag's angle in the scene that makes it plumb: 25 deg less than the boom's
+    options.overrides = {"Bag.orientation=[" + std::to_string(angle - 25) + " deg, 0, 0]"};
+    const ChartPose plumb = chart_of(options).poses.at(number);
+    EXPECT_NEAR(pose.reach, plumb.reach, 1e-7);
+    EXPECT_NEAR(pose.height, plumb.height, 1e-7);
+    EXPECT_NEAR(pose.load, plumb.load, 1e-6 * plumb.load);
+    EXPECT_NEAR(pose.reach, angle == 0.0 ? 5.331 : 4.063, 5e-4);
+    EXPECT_NEAR(pose.load, angle == 0.0 ? 1538 : 385, 0.5);
+  }
+}
+
+TEST(LoadChart, AFreeJointWithoutRestIsNamed) {
+  const LoadChartOptions options{.scene = SLEWRING_SOURCE_DIR "/tests/unit/analysis/hinged_load.yaml",
+                                 .overrides = {"Hang.type=prismatic", "Hang.orientation1=[0, 0, 0]",
+                                               "Hang.orientation2=[0, 0, 0]", "Hang.viscous_friction=5 Ns/m"},
+                                 .over = {"Foot=0deg..5deg:2"}};
+  try {
+    static_cast<void>(chart_of(options));
+    ADD_FAILURE();
+  } catch (const Failure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("Hang has no stable equilibrium"), std::string::npos) << failure.what();
+  }
+}
+
 TEST(LoadChart, APoseBeyondAStrokeHasNoLoad) {
   const LoadChart chart = chart_of({.scene = kTwoBars, .over = {"Boom_Foot=-40deg,30deg"}});
   ASSERT_EQ(chart.poses.size(), 2u);

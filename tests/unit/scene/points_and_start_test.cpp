@@ -6,6 +6,8 @@
 #include <numbers>
 #include <string>
 
+#include "multibody/model/model.h"
+#include "multibody/model/observe.h"
 #include "multibody/model/topology.h"
 #include "scene/scene.h"
 #include "scene_text.h"
@@ -225,6 +227,76 @@ TEST(Start, ALoopThatCannotCloseIsRefused) {
 }
 
 // ---- payload
+
+// coordinate of a joint as gears, limits, springs and outputs read it
+double coordinate_of(const Scene& scene, const std::string& joint) {
+  const multibody::Model model = multibody::build_model(scene.mechanics);
+  const multibody::Joint& found = model.joints.at(static_cast<std::size_t>(multibody::find_joint(model, joint)));
+  return model.start_q.at(static_cast<std::size_t>(model.links.at(static_cast<std::size_t>(found.link)).q));
+}
+
+const std::string kTwoWheels = R"(
+bodies:
+  A: {mass: 1, inertia: [1, 1, 1]}
+  B: {mass: 1, inertia: [1, 1, 1], position: [1 m, 0, 0]}
+joints:
+  J1: {type: revolute, body2: A}
+  J2: {type: revolute, point1: [1 m, 0, 0], body2: B}
+gears:
+  G: {type: gear, joint1: J1, joint2: J2, ratio: 0.5, offset: 0 deg}
+)";
+
+TEST(Start, BeyondHalfATurnTurnsWhatIsGearedToIt) {
+  const Scene half = load_text(kTwoWheels + "start: {J1: 200 deg}\n", "test");
+  EXPECT_NEAR(coordinate_of(half, "J1"), 200 * kDegree, 1e-12);
+  EXPECT_NEAR(coordinate_of(half, "J2"), 100 * kDegree, 1e-9);
+  EXPECT_NEAR(angle_of(half, "B"), 100 * kDegree, 1e-9);
+  // the turns belong to the scene that sessions publish
+  EXPECT_NEAR(coordinate_of(load_text(half.expanded_text, "test"), "J2"), 100 * kDegree, 1e-9);
+  // from either end, and over many turns
+  const Scene back = load_text(kTwoWheels + "start: {J2: -500 deg}\n", "test");
+  EXPECT_NEAR(coordinate_of(back, "J2"), -500 * kDegree, 1e-12);
+  EXPECT_NEAR(coordinate_of(back, "J1"), -1000 * kDegree, 1e-9);
+  EXPECT_NEAR(coordinate_of(load_text(kTwoWheels + "start: {J1: 7300 deg}\n", "test"), "J2"), 3650 * kDegree, 1e-9);
+}
+
+// a drum of 0.15 m turned three times lowers its load by 3 2 pi 0.15 m
+TEST(Start, OfADrumOverWholeTurnsMovesItsLoad) {
+  const Scene scene = load_text(R"(
+start: {Axle: 1080 deg}
+bodies:
+  Drum: {mass: 80 kg, inertia: [1, 1, 0.9], position: [0, 5 m, 0]}
+  Load: {mass: 100 kg, inertia: [1, 1, 1], position: [0.15 m, 2 m, 0]}
+joints:
+  Axle: {type: revolute, point1: [0, 5 m, 0], body2: Drum}
+  Guide: {type: prismatic, point1: [0.15 m, 5 m, 0], orientation1: [90 deg, 0, 0], body2: Load, orientation2: [90 deg, 0, 0]}
+gears:
+  Rope: {type: rack_and_pinion, joint1: Axle, joint2: Guide, radius: 150 mm, offset: 3 m}
+)",
+                                "test");
+  EXPECT_NEAR(coordinate_of(scene, "Axle"), 1080 * kDegree, 1e-9);
+  EXPECT_NEAR(coordinate_of(scene, "Guide"), 3 + 0.15 * 1080 * kDegree, 1e-9);
+  EXPECT_NEAR(scene.mechanics.bodies.at(1).position[1], 5 - (3 + 0.15 * 1080 * kDegree), 1e-9);
+}
+
+TEST(Start, BeyondHalfATurnIsWithinTheLimitsThatHoldIt) {
+  const std::string text = R"(
+bodies:
+  A: {mass: 1, inertia: [1, 1, 1]}
+joints:
+  J1: {type: revolute, body2: A, limit_min: 200 deg, limit_max: 300 deg, limit_stiffness: 1e5 Nm/rad}
+forces:
+  Twist: {type: rotational, body1: Ground, f1: [1, 0, 0], g1: [0, 1, 0], body2: A, f2: [1, 0, 0], spring_constant: 1 Nm/rad}
+)";
+  const Scene scene = load_text(text + "start: {J1: 260 deg}\n", "test");
+  EXPECT_NEAR(coordinate_of(scene, "J1"), 260 * kDegree, 1e-12);
+  // the spring's angle is the coordinate
+  const multibody::Model model = multibody::build_model(scene.mechanics);
+  multibody::Workspace ws(model);
+  multibody::observe(model, multibody::start_state(model), ws);
+  EXPECT_NEAR(ws.angles.at(0).angle, 260 * kDegree, 1e-12);
+  EXPECT_NE(problems_of(text + "start: {J1: -100 deg}\n").find("outside of its limits"), std::string::npos);
+}
 
 TEST(Payload, IsAListThatSessionsCarry) {
   const Scene one = load_text(kPendulum + "payload: Rod\n", "test");

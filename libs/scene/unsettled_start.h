@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Machines that fall while hydraulics.start: equilibrium holds their actuators.
+//
+// The static forces of the actuators keep every line's length at rest. If what carries an actuator is not held itself
+// (a chassis on springs without load), it accelerates, the forces are those of the falling machine, and they are wrong
+// as soon as the springs carry. With the actuators' forces and dry friction as it holds, the acceleration of every body
+// that carries both ends of an actuator is computed at rest; above kNoticed it is a warning.
+//
+// No warning: bodies beyond the actuators (a load that swings), machines without actuators, and machines that stand on
+// contact, which take up their load within milliseconds.
+#pragma once
+
+#include "core/problem.h"
+#include "scene/scene.h"
+
+namespace slew::scene {
+
+// Builds the mechanism. Pre-condition: a validated scene whose files are there.
+void find_unsettled_start(const Scene& scene, Problems& warnings);
+
+}  // namespace slew::scene
