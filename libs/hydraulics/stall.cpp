@@ -24,11 +24,11 @@ struct Phase {
   double longest = kLongestStall;                               // s
   double quiet_below = kUnchanged;                              // Pa per step: it ends when no pressure changes more
 };
-constexpr Phase kClosed{};
-constexpr Phase kFastDrain{.drain_time = 1, .longest = 1, .quiet_below = 0};
-constexpr Phase kClosedAgain{.longest = 1, .quiet_below = 0};
+constexpr Phase kClosedPhase{};
+constexpr Phase kFastDrainPhase{.drain_time = 1, .longest = 1, .quiet_below = 0};
+constexpr Phase kClosedAgainPhase{.longest = 1, .quiet_below = 0};
 // e^-8 of an excess is left
-constexpr Phase kSlowDrain{.drain_time = 10, .longest = 80, .quiet_below = 0};
+constexpr Phase kSlowDrainPhase{.drain_time = 10, .longest = 80, .quiet_below = 0};
 
 class StallRun {
  public:
@@ -42,16 +42,16 @@ class StallRun {
 
   // Runs until the pressures are those that flows hold.
   Stall settle() {
-    Stall closed = run(kClosed);
+    Stall closed = run(kClosedPhase);
     const std::vector<int> resting = resting_chambers();
-    static_cast<void>(run(kFastDrain));
-    const Stall again = run(kClosedAgain);
+    static_cast<void>(run(kFastDrainPhase));
+    const Stall again = run(kClosedAgainPhase);
     const auto is_back = [&](int volume) {
       const double p = closed.pressures[at(volume)];
       return std::fabs(again.pressures[at(volume)] - p) <= std::max(kLeastLost, kLost * p);
     };
     if (std::all_of(resting.begin(), resting.end(), is_back)) return closed;
-    Stall drained = run(kSlowDrain);
+    Stall drained = run(kSlowDrainPhase);
     drained.is_steady = closed.is_steady;
     return drained;
   }
