@@ -39,10 +39,11 @@ double bytes_of_value(RecordingCoding coding, double bits) {
 }
 
 std::string size_text(double bytes) {
-  for (const auto& [unit, factor] : {std::pair("GB", 1e9), std::pair("MB", 1e6)}) {
-    if (bytes >= factor) return fmt::format("{:.2g} {}", bytes / factor, unit);
-  }
-  return fmt::format("{:.2g} kB", bytes / 1e3);
+  const auto [unit, factor] = bytes >= 1e9   ? std::pair("GB", 1e9)
+                              : bytes >= 1e6 ? std::pair("MB", 1e6)
+                                             : std::pair("kB", 1e3);
+  const double size = bytes / factor;
+  return size < 10 ? fmt::format("{:.2g} {}", size, unit) : fmt::format("{:.0f} {}", size, unit);
 }
 
 constexpr const char* kStepsNames[] = {"all", "ticks", "none"};

@@ -230,8 +230,9 @@ TEST_F(Program, CheckPrintsEveryProblemWithItsPlace) {
 
 TEST_F(Program, CheckJudgesTheVariablesOfOutputsByNameAndDimension) {
   std::filesystem::copy_file(scene_file("first_steps.yaml"), work_.path() / "first_steps.yaml");
-  std::ofstream(work_.path() / "lamps.yaml") << "include: first_steps.yaml\n"
-                                                "outputs:\n  Lamp: {type: switched, condition: 'Hinge.position < -10 deg'}\n";
+  std::ofstream(work_.path() / "lamps.yaml")
+      << "include: first_steps.yaml\n"
+         "outputs:\n  Lamp: {type: switched, condition: 'Hinge.position < -10 deg'}\n";
   const auto check = [&](const std::string& condition) {
     return slewring({"check", "lamps.yaml", "--set", "Lamp.condition=" + condition});
   };
