@@ -7,7 +7,8 @@ has_command() { command -v "$1" > /dev/null 2>&1; }
 
 has_header() {
   local folder
-  for folder in /usr/include /usr/local/include /usr/include/*-linux-gnu /usr/include/udunits2 ${CPATH:+${CPATH//:/ }}; do
+  for folder in /usr/include /usr/local/include /usr/include/*-linux-gnu /usr/include/udunits2 \
+    /usr/lib/llvm-14/lib/clang/*/include ${CPATH:+${CPATH//:/ }}; do
     [ -e "$folder/$1" ] && return 0
   done
   return 1
