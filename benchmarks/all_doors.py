@@ -78,14 +78,15 @@ def write_stick(path, seconds):
 
 
 def write_scene(folder, seconds):
-    """The sensors' scene, the devices above, and the platform of truck_crane_platform.yaml on its port."""
+    """A copy of the scenes; in it the sensors' scene, the devices above, and truck_crane_platform.yaml's on its port."""
+    scenes = shutil.copytree(scene_path(""), f"{folder}/scenes")  # a scene includes what lies beside it
     write_stick(f"{folder}/stick.events", seconds)
     with open(scene_path("truck_crane_platform.yaml"), encoding="utf-8") as file:
         platform = file.read().split("devices:\n")[1].replace("127.0.0.1:6000", f"127.0.0.1:{SEAT}")
-    with open(f"{folder}/all_doors.yaml", "w", encoding="utf-8") as file:
-        file.write(DOORS.format(sensors=scene_path("truck_crane_sensors.yaml"), stick=f"{folder}/stick.events", rig=RIG,
+    with open(f"{scenes}/all_doors.yaml", "w", encoding="utf-8") as file:
+        file.write(DOORS.format(sensors="truck_crane_sensors.yaml", stick=f"{folder}/stick.events", rig=RIG,
                                 dash=DASH) + platform)
-    return f"{folder}/all_doors.yaml"
+    return f"{scenes}/all_doors.yaml"
 
 
 class OtherSide:
@@ -153,7 +154,7 @@ def with_all_doors(bin_folder, seconds, folder):
             sys.exit(f"code {process.returncode}, of the bridge {bridge.returncode}:\n{file.read()}" + "\n".join(bridged))
     check_doors(report, other_side)
     verified = subprocess.run([bin_folder + "/slewring", "replay", report["recording"], "--verify"], capture_output=True,
-                              text=True)
+                              text=True, cwd=folder)
     if verified.returncode != 0:
         sys.exit(f"the physics with all doors open differs from that of its ticks alone:\n{verified.stdout}{verified.stderr}")
     return report, other_side, bridged, verified.stdout.strip().split("\n")[-1]
@@ -170,7 +171,7 @@ def check_doors(report, other_side):
         "Rig": summaries["Rig"]["inputs"]["latency"]["count"] == 0,
         "Dash": other_side.received[DASH] == 0,
         "Seat": other_side.received[SEAT] == 0 or summaries["Seat"]["packets"]["platform"]["active_steps"] == 0,
-        "sensors": "sensors" not in report["nodes"]}.items() if is_closed]
+        "sensors": "sensor" not in report["nodes"]}.items() if is_closed]
     if closed:
         sys.exit(f"{', '.join(closed)} did nothing: {json.dumps(summaries, indent=1)}")
 
