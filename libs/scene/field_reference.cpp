@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "flex/field_tables.h"
 #include "scene/canonical.h"
@@ -68,18 +71,57 @@ std::string default_text(const Field& field, void* def) {
   return value;
 }
 
+constexpr std::string_view kTableHead =
+    "| key | takes | SI unit | range | default | live | meaning |\n|---|---|---|---|---|---|---|\n";
+
+std::string row_of(const Field& field, void* defaults) {
+  const bool has_range = field.type == FieldType::number || field.type == FieldType::integer ||
+                         field.type == FieldType::triple || field.type == FieldType::triples ||
+                         field.type == FieldType::numbers || field.type == FieldType::table;
+  return fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", field.key, cell(type_text(field)), unit_text(field),
+                     has_range ? range_text(field.range, Dimension::none) : "", cell(default_text(field, defaults)),
+                     field.change == Change::live ? "live" : "", cell(meaning_text(field)));
+}
+
 std::string table_of(std::span<const Field> fields, void* defaults) {
-  std::string text = "| key | takes | SI unit | range | default | live | meaning |\n|---|---|---|---|---|---|---|\n";
-  for (const Field& field : fields) {
-    const bool has_range = field.type == FieldType::number || field.type == FieldType::integer ||
-                           field.type == FieldType::triple || field.type == FieldType::triples ||
-                           field.type == FieldType::numbers || field.type == FieldType::table;
-    text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", field.key, cell(type_text(field)), unit_text(field),
-                        has_range ? range_text(field.range, Dimension::none) : "", cell(default_text(field, defaults)),
-                        field.change == Change::live ? "live" : "", cell(meaning_text(field)));
-  }
+  std::string text(kTableHead);
+  for (const Field& field : fields) text += row_of(field, defaults);
   return text;
 }
+
+// The tables of a section's types. A field that an earlier type has alike is named beside that type instead of shown
+// again, where it is one of several.
+class TypeTables {
+ public:
+  std::string table_of(std::string_view type, std::span<const Field> fields, void* defaults) {
+    std::vector<std::string> rows;
+    std::map<std::string, std::string> keys_by_type;
+    std::map<std::string, std::size_t> counts;
+    for (const Field& field : fields) {
+      rows.push_back(row_of(field, defaults));
+      const auto shown = types_.find(rows.back());
+      if (shown != types_.end()) ++counts[shown->second];
+    }
+    std::string table;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const auto shown = types_.find(rows[i]);
+      if (shown == types_.end() || counts[shown->second] < kLeastShared) {
+        table += rows[i];
+        types_.try_emplace(rows[i], type);
+        continue;
+      }
+      std::string& keys = keys_by_type[shown->second];
+      keys += fmt::format("{}`{}`", keys.empty() ? "" : ", ", fields[i].key);
+    }
+    std::string text;
+    for (const auto& [other, keys] : keys_by_type) text += fmt::format("As for `{}`: {}.\n\n", other, keys);
+    return table.empty() ? text : text + std::string(kTableHead) + table;
+  }
+
+ private:
+  static constexpr std::size_t kLeastShared = 3;
+  std::map<std::string, std::string> types_;  // by row: the type that shows it
+};
 
 }  // namespace
 
@@ -91,13 +133,14 @@ std::string field_reference() {
   }
   for (const std::string_view section : element_sections()) {
     text += fmt::format("\n### {}\n", section);
+    TypeTables tables;
     for (const ElementTable& table : element_tables()) {
       if (table.section != section) continue;
       void* def = table.append(defaults, "Name");
       const std::string heading = table.type.empty() ? std::string(table.doc)
                                                      : fmt::format("`type: {}`{}: {}", table.type,
                                                                    table.is_default ? " (or no type)" : "", table.doc);
-      text += fmt::format("\n{}.\n\n{}", heading, table_of(table.fields, def));
+      text += fmt::format("\n{}.\n\n{}", heading, tables.table_of(table.type, table.fields, def));
       for (const ListTable& list : table.lists) {
         text += fmt::format("\n`{}`: a list of maps. {}.\n\n{}", list.key, list.doc,
                             table_of(list.fields, list.append(def)));
