@@ -40,8 +40,9 @@ HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
       is_free_running_(scene.session.mode == scene::ExchangeMode::free_running),
       levels_(scene::port_levels(scene)),
       signals_(scene, *circuit_),
+      shared_(*circuit_),
       reduced_(laws_of(scene)),
-      late_samples_(m_, is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
+      late_samples_(m_, cross_count(), is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
       alarm_(scene),
       convergence_(scene.hydraulics.solver),
       ramps_(circuit_->parameters().size()) {
@@ -50,6 +51,8 @@ HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
   list_variables();
   saved_model_ = coupling::saved_model(
       variables_, {H_.ns, exchange_every_, is_free_running_, static_cast<int>(scene.hydraulics.solver)});
+  // states without K_cross, of earlier programs, do not fit
+  if (shared_.any()) saved_model_ += 1;
 }
 
 void HydraulicsSubsystem::reset() {
@@ -103,7 +106,7 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
   integrator_->refresh();
   publish(sample.actuators, 0, false);
   if (m_ > 0 && alarm_.ends_session()) {
-    Status status = check_coupling(scene_, partners.mechanism->W, published_.K, levels_);
+    Status status = check_coupling(scene_, partners.mechanism->W, published_, levels_);
     if (!status.is_ok()) return status;
   }
   if (partners.mechanism != nullptr && m_ > 0) reduced_.set_sample(*partners.mechanism);
@@ -152,7 +155,8 @@ void HydraulicsSubsystem::take_mechanism(StepIndex n, const coupling::MechanismS
   if (!is_free_running_) return;
   late_samples_.keep_pistons(n, *circuit_, *integrator_);
   const double late = static_cast<double>(age) * H_.seconds();
-  if (age > 0 && coupling::coupling_frequency(mechanism.W, published_.K, late) > coupling::kDegradedAbove) {
+  if (age > 0 && coupling::coupling_frequency(mechanism.W, published_.K, late, published_.K_cross) >
+                     coupling::kDegradedAbove) {
     report.raise(StepFlag::late_input);
   }
 }
@@ -229,6 +233,9 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
     sample.Q_A[i] = a.Q_a;
     sample.Q_B[i] = a.Q_b;
     circuit_->set_line_force(static_cast<int>(i), reduced_.law(i).evaluate(a.F, a.x, a.v).force);
+  }
+  if (shared_.any()) {
+    shared_.write(*integrator_, *circuit_, exchange_every_ * H_.seconds(), sample.lambda, sample.K_cross);
   }
   sample.flags = flags;
   published_ = sample;

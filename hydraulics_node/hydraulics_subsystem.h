@@ -25,6 +25,7 @@
 #include "hydraulics_node/coupling_alarm.h"
 #include "hydraulics_node/late_samples.h"
 #include "hydraulics_node/reduced_mechanics.h"
+#include "hydraulics_node/shared_volumes.h"
 #include "scene/scene.h"
 
 namespace slew::hydraulics_node {
@@ -77,6 +78,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   void align(const coupling::MechanismSample& mechanism, StepIndex age) noexcept;
   void publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up) noexcept;
   void list_variables();
+  [[nodiscard]] std::size_t cross_count() const noexcept { return shared_.any() ? m_ * m_ : 0; }
 
   const scene::Scene& scene_;  // outlives the subsystem
   std::unique_ptr<hydraulics::Circuit> circuit_;
@@ -87,6 +89,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   bool is_free_running_;
   coupling::PortLevels levels_;
   ControlSignals signals_;
+  SharedVolumes shared_;
   ReducedMechanics reduced_;
   LateSamples late_samples_;
   CouplingAlarm alarm_;

@@ -8,7 +8,8 @@ namespace slew::hydraulics_node {
 
 using coupling::kMaxPorts;
 
-LateSamples::LateSamples(std::size_t ports, std::size_t remembered) : ports_(ports), past_(ports), sent_(remembered) {}
+LateSamples::LateSamples(std::size_t ports, std::size_t cross, std::size_t remembered)
+    : ports_(ports), cross_(cross), past_(ports), sent_(remembered) {}
 
 void LateSamples::clear() noexcept {
   past_.clear();

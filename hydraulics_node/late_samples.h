@@ -14,21 +14,23 @@
 
 namespace slew::hydraulics_node {
 
-// The numbers of an actuator sample as bytes.
+// The numbers of an actuator sample as bytes. cross: numbers of K_cross.
 template <typename Sample, typename Bytes>
-void visit_actuators(Sample& sample, std::size_t ports, Bytes& bytes) {
+void visit_actuators(Sample& sample, std::size_t ports, std::size_t cross, Bytes& bytes) {
   for (auto* values :
        {&sample.F, &sample.F_dot, &sample.K, &sample.lambda, &sample.D, &sample.x_ref, &sample.v_ref,
         &sample.friction_scale, &sample.work, &sample.impulse, &sample.p_A, &sample.p_B, &sample.Q_A, &sample.Q_B}) {
     visit_sized(bytes, *values, ports);
   }
   bytes.number(sample.flags);
+  if (cross > 0) visit_sized(bytes, sample.K_cross, cross);
 }
 
 class LateSamples {
  public:
-  // remembered: number of steps, 0 where no sample is late. Allocates; nothing else does.
-  LateSamples(std::size_t ports, std::size_t remembered);
+  // cross: numbers of the samples' K_cross; remembered: number of steps, 0 where no sample is late. Allocates; nothing
+  // else does.
+  LateSamples(std::size_t ports, std::size_t cross, std::size_t remembered);
   void clear() noexcept;
 
   // Remembers the pistons at the beginning of step n; the sample that was published at step n.
@@ -55,7 +57,7 @@ class LateSamples {
     for (auto& sent : self.sent_) {
       bytes.number(sent.step);
       if (sent.step < 0) continue;
-      visit_actuators(sent.sample, self.ports_, bytes);
+      visit_actuators(sent.sample, self.ports_, self.cross_, bytes);
       visit_sized(bytes, sent.displacement, self.ports_);
     }
   }
@@ -67,7 +69,7 @@ class LateSamples {
     coupling::PortArray displacement;  // by port, of the circuit's own piston in the step before [m]
   };
 
-  std::size_t ports_;
+  std::size_t ports_, cross_;
   coupling::OwnPast past_;        // position and speed of the pistons
   std::vector<SentSample> sent_;  // samples of the last steps
 };

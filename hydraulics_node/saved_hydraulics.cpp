@@ -30,7 +30,7 @@ void HydraulicsSubsystem::visit(Self& self, Bytes& bytes) {
   LateSamples::visit(self.late_samples_, bytes);
   bytes.number(self.used_step_);
   bytes.number(self.partner_age_);
-  visit_actuators(self.published_, self.m_, bytes);
+  visit_actuators(self.published_, self.m_, self.cross_count(), bytes);
   visit_sized(bytes, self.stiffness_, self.m_);
   visit_report(bytes, self.failure_);
   CouplingAlarm::visit_text(self.alarm_, bytes);

@@ -44,16 +44,20 @@ Status check_stability(const hydraulics::ExplicitStability& stability, std::stri
           1e3 * stability.substep, owner, stability.ratio, 1e3 * stability.substep / stability.ratio));
 }
 
-Status check_coupling(const scene::Scene& scene, const coupling::PortMatrix& W, const coupling::PortArray& K,
-                      const coupling::PortLevels& levels) {
+Status check_coupling(const scene::Scene& scene, const coupling::PortMatrix& W,
+                      const coupling::ActuatorSample& published, const coupling::PortLevels& levels) {
   const StepIndex exchange_every = scene.session.exchange_every;
   const bool is_free_running = scene.session.mode == scene::ExchangeMode::free_running;
   const double H = scene.session.step_duration().seconds() * static_cast<double>(exchange_every);
-  coupling::PortArray stiffness = K;
-  for (std::size_t i = 0; i < stiffness.size(); ++i) {
-    if (!coupling::is_balanced(levels[i])) stiffness[i] = 0;
+  coupling::PortArray K = published.K;
+  coupling::PortMatrix K_cross = published.K_cross;
+  const std::size_t m = K.size();
+  for (std::size_t i = 0; i < m; ++i) {
+    if (coupling::is_balanced(levels[i])) continue;
+    K[i] = 0;
+    for (std::size_t j = 0; j < m && !K_cross.empty(); ++j) K_cross[i * m + j] = K_cross[j * m + i] = 0;
   }
-  const double omega_H = coupling::coupling_frequency(W, stiffness, H);
+  const double omega_H = coupling::coupling_frequency(W, K, H, K_cross);
   const double limit = is_free_running ? coupling::kMostLate : coupling::kMostSampled;
   if (!(omega_H > limit)) return Status::ok();
   const char* const bound = is_free_running

@@ -24,8 +24,8 @@ namespace slew::hydraulics_node {
 [[nodiscard]] Status check_stability(const hydraulics::ExplicitStability& stability, std::string_view owner);
 
 // The oscillation of the machine on its oil against the exchange interval; the limit is lower where samples are always
-// late by a step at least. K: published stiffness by port [N/m].
+// late by a step at least.
 [[nodiscard]] Status check_coupling(const scene::Scene& scene, const coupling::PortMatrix& W,
-                                    const coupling::PortArray& K, const coupling::PortLevels& levels);
+                                    const coupling::ActuatorSample& published, const coupling::PortLevels& levels);
 
 }  // namespace slew::hydraulics_node

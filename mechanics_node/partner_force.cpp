@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mechanics_node/partner_force.h"
 
+#include <array>
+
 #include "coupling/indicator.h"
 #include "scene/ports.h"
 
@@ -27,26 +29,31 @@ void PartnerForce::receive(StepIndex n, StepIndex age) noexcept {
 bool PartnerForce::is_too_old(const coupling::PortMatrix& W, const coupling::ActuatorSample& sample,
                               double H) const noexcept {
   if (!is_free_running_ || age_ == 0) return false;
-  return coupling::coupling_frequency(W, sample.K, static_cast<double>(age_) * H) > coupling::kDegradedAbove;
+  return coupling::coupling_frequency(W, sample.K, static_cast<double>(age_) * H, sample.K_cross) >
+         coupling::kDegradedAbove;
 }
 
 double PartnerForce::at_exchange(std::size_t port, const coupling::ActuatorSample& sample, double copy,
-                                 double x) noexcept {
+                                 std::span<const double> x) noexcept {
   if (!has_new_sample_) return copy;
-  const bool is_hold = levels_[port] == coupling::Level::hold;
-  const auto at = [&](double position) {
-    return is_hold ? sample.F[port] : sample.F[port] - sample.K[port] * (position - sample.x_ref[port]);
-  };
-  if (age_ == 0) return at(x);
-  if (!past_.has(used_step_)) return copy;
-  const double correction = at(past_.first(used_step_, port)) - past_.second(used_step_, port);
+  if (age_ > 0 && !past_.has(used_step_)) return copy;
+  double F = sample.F[port];
+  if (levels_[port] != coupling::Level::hold) {
+    std::array<double, coupling::kMaxPorts> dx;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      dx[i] = (age_ == 0 ? x[i] : past_.first(used_step_, i)) - sample.x_ref[i];
+    }
+    F -= coupling::spring_force(sample, port, dx);
+  }
+  if (age_ == 0) return F;
+  const double correction = F - past_.second(used_step_, port);
   past_.correct(used_step_, port, 0, correction);
   return copy + correction;
 }
 
 coupling::RowPartner PartnerForce::linearisation(std::size_t port,
                                                  const coupling::ActuatorSample& sample) const noexcept {
-  if (levels_[port] == coupling::Level::hold) return {};
+  if (levels_[port] == coupling::Level::hold) return {.v_ref = sample.v_ref[port]};
   return {sample.F_dot[port], sample.K[port], sample.lambda[port], sample.D[port], sample.F[port], sample.v_ref[port]};
 }
 

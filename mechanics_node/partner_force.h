@@ -29,11 +29,11 @@ class PartnerForce {
   [[nodiscard]] bool is_too_old(const coupling::PortMatrix& W, const coupling::ActuatorSample& sample,
                                 double H) const noexcept;
 
-  // Pressure force at the start of a step, where the port is at x [m] and the mechanics' copy is `copy` [N]. A new
+  // Pressure force at the start of a step, where the ports are at x [m] and the mechanics' copy is `copy` [N]. A new
   // sample of this step gives its force at x; without a new sample the copy is continued; a late sample corrects the
   // copy by the difference at the step that the sample belongs to.
   [[nodiscard]] double at_exchange(std::size_t port, const coupling::ActuatorSample& sample, double copy,
-                                   double x) noexcept;
+                                   std::span<const double> x) noexcept;
   // The linearisation that the port's level uses.
   [[nodiscard]] coupling::RowPartner linearisation(std::size_t port,
                                                    const coupling::ActuatorSample& sample) const noexcept;

@@ -2,6 +2,7 @@
 #include "mechanics_node/port_problem.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "multibody/constraints/rows.h"
@@ -127,11 +128,18 @@ void PortProblem::load_partner(const coupling::ActuatorSample* partner, bool is_
     double z = 0;
     if (is_port(row) && partner != nullptr) {
       z = ports_[row].z;
-      if (is_first_substep) z = partner_.at_exchange(row, *partner, z, dynamics_.x()[k]);
+      if (is_first_substep) z = partner_.at_exchange(row, *partner, z, dynamics_.x().first(ports_.size()));
       law = partner_.linearisation(row, *partner);
     }
     dynamics_.partner()[k] = law;
     dynamics_.z()[k] = z;
+  }
+  if (partner == nullptr || partner->K_cross.empty()) return;
+  const std::size_t m = ports_.size();  // they are the first rows
+  const std::span<double> K = dynamics_.couple();
+  for (std::size_t i = 0; i < m; ++i) {
+    if (partner_.levels()[i] == coupling::Level::hold) continue;
+    for (std::size_t j = 0; j < m; ++j) K[i * active_.size() + j] = partner->K_cross[i * m + j];
   }
 }
 
@@ -190,15 +198,16 @@ void PortProblem::finish_substep(const Step& step) noexcept {
     a_free_trends_.end(row, ratio_of(row) * (workspace.row_a_free[row] - timed_loads_.change(row)));
   }
   if (mechanism_.has_active_contact()) a_free_trends_.clear();
-  for (std::size_t k = 0; k < active_.size() && is_port(active_[k]); ++k) {
-    const std::size_t row = active_[k];
-    Port& port = ports_[row];
-    const double dx = port.stroke(workspace.row_x[row]) - dynamics_.x()[k];
-    const double K = step.partner == nullptr ? 0.0 : dynamics_.partner()[k].K;
-    step.sample.work[row] += dynamics_.work()[k] + (port.F - 0.5 * K * dx) * dx;
-    step.sample.impulse[row] += dynamics_.impulse()[k];
-    port.z -= K * dx;
-    port.F -= K * dx;
+  std::array<double, coupling::kMaxPorts> dx;
+  for (std::size_t i = 0; i < ports_.size(); ++i) dx[i] = ports_[i].stroke(workspace.row_x[i]) - dynamics_.x()[i];
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    Port& port = ports_[i];
+    const bool has_spring = step.partner != nullptr && partner_.levels()[i] != coupling::Level::hold;
+    const double springs = has_spring ? coupling::spring_force(*step.partner, i, dx) : 0.0;
+    step.sample.work[i] += dynamics_.work()[i] + (port.F - 0.5 * springs) * dx[i];
+    step.sample.impulse[i] += dynamics_.impulse()[i];
+    port.z -= springs;
+    port.F -= springs;
   }
   // bristles take the mechanism's coordinate as well, so that a sticking joint stays where it is; a ball has none
   std::vector<double>& bristles = mechanism_.state_as_evaluated().bristles;

@@ -30,7 +30,7 @@ constexpr std::string_view kNames[coupling::kLevels] = {"hold", "linear", "two",
 // The ports of one level at the start: their mobilities and oil columns, each port alone.
 struct Ports {
   std::vector<std::size_t> port;
-  coupling::PortMatrix W;
+  coupling::PortMatrix W, K_cross;
   coupling::PortArray K;
 };
 
@@ -44,7 +44,10 @@ Ports ports_of(Level level, const coupling::PortLevels& levels, const coupling::
   for (const std::size_t i : ports.port) {
     // a line states its impedance K H
     ports.K.push_back(level == Level::tlm ? actuators.D[i] / H : actuators.K[i]);
-    for (const std::size_t j : ports.port) ports.W.push_back(mechanism.W[i * m + j]);
+    for (const std::size_t j : ports.port) {
+      ports.W.push_back(mechanism.W[i * m + j]);
+      if (!actuators.K_cross.empty()) ports.K_cross.push_back(actuators.K_cross[i * m + j]);
+    }
   }
   return ports;
 }
@@ -62,7 +65,7 @@ std::size_t fastest(const Ports& ports) {
 
 std::string swinging(const Ports& ports, Level level, const std::string& name,
                      const coupling::ActuatorSample& actuators, double H) {
-  const double omega_H = coupling::coupling_frequency(ports.W, ports.K, H);
+  const double omega_H = coupling::coupling_frequency(ports.W, ports.K, H, ports.K_cross);
   const double leak = actuators.lambda[ports.port[fastest(ports)]];
   const double zeta = leak > 0 && omega_H > 0 ? 0.5 * leak * H / omega_H : kLeastDamping;
   const double limit = coupling::omega_limit(level, zeta);
@@ -94,7 +97,7 @@ std::string heavy_line(const Ports& ports, const scene::Scene& scene, double H) 
 
 // samples of free-running sides are a step old, or older
 std::string running_late(const Ports& ports, const std::string& name, double H) {
-  const double omega_H = coupling::coupling_frequency(ports.W, ports.K, H);
+  const double omega_H = coupling::coupling_frequency(ports.W, ports.K, H, ports.K_cross);
   if (!(omega_H > coupling::kMostLate)) return {};
   const double safe = H * coupling::kMostLate / omega_H;
   const std::string step = safe < scene::kMinStep ? "" : "session.step " + duration_below(safe) + " or less, or ";

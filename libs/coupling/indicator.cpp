@@ -120,14 +120,16 @@ void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& a
                        const PortLevels& levels) noexcept {
   start_bucket();
   double machine_scale = 0;
+  std::array<double, kMaxPorts> e_x;
+  for (std::size_t i = 0; i < ports_; ++i) e_x[i] = mechanism.x[i] - actuators.x_ref[i];
   for (std::size_t i = 0; i < ports_; ++i) {
     PortDefects& defects = defects_[i];
-    const double K = actuators.K[i];
-    defects.e_x = mechanism.x[i] - actuators.x_ref[i];
+    const double springs = spring_force(actuators, i, e_x);
+    defects.e_x = e_x[i];
     defects.e_v = mechanism.v[i] - actuators.v_ref[i];
-    defects.e_F = (actuators.F[i] - K * defects.e_x) - mechanism.F_used[i];
+    defects.e_F = (actuators.F[i] - springs) - mechanism.F_used[i];
     defects.dE = actuators.work[i] - mechanism.work[i];
-    defects.dE_star = defects.dE + actuators.F[i] * defects.e_x - 0.5 * K * defects.e_x * defects.e_x;
+    defects.dE_star = defects.dE + actuators.F[i] * defects.e_x - 0.5 * springs * defects.e_x;
     Bucket& bucket = window_[i][current_];
     bucket.residual += std::fabs(defects.dE_star);
     bucket.net += defects.dE_star;
@@ -137,7 +139,7 @@ void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& a
     machine_scale = std::max(machine_scale, scale_of(window_sum(i)));
   }
   for (std::size_t i = 0; i < ports_; ++i) evaluate(i, levels[i], machine_scale);
-  omega_H_ = coupling_frequency(mechanism.W, stiffness, H_);
+  omega_H_ = coupling_frequency(mechanism.W, stiffness, H_, actuators.K_cross);
 }
 
 template <typename Self, typename Bytes>
@@ -236,6 +238,34 @@ double largest_eigenvalue(const Square& S, std::size_t m) noexcept {
   return numerator / denominator;
 }
 
+// of a pivot over its mobility, below which it is round-off
+constexpr double kNoPivot = 1e-12;
+
+// L' K L with W = L L', which has the eigenvalues of W K; K is made symmetric.
+Square by_factor_of_W(const PortMatrix& W, const PortArray& K, const PortMatrix& K_cross) noexcept {
+  const std::size_t m = K.size();
+  Square L{}, S{};
+  for (std::size_t j = 0; j < m; ++j) {
+    double pivot = W[j * m + j];
+    for (std::size_t k = 0; k < j; ++k) pivot -= L[j * m + k] * L[j * m + k];
+    if (!(pivot > kNoPivot * W[j * m + j])) continue;  // the port moves with those before it
+    const double root = std::sqrt(pivot);
+    for (std::size_t i = j; i < m; ++i) {
+      double rest = W[i * m + j];
+      for (std::size_t k = 0; k < j; ++k) rest -= L[i * m + k] * L[j * m + k];
+      L[i * m + j] = rest / root;
+    }
+  }
+  for (std::size_t a = 0; a < m; ++a) {
+    for (std::size_t i = 0; i < m; ++i) {
+      double image = K[i] * L[i * m + a];
+      for (std::size_t j = 0; j < m; ++j) image += 0.5 * (K_cross[i * m + j] + K_cross[j * m + i]) * L[j * m + a];
+      for (std::size_t b = 0; b < m; ++b) S[a * m + b] += L[i * m + b] * image;
+    }
+  }
+  return S;
+}
+
 }  // namespace
 
 double omega_limit(Level level, double zeta) noexcept {
@@ -252,10 +282,11 @@ double omega_limit(Level level, double zeta) noexcept {
   return std::numeric_limits<double>::infinity();
 }
 
-double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noexcept {
+double coupling_frequency(const PortMatrix& W, const PortArray& K, double H, const PortMatrix& K_cross) noexcept {
   // S = sqrt(K) W sqrt(K) has the eigenvalues of W K; the whole S is used, since parts of the machine may be uncoupled
   const std::size_t m = K.size();
   if (m == 0) return 0;
+  if (!K_cross.empty()) return H * std::sqrt(std::max(0.0, largest_eigenvalue(by_factor_of_W(W, K, K_cross), m)));
   std::array<double, kMaxPorts> root;
   for (std::size_t i = 0; i < m; ++i) root[i] = std::sqrt(std::max(0.0, K[i]));
   Square S;

@@ -10,6 +10,7 @@
 //   eta = sum |dE*| / own                            level hold and tlm
 //         sum |dE*| less its 3 largest 50 ms / largest own of all ports      linear and two        (5')
 //   omega_H = H sqrt(largest eigenvalue of W K)                                                    (6)
+// K e_x is sum_j K_ij e_x,j where ports share volumes of oil.
 //
 // Lamps: green below 5e-4, amber below 5e-3, red above (docs/coupling-alarm.md: what errors they stand for);
 // net < -3e-3 for 0.2 s: the coupling creates energy. The scale F^2 / (2 K) uses the largest |F| of the window,
@@ -137,7 +138,9 @@ inline constexpr double kMostSampled = std::numbers::pi;
 // ratio of the port. Level tlm has no limit: its cost is a parasitic mass K H^2.
 [[nodiscard]] double omega_limit(Level level, double zeta) noexcept;
 
-// H sqrt(largest eigenvalue of W diag(K)) by powers of the similar symmetric matrix, ports <= kMaxPorts.
-[[nodiscard]] double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noexcept;
+// H sqrt(largest eigenvalue of W K) by powers of the similar symmetric matrix, ports <= kMaxPorts.
+// K_cross: as in ActuatorSample.
+[[nodiscard]] double coupling_frequency(const PortMatrix& W, const PortArray& K, double H,
+                                        const PortMatrix& K_cross = {}) noexcept;
 
 }  // namespace slew::coupling

@@ -54,6 +54,8 @@ PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(ca
   W_.assign(capacity * capacity, 0.0);
   weighted_W_.assign(capacity * capacity, 0.0);
   A_.assign(capacity * capacity, 0.0);
+  K_between_.assign(capacity * capacity, 0.0);
+  pull_between_.assign(capacity * capacity, 0.0);
   is_at_jump_.assign(capacity, 0);
   jump_first_.assign(capacity, 0);
   decays_.assign(capacity, 0);
@@ -63,6 +65,13 @@ PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(ca
 void PortDynamics::set_rows(std::size_t rows) noexcept {
   SLEW_CHECK(rows <= capacity_);
   rows_ = rows;
+  is_coupled_ = false;
+}
+
+std::span<double> PortDynamics::couple() noexcept {
+  is_coupled_ = true;
+  std::fill_n(K_between_.begin(), rows_ * rows_, 0.0);
+  return {K_between_.data(), rows_ * rows_};
 }
 
 // terms common to the stages of one solve
@@ -74,6 +83,14 @@ void PortDynamics::prepare(double weight) noexcept {
     pull_[i] = weight * p.K * shrink_[i];
   }
   for (std::size_t i = 0; i < rows_ * rows_; ++i) weighted_W_[i] = weight * W_[i];
+  if (!is_coupled_) return;
+  for (std::size_t i = 0; i < rows_; ++i) {
+    for (std::size_t j = 0; j < rows_; ++j) {
+      const double pull = weight * K_between_[i * rows_ + j] * shrink_[i];
+      pull_between_[i * rows_ + j] = pull;
+      drive_[i] += pull * partner_[j].v_ref;
+    }
+  }
 }
 
 // stage values x, z from the stage speeds, then force f and its total slope with respect to the own speed
@@ -84,6 +101,7 @@ void PortDynamics::evaluate_rows(double weight, const RowLaws& laws) noexcept {
     z_stage_[i] = (shrink_[i] * z_base_[i] + drive_[i]) - pull_[i] * v_stage_[i];
     pressure_force_[i] = z_stage_[i] - p.D * (v_stage_[i] - p.v_ref);
   }
+  if (is_coupled_) pull_by_others();
   laws.evaluate_all(rows_, pressure_force_.data(), x_stage_.data(), v_stage_.data(), law_.data());
   for (std::size_t i = 0; i < rows_; ++i) {
     const RowForce& law = law_[i];
@@ -93,6 +111,15 @@ void PortDynamics::evaluate_rows(double weight, const RowLaws& laws) noexcept {
       slope_[i] = (f_high_[i] - f_low_[i]) / (high_[i] - low_[i]);
       f_[i] = f_held_[i];
     }
+  }
+}
+
+void PortDynamics::pull_by_others() noexcept {
+  for (std::size_t i = 0; i < rows_; ++i) {
+    double pull = 0;
+    for (std::size_t j = 0; j < rows_; ++j) pull += pull_between_[i * rows_ + j] * v_stage_[j];
+    z_stage_[i] -= pull;
+    pressure_force_[i] -= pull;
   }
 }
 
@@ -143,6 +170,18 @@ double PortDynamics::bracketed(std::size_t row, double step, double sway, double
   return low + half;
 }
 
+// the part of A by which the forces of coupled rows follow the speeds of the others
+void PortDynamics::add_coupled_slopes() noexcept {
+  const std::size_t m = rows_;
+  for (std::size_t k = 0; k < m; ++k) {
+    if (is_at_jump_[k] != 0) continue;
+    for (std::size_t j = 0; j < m; ++j) {
+      const double slope = law_[k].d_z * pull_between_[k * m + j];
+      for (std::size_t i = 0; i < m && slope != 0; ++i) A_[i * m + j] += weighted_W_[i * m + k] * slope;
+    }
+  }
+}
+
 // v = v_base + weight (a_free + time a_free' + W f(v)) for the stage speeds
 bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept {
   const std::size_t m = rows_;
@@ -169,6 +208,7 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
       for (std::size_t i = 0; i < m; ++i) {
         for (std::size_t j = 0; j < m; ++j) A_[i * m + j] = (i == j ? 1.0 : 0.0) - weighted_W_[i * m + j] * slope_[j];
       }
+      if (is_coupled_) add_coupled_slopes();
       is_over = !math::solve_in_place(A_.data(), residual_.data(), m, 1);
     }
     if (is_over) {

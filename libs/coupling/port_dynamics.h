@@ -6,7 +6,7 @@
 //   x' = v,   v' = a_free + a_free' t + W f                                                        (1)
 // and each row's force f = f(z, x, v, t) follows the row's own law, where z is the partner's pressure force with
 //   z' = F_dot - K (v - v_ref) - lambda (z - F_n)                                                  (2)
-// (K = lambda = F_dot = 0 for rows without partner). (1), (2) are integrated with micro-steps of the L-stable,
+// (K = lambda = F_dot = 0 for rows without partner; K is a matrix over coupled rows). (1), (2) are integrated with micro-steps of the L-stable,
 // stiffly accurate two-stage SDIRK method (Alexander 1977, gamma = 1 - 1/sqrt(2), order 2); each stage is a Newton
 // iteration on the m speeds; where a law jumps, as a stop's damping does when it is touched, and no speed fits, the
 // force is the one between its two sides that holds the speed at the jump. Friction slopes of 4e4 1/s and end stops are
@@ -97,6 +97,9 @@ class PortDynamics {
   std::span<double> a_free_rate() noexcept { return {a_free_rate_.data(), rows_}; }  // over the sub-step
   std::span<double> W() noexcept { return {W_.data(), rows_ * rows_}; }              // row-major
   std::span<RowPartner> partner() noexcept { return {partner_.data(), rows_}; }
+  // The K of (2) between rows, row-major with a zero diagonal [N/m], all zero at first; rows are coupled by it until the
+  // next set_rows().
+  std::span<double> couple() noexcept;
 
   // Integrates over h in `micro_steps` equal steps.
   PortStep solve(double h, int micro_steps, RowLaws& laws) noexcept;
@@ -142,6 +145,8 @@ class PortDynamics {
   [[nodiscard]] double longest_in_swing(std::size_t row, double time) const noexcept;
   bool solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept;
   void evaluate_rows(double weight, const RowLaws& laws) noexcept;
+  void pull_by_others() noexcept;
+  void add_coupled_slopes() noexcept;
   void forget_bracket(std::size_t row) noexcept;
   bool note_side(std::size_t row, double step) noexcept;
   // sway: speed change of the row by its own force [m/s per N]
@@ -153,6 +158,7 @@ class PortDynamics {
   std::vector<RowPartner> partner_;
   std::vector<double> weighted_W_, weighted_a_;      // weight W, the same in every stage; weight a_free of the stage
   std::vector<double> shrink_, drive_, pull_;        // z of a stage = shrink z_base + drive - pull v, by (2)
+  std::vector<double> K_between_, pull_between_;     // of coupled rows
   std::vector<double> x_base_, v_base_, z_base_;     // stage value = base + weight * slope
   std::vector<double> x_stage_, v_stage_, z_stage_;  // stage values
   std::vector<double> pressure_force_;               // z with the feed-through
@@ -178,6 +184,7 @@ class PortDynamics {
   int tries_left_ = 0;     // remaining tries of parts
   bool is_at_stop_ = false;
   bool has_memory_ = false;
+  bool is_coupled_ = false;
 };
 
 }  // namespace slew::coupling

@@ -26,6 +26,15 @@ void resize(ActuatorSample& sample, std::size_t ports) {
         &sample.friction_scale, &sample.work, &sample.impulse, &sample.p_A, &sample.p_B, &sample.Q_A, &sample.Q_B}) {
     zero(*values, ports);
   }
+  sample.K_cross.clear();
+}
+
+double spring_force(const ActuatorSample& sample, std::size_t port, std::span<const double> dx) noexcept {
+  double force = sample.K[port] * dx[port];
+  if (sample.K_cross.empty()) return force;
+  const std::size_t m = sample.K.size();
+  for (std::size_t j = 0; j < m; ++j) force += sample.K_cross[port * m + j] * dx[j];
+  return force;
 }
 
 }  // namespace slew::coupling

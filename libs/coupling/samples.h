@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/static_vector.h"
@@ -44,6 +45,7 @@ struct MechanismSample {
 // Sample from hydraulics to mechanics. F holds at (x_ref, v_ref), the hydraulics' own piston position and speed at t_n;
 // near it
 //   F' = F_dot - K (v - v_ref) - lambda (F - F_n),  line contribution -D (v - v_ref).
+// Where ports share volumes of oil, F_i' has -sum_j K_cross_ij (v_j - v_ref_j) too.
 struct ActuatorSample {
   PortArray F;               // pressure force pA AA - pB AB [N]
   PortArray F_dot;           // under the signals expected for the next tick [N/s]
@@ -58,6 +60,7 @@ struct ActuatorSample {
   PortArray p_A, p_B;        // chamber pressures, absolute [Pa]
   PortArray Q_A, Q_B;        // flows into the A and B volumes from the circuit [m3/s]
   std::uint32_t flags = 0;   // StepFlag bits of the finished step
+  PortMatrix K_cross;        // stiffness between ports, zero on the diagonal; empty: none share a volume [N/m]
   bool operator==(const ActuatorSample&) const = default;
 };
 
@@ -133,5 +136,8 @@ enum class ElasticExchange : int {
 
 void resize(MechanismSample& sample, std::size_t ports);
 void resize(ActuatorSample& sample, std::size_t ports);
+
+// Force change of a port by the oil springs when all ports have moved by dx [m]: sum_j K_ij dx_j [N].
+[[nodiscard]] double spring_force(const ActuatorSample& sample, std::size_t port, std::span<const double> dx) noexcept;
 
 }  // namespace slew::coupling

@@ -39,6 +39,10 @@ double inverse_langevin(double s) noexcept {
 
 }  // namespace
 
+double remaining_share(double x) noexcept {
+  return response(x).end;
+}
+
 RelaxingSpring one_for_all(std::span<const RelaxingSpring> springs, double H) noexcept {
   RelaxingSpring sum;
   double least = INFINITY, most = 0;

@@ -22,6 +22,9 @@ struct RelaxingSpring {
   double F_dot = 0;   // N/s
 };
 
+// a(x) of (1), x >= 0.
+[[nodiscard]] double remaining_share(double x) noexcept;
+
 // The one that stands for all of them over H seconds, H > 0. With one lambda for all it is the sum.
 [[nodiscard]] RelaxingSpring one_for_all(std::span<const RelaxingSpring> springs, double H) noexcept;
 

@@ -22,7 +22,7 @@
 
 namespace slew::wire {
 
-inline constexpr std::uint32_t kProtocolVersion = 6;
+inline constexpr std::uint32_t kProtocolVersion = 7;
 inline constexpr std::size_t kMaxChannels = 64;
 inline constexpr std::size_t kMaxCommandsPerTick = 16;
 inline constexpr std::size_t kMaxVariablesPerBlock = 1024;

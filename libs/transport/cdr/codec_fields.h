@@ -33,8 +33,8 @@ Text(S&, std::size_t) -> Text<S>;
 template <typename V>
 List(V&, std::size_t) -> List<V>;
 
-// The last field of a message, a number or a Text, that protocol versions before its own ended without: 0 or empty in
-// their recordings.
+// The last field of a message, a number, a list of numbers or a Text, that protocol versions before its own ended
+// without: 0 or empty in their recordings.
 template <typename F>
 struct Appended {
   F field;
@@ -137,6 +137,7 @@ template <typename A>
 void fields(A& a, typename A::template Of<coupling::ActuatorSample>& m) {
   a(m.F, m.F_dot, m.K, m.lambda, m.D, m.x_ref, m.v_ref, m.friction_scale, m.work, m.impulse);
   a(m.p_A, m.p_B, m.Q_A, m.Q_B, m.flags);
+  a(Appended{m.K_cross});  // since version 7
 }
 
 template <typename A>

@@ -133,7 +133,7 @@ json to_json(const wire::ActuatorMessage& m) {
                        {"work", list_of(s.work)},   {"impulse", list_of(s.impulse)},
                        {"p_A", list_of(s.p_A)},     {"p_B", list_of(s.p_B)},
                        {"Q_A", list_of(s.Q_A)},     {"Q_B", list_of(s.Q_B)},
-                       {"flags", value_of(s.flags)}};
+                       {"flags", value_of(s.flags)},   {"K_cross", list_of(s.K_cross)}};
   return {{"header", header_of(m.header)}, {"state", state_of(m.state)}, {"sample", sample}};
 }
 

@@ -202,6 +202,7 @@ void write_step(KnownRecording& recording, StepIndex step) {
                                     &a.work, &a.impulse, &a.p_A, &a.p_B, &a.Q_A, &a.Q_B}) {
     fill(*list, ports, ++seed);
   }
+  fill(a.K_cross, n % 2 * ports * ports, ++seed);
   recording.write(actuators, step);
 
   wire::FlexibleMessage flexible;

@@ -66,7 +66,8 @@ inline bool same(const slewring_ActuatorSample& a, const coupling::ActuatorSampl
          same_numbers(a.lambda, b.lambda) && same_numbers(a.D, b.D) && same_numbers(a.x_ref, b.x_ref) &&
          same_numbers(a.v_ref, b.v_ref) && same_numbers(a.friction_scale, b.friction_scale) &&
          same_numbers(a.work, b.work) && same_numbers(a.impulse, b.impulse) && same_numbers(a.p_A, b.p_A) &&
-         same_numbers(a.p_B, b.p_B) && same_numbers(a.Q_A, b.Q_A) && same_numbers(a.Q_B, b.Q_B) && a.flags == b.flags;
+         same_numbers(a.p_B, b.p_B) && same_numbers(a.Q_A, b.Q_A) && same_numbers(a.Q_B, b.Q_B) && a.flags == b.flags &&
+         same_numbers(a.K_cross, b.K_cross);
 }
 
 inline bool same(const slewring_ActuatorMessage& a, const wire::ActuatorMessage& b) {

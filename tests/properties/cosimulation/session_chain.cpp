@@ -21,7 +21,7 @@ std::uint64_t digest(const coupling::OwnSample& sample) {
   hash.add(m.W_kind);
   const coupling::ActuatorSample& a = sample.actuators;
   add(a.F, a.F_dot, a.K, a.lambda, a.D, a.x_ref, a.v_ref, a.friction_scale, a.work, a.impulse, a.p_A, a.p_B, a.Q_A,
-      a.Q_B);
+      a.Q_B, a.K_cross);
   hash.add(a.flags);
   add(sample.flexible.q, sample.flexible.u, sample.flexible.frame);
   const coupling::ElasticSample& e = sample.elastic;

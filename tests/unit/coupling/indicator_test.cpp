@@ -153,6 +153,21 @@ TEST(Indicator, CouplingFrequencyHasTwoDigitsWhateverTheSecondEigenvalue) {
   EXPECT_EQ(coupling_frequency(nothing, PortArray{1.0, 1.0}, 1), 0);
 }
 
+TEST(Indicator, CouplingFrequencyUsesTheStiffnessBetweenPorts) {
+  // one volume, areas 1 and s, K = k [1 s; s s^2]
+  const double k = 1.5e8, w = 3e-5;
+  for (const double s : {1.0, -1.0, 0.5}) {
+    const PortArray K{k, k * s * s};
+    PortMatrix between, alone, together;
+    for (const double x : {0.0, k * s, k * s, 0.0}) between.push_back(x);
+    for (const double x : {w, 0.0, 0.0, w}) alone.push_back(x);
+    for (const double x : {w, w, w, w}) together.push_back(x);
+    EXPECT_NEAR(coupling_frequency(alone, K, 1e-3, between), 1e-3 * std::sqrt(k * w * (1 + s * s)), 1e-9) << s;
+    // the areas add where the ports move together: no oil is compressed with s = -1
+    EXPECT_NEAR(coupling_frequency(together, K, 1e-3, between), 1e-3 * std::sqrt(k * w) * (1 + s), 1e-9) << s;
+  }
+}
+
 TEST(Indicator, AnIdlePortIsGreen) {
   // an actuator that carries nothing: forces and energies of rounding
   Indicator indicator(1, milliseconds(1));

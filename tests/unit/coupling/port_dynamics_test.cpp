@@ -57,6 +57,43 @@ TEST(PortDynamics, OilSpringIsSolvedToSecondOrder) {
   EXPECT_NEAR(std::log2(coarse / fine) / 2, 2.0, 0.3);
 }
 
+// two masses on one volume, K [1 1; 1 1]: they swing together with 2 K W, and against each other without any force
+TEST(PortDynamics, CoupledRowsShareTheirSpring) {
+  constexpr double kMobility = 1.0 / 42e3, kSpring = 0.8e8, kTime = 0.05, kSwing = 1e-3, kDrift = 0.01;
+  const double omega = std::sqrt(2 * kSpring * kMobility);
+  const auto error = [&](int steps) {
+    PortDynamics ports(3);
+    for (const std::size_t i : {0u, 1u, 2u}) {
+      ports.W()[4 * i] = kMobility;
+      if (i == 2) continue;  // a row apart
+      ports.x()[i] = kSwing;
+      ports.v()[i] = i == 0 ? kDrift : -kDrift;
+      ports.z()[i] = -2 * kSpring * kSwing;
+      ports.partner()[i] = {.K = kSpring, .v_ref = 0.3};  // what v_ref takes from the force, F_dot gives
+      ports.partner()[i].F_dot = -2 * kSpring * 0.3;
+    }
+    const std::span<double> K = ports.couple();
+    K[1] = K[3] = kSpring;
+    PassThrough laws;
+    for (int i = 0; i < steps; ++i) EXPECT_TRUE(ports.solve(kTime / steps, 1, laws).has_converged);
+    EXPECT_EQ(ports.x()[2], 0);
+    const double swing = kSwing * std::cos(omega * kTime);
+    return std::max(std::fabs(ports.x()[0] - swing - kDrift * kTime), std::fabs(ports.x()[1] - swing + kDrift * kTime));
+  };
+  const double coarse = error(200), fine = error(400);
+  EXPECT_LT(fine, 1e-3 * kSwing);
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1);
+  PortDynamics ports(2);
+  (void)ports.couple();
+  ports.set_rows(2);  // no longer coupled
+  ports.v()[1] = 1;
+  ports.partner()[0] = ports.partner()[1] = {.K = kSpring};
+  ports.W()[0] = kMobility;
+  PassThrough laws;
+  (void)ports.solve(1e-3, 4, laws);
+  EXPECT_EQ(ports.v()[0], 0);
+}
+
 TEST(PortDynamics, PartnerForceFollowsItsLeakage) {
   // held piston: F' = F_dot - lambda (F - F_n) goes to F_n + F_dot / lambda
   PortDynamics ports(1);

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stiffness between ports whose chambers share a volume of oil.
+//
+// A chamber c of port i has the area s_c, with the setting of a variable motor, negative on the side of B. Its volume
+// answers the motion of all chambers d on it, so that port i feels port j by
+//   K_cross_ij = sum_c k_c sum_d s_d / s_c,   k_c = s_c^2 / C                                        (1)
+// with the chambers c of i and d of j on one volume. Over a step the springs k_c relax with their own rates and the
+// port's copy of them with its one lambda (math/relaxing_spring.h); (1) has the change of the force at the end of a
+// step: each k_c times a(l_c H) / a(lambda_i H).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "coupling/samples.h"
+#include "hydraulics/circuit.h"
+#include "hydraulics/circuit_integrator.h"
+
+namespace slew::hydraulics_node {
+
+class SharedVolumes {
+ public:
+  explicit SharedVolumes(const hydraulics::Circuit& circuit);
+  [[nodiscard]] bool any() const noexcept { return !pairs_.empty(); }
+  // (1) at the state of a circuit like the one of the construction. springs, lambda: of all ports; H: time between two
+  // exchanges [s].
+  void write(const hydraulics::CircuitIntegrator& integrator, const hydraulics::Circuit& circuit, double H,
+             const coupling::PortArray& lambda, coupling::PortMatrix& K_cross) const noexcept;
+
+ private:
+  struct Chamber {
+    std::size_t port = 0;
+    std::size_t side = 0;  // 0: A, 1: B
+  };
+  struct Pair {
+    Chamber own, other;
+  };
+  std::vector<Pair> pairs_;  // of chambers of two ports on one volume, each in both orders
+};
+
+}  // namespace slew::hydraulics_node
