@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io_node/session_scene.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdio>
+#include <limits>
+#include <string>
 #include <utility>
 
 #include "core/failure.h"
@@ -15,6 +19,33 @@ std::string time_text(double seconds) {
   char text[32] = {};
   std::snprintf(text, sizeof text, "%.6g s", seconds);
   return text;
+}
+
+// A table of --input is one over the time of the session, which goes on at `start` [s].
+void check_input_times(const scene::SceneOptions& options, double start, scene::Scene& scene) {
+  if (options.input == "script" || !options.has_script()) return;
+  double first = std::numeric_limits<double>::infinity(), last = 0;
+  std::size_t rows = 0;
+  for (const scene::ScriptTrack& track : scene.script.tracks) {
+    if (track.points.empty()) continue;
+    first = std::min(first, track.points.front()[0]);
+    last = std::max(last, track.points.back()[0]);
+    rows = std::max(rows, track.points.size());
+  }
+  // one row is a value that is held at all times
+  if (rows < 2) return;
+  const std::string table = "--input " + options.input, times = time_text(first) + " to " + time_text(last);
+  if (last <= start) {
+    throw Failure(ExitCode::bad_input, table + ": its times, " + times +
+                                           " of the session, are over: the session goes on at " + time_text(start) +
+                                           "; nothing was started; add " + time_text(start) +
+                                           " to the times of the table");
+  }
+  if (first == start) return;
+  const std::string effect = first < start ? "the rows before are not played"
+                                           : "until " + time_text(first) + " the inputs have its first values";
+  scene.warnings.push_back(table + ": its times, " + times + ", are those of the session, which goes on at " +
+                           time_text(start) + ": " + effect);
 }
 
 }  // namespace
@@ -31,6 +62,7 @@ SessionScene load_session_scene(const scene::SceneOptions& options) {
                                            " and its duration is " + time_text(scene.session.duration) +
                                            "; nothing was started; choose a longer --duration, or 0");
   }
+  check_input_times(options, saved.time(), scene);
   for (const wire::Role role : wire::kStateRoles) {
     const bool is_needed = (required_roles(scene, Recording::none) & bit(role)) != 0;
     if (!is_needed || saved.find(role) != nullptr) continue;

@@ -178,12 +178,17 @@ class Evaluator {
     return quantity;
   }
 
+  // A parameter whose name is no unit. One that is named as a unit, such as m, does not hide the unit.
+  [[nodiscard]] bool is_parameter_alone(std::string_view word) {
+    return names_.has(word) && units_.find(word) == nullptr;
+  }
+
   // moves behind the unit
   void read_unit() {
     if (next() == '1') at_ += 2;
     const std::string_view first = word_at(at_);
-    if (names_.has(first)) {
-      refuse(at_, fmt::format("'{}' is a parameter and would be read as a unit here", first),
+    if (is_parameter_alone(first)) {
+      refuse(at_, fmt::format("'{}' is a parameter and is no unit", first),
              "an operator before it, or another name of the parameter");
     }
     read_unit_word();
@@ -194,8 +199,8 @@ class Evaluator {
       if (!is_joined && (gap == 0 || !begins_unit(next(gap)))) break;
       const std::size_t place = at_ + (is_joined ? 1 : gap);
       const std::string_view word = word_at(place);
-      if (names_.has(word)) {
-        refuse(at_, fmt::format("'{}' is a parameter and would be read as a unit here", word),
+      if (is_parameter_alone(word)) {
+        refuse(at_, fmt::format("'{}' is a parameter and is no unit", word),
                is_joined ? "spaces around '/'" : "an operator before it");
       }
       at_ = place;

@@ -225,9 +225,14 @@ class ValueReader {
     }
     Table table;
     bool is_sound = true;
+    const Node* before = nullptr;  // argument of the point before, where that is sound
     for (const Node& point : node.items) {
       if (point.kind != Node::Kind::sequence || point.items.size() != 2) {
-        report_problem(point.mark, {"a point is " + describe(point), "[argument, value]", ""});
+        const std::string what =
+            point.kind == Node::Kind::sequence
+                ? fmt::format("a point has {} value{}", point.items.size(), point.items.size() == 1 ? "" : "s")
+                : "a point is " + describe(point);
+        report_problem(point.mark, {what, "points of two values, [[argument, value], ...]", ""});
         is_sound = false;
         continue;
       }
@@ -236,11 +241,13 @@ class ValueReader {
       is_sound = is_sound && argument && value;
       if (!argument || !value) continue;
       if (is_sound && !may_follow(table, *argument, field_)) {
-        report_problem(point.items[0].mark,
-                       {describe(point.items[0]) + " does not lie behind the point before it", order_text(field_), ""});
+        report_problem(point.items[0].mark, {fmt::format("{} does not lie behind {} of the point before it",
+                                                         describe(point.items[0]), describe(*before)),
+                                             order_text(field_), ""});
         is_sound = false;
       }
       table.push_back({*argument, *value});
+      before = &point.items[0];
     }
     if (is_sound) member<Table>() = std::move(table);
   }

@@ -33,11 +33,11 @@ bool is_flexible(const Node& body) {
 
 constexpr std::string_view kNode = ".Node";
 
+}  // namespace
+
 std::string with_article(std::string_view kind) {
   return (kind == "input" || kind == "output" ? "an " : "a ") + std::string(kind);
 }
-
-}  // namespace
 
 bool is_one_of(std::string_view kind, std::string_view kinds) {
   constexpr std::string_view kOr = " or ";

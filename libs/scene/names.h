@@ -37,6 +37,9 @@ class NameTable {
   std::set<std::string, std::less<>> flexible_;  // bodies whose nodes are bodies as well: "Boom.Node20"
 };
 
+// "a body", "an input"
+[[nodiscard]] std::string with_article(std::string_view kind);
+
 // kinds: one, or several as in "component or force".
 [[nodiscard]] bool is_one_of(std::string_view kind, std::string_view kinds);
 

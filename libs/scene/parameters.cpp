@@ -239,21 +239,34 @@ std::string ParameterDirectory::obstacle_of_machine(const ParameterInfo& paramet
   return first.path + ": " + first.what + "; expected " + first.expected;
 }
 
+// Why no number is at this path.
+std::string ParameterDirectory::reason_of_no_parameter(const std::string& name) const {
+  const ParameterInfo* part = find(name + ".x");
+  if (part != nullptr && part->change == Change::live && part->obstacle.empty())
+    return fmt::format("{0} is three numbers, which change one by one; expected {0}.x, {0}.y or {0}.z", name);
+  if (const auto other = not_numeric_.find(name); other != not_numeric_.end())
+    return fmt::format("{} takes {} and cannot be changed while the session runs; start it again with --set {}=VALUE",
+                       name, other->second, name);
+  std::vector<std::string_view> live;
+  for (const ParameterInfo& candidate : parameters_) {
+    if (candidate.change == Change::live) live.push_back(candidate.path);
+  }
+  const auto own = std::find_if(live.begin(), live.end(), [&](std::string_view candidate) {
+    return candidate.starts_with(name) && candidate.substr(name.size()).starts_with('.');
+  });
+  if (own != live.end())
+    return fmt::format("'{}' alone is no parameter; expected one of its own, such as {}", name, *own);
+  const std::string suggestion = closest(name, live);
+  if (!suggestion.empty()) return fmt::format("no parameter '{}'; did you mean '{}'?", name, suggestion);
+  const std::string example = live.empty() ? std::string() : fmt::format(", such as {}", live.front());
+  return fmt::format("no parameter '{}'; expected Element.key{}", name, example);
+}
+
 Assignment ParameterDirectory::check(std::string_view path, double value, std::optional<SimDuration> over) const {
   const std::string name(path);
   const std::string restart = "cannot be changed while the session runs; start it again with --set " + name + "=VALUE";
   const ParameterInfo* parameter = find(path);
-  if (parameter == nullptr) {
-    if (const auto other = not_numeric_.find(path); other != not_numeric_.end()) {
-      return refused(name + " takes " + other->second + " and " + restart);
-    }
-    std::vector<std::string_view> live;
-    for (const ParameterInfo& candidate : parameters_) {
-      if (candidate.change == Change::live) live.push_back(candidate.path);
-    }
-    const std::string suggestion = closest(path, live);
-    return refused("no parameter '" + name + "'" + (suggestion.empty() ? "" : "; did you mean '" + suggestion + "'?"));
-  }
+  if (parameter == nullptr) return refused(reason_of_no_parameter(name));
   if (!parameter->obstacle.empty()) return refused(name + " would change nothing: " + parameter->obstacle);
   if (parameter->change == Change::restart) {
     return refused(name + (parameter->is_choice() ? " takes " + choice_list(parameter->choices) + " and " : " ") +

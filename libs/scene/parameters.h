@@ -73,6 +73,7 @@ class ParameterDirectory {
   [[nodiscard]] Assignment parse_choice(const ParameterInfo& parameter, std::string_view name,
                                         std::optional<SimDuration> over) const;
 
+  [[nodiscard]] std::string reason_of_no_parameter(const std::string& name) const;
   [[nodiscard]] std::string obstacle_of_level(const ParameterInfo& parameter, double value) const;
   [[nodiscard]] std::string obstacle_of_machine(const ParameterInfo& parameter, double value) const;
   [[nodiscard]] std::string obstacle_of_speed(const ParameterInfo& parameter, double value) const;

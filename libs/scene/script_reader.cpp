@@ -47,7 +47,8 @@ class ScriptReader {
 
   void read(const Node& section, const Mark& place) {
     if (section.kind != Node::Kind::map) {
-      report_problem(section.mark, "script", {"is " + describe(section), "a map", ""});
+      report_problem(section.mark, "script",
+                     {"is " + describe(section), "a map with the keys inputs, parameters or file", ""});
       return;
     }
     read_fields(section, script_fields(), &scene_.script, "script", place, kScriptKeys, context_);
@@ -61,7 +62,8 @@ class ScriptReader {
     } else {
       for (const char* key : {"columns", "sha256"}) {
         if (const Node::Entry* entry = section.find(key))
-          report_problem(entry->mark, std::string("script.") + key, {"it has no effect without a file", "a file", ""});
+          report_problem(entry->mark, std::string("script.") + key,
+                         {"the key has no effect without the key 'file'", "a file, or no such key", ""});
       }
     }
     if (inputs != nullptr) read_tracks(inputs->value);
@@ -93,7 +95,15 @@ class ScriptReader {
 
   bool is_input(const std::string& name, const Mark& mark, const std::string& path) {
     if (names_.kind_of(name) == "input") return true;
-    report_problem(mark, path, {"no input '" + name + "'", "", names_.closest_of(name, "input")});
+    const std::string suggestion = names_.closest_of(name, "input");
+    const std::string_view kind = names_.kind_of(name);
+    std::string inputs;
+    for (const InputDef& input : scene_.inputs) inputs += (inputs.empty() ? "" : ", ") + input.name;
+    std::string expected = inputs.empty() ? "a scene with inputs" : "an input of the scene: " + inputs;
+    report_problem(
+        mark, path,
+        {kind.empty() ? fmt::format("no input '{}'", name) : fmt::format("'{}' is {}", name, with_article(kind)),
+         suggestion.empty() ? std::move(expected) : std::string(), suggestion});
     return false;
   }
 
@@ -134,7 +144,7 @@ class ScriptReader {
       if (entry == nullptr) continue;
       if (is_yaml)
         report_problem(entry->mark, std::string("script.") + key,
-                       {"it has no effect on a .yaml file", "a .csv file", ""});
+                       {"the key has no effect on a .yaml file", "a .csv file, or no such key", ""});
       reference.entries.push_back(*entry);
     }
     const std::size_t problems = context_.report.size();
@@ -276,8 +286,9 @@ class ScriptReader {
 
   void read_changes(const Node& node) {
     if (node.kind != Node::Kind::sequence) {
-      report_problem(node.mark, "script.parameters",
-                     {"is " + describe(node), "a list of {at: , set: , value: , over: }", ""});
+      report_problem(
+          node.mark, "script.parameters",
+          {"is " + describe(node), "a list of changes such as [{at: 1 s, set: Bag.mass, value: 800 kg}]", ""});
       return;
     }
     for (std::size_t i = 0; i < node.items.size(); ++i) {
@@ -287,7 +298,9 @@ class ScriptReader {
 
   void read_change(const Node& node, const std::string& path) {
     if (node.kind != Node::Kind::map) {
-      report_problem(node.mark, path, {"is " + describe(node), "{at: , set: , value: , over: }", ""});
+      report_problem(
+          node.mark, path,
+          {"is " + describe(node), "a change such as {at: 1 s, set: Bag.mass, value: 800 kg, over: 2 s}", ""});
       return;
     }
     ScriptChange change;

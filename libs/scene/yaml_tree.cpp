@@ -384,7 +384,7 @@ std::string describe(const Node& node) {
     case Node::Kind::empty:
       return "nothing";
     case Node::Kind::sequence:
-      return "a list";
+      return node.items.empty() ? "an empty list" : "a list";
     case Node::Kind::map:
       return "a map";
     case Node::Kind::scalar:

@@ -120,11 +120,13 @@ void validate_filter(const HydraulicsDef&, const ComponentDef& component, Proble
 
 }  // namespace
 
-// The bypass passes the pump's flow whatever the dirt.
+// The element as dirty as the scene states it, in both directions; forward the bypass beside it.
 void FilterDef::add_lines(PumpLines& lines) const {
+  const double element = (1 - clogging) * nominal_flow * (OilCompressibility::kHighest / nominal_pressure_drop);
+  lines.open.push_back({.a = port_1, .b = port_2, .flow = element});
   if (!(bypass.nominal_flow > 0)) return;
   const double most = bypass.nominal_flow * std::sqrt(OilCompressibility::kHighest / bypass.nominal_pressure_drop);
-  lines.open.push_back({.a = port_1, .b = port_2, .flow = most, .is_one_way = true});
+  lines.open.push_back({.a = port_1, .b = port_2, .flow = element + most, .is_one_way = true});
 }
 
 ComponentType filter_type() {

@@ -2,11 +2,14 @@
 #include "hydraulics/components/shuttle_valve.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/outlet_edges.h"
 #include "hydraulics/components/shared_fields.h"
+#include "hydraulics/oil.h"
+#include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -103,6 +106,14 @@ void validate_shuttle_valve(const HydraulicsDef&, const ComponentDef& component,
 }
 
 }  // namespace
+
+// whichever inlet has the higher pressure
+void ShuttleValveDef::add_lines(PumpLines& lines) const {
+  const double most = nominal_flow * std::sqrt(OilCompressibility::kHighest / nominal_pressure_drop);
+  for (const std::string* inlet : {&port_1, &port_2}) {
+    lines.open.push_back({.a = *inlet, .b = port_3, .flow = most, .is_one_way = true});
+  }
+}
 
 ComponentType shuttle_valve_type() {
   return {.name = "shuttle_valve",

@@ -26,6 +26,7 @@ struct ShuttleValveDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "shuttle_valve"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
 };
 
 [[nodiscard]] ComponentType shuttle_valve_type();

@@ -27,6 +27,7 @@ struct AssemblyReport {
   };
   std::vector<Row> open;        // rows that the start violates by more than kFrameTolerance
   std::vector<Row> held_twice;  // rows that prescribed motions and loops already imply
+  std::vector<Row> locking;     // gears whose ratio leaves no motion to either joint; `what` names joint 1
   std::vector<Speed> speeds;    // speeds of the scene that the loops do not allow
   bool is_settled = true;       // false: flexible bodies find no rest under the start's load
 };

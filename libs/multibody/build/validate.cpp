@@ -388,6 +388,13 @@ class Validator {
           "the flexible bodies have no static equilibrium under the load of the start",
           "a load below the buckling load, or a start of its own");
     }
+    for (const AssemblyReport::Row& row : report.locking) {
+      add(row.gear,
+          fmt::format("neither '{}' nor '{}' can move: the loop of joints holds them in another ratio", row.what,
+                      model.joints[static_cast<std::size_t>(row.joint)].name),
+          "the ratio of the loop, or no gear in it");
+    }
+    if (!report.locking.empty()) return;
     for (const AssemblyReport::Row& row : report.held_twice) {
       if (!row.gear.empty()) {
         add(row.gear, "the prescribed motions hold both joints of this gear already",

@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <numeric>
+#include <optional>
+#include <vector>
 
 #include "multibody/build/assembly.h"
 #include "multibody/build/start_pose.h"
@@ -14,6 +18,39 @@
 
 namespace slew::multibody {
 namespace {
+
+// Joints that gears hold to each other: a forest in which every coordinate is a multiple of its root's.
+class GearedJoints {
+ public:
+  explicit GearedJoints(std::size_t joints) : root_(joints), factor_(joints, 1.0) {
+    std::iota(root_.begin(), root_.end(), std::size_t{0});
+  }
+  // q_2 = ratio q_1. The ratio that earlier gears hold already, and none if they leave it free.
+  [[nodiscard]] std::optional<double> join(std::size_t joint1, std::size_t joint2, double ratio) {
+    const std::size_t root1 = settle(joint1), root2 = settle(joint2);
+    if (root1 == root2) return factor_[joint2] / factor_[joint1];
+    root_[root2] = root1;
+    factor_[root2] = ratio * factor_[joint1] / factor_[joint2];
+    return std::nullopt;
+  }
+
+ private:
+  // the root, to which the joint then is a neighbour
+  std::size_t settle(std::size_t joint) {
+    std::size_t root = joint;
+    double factor = 1;
+    while (root_[root] != root) {
+      factor *= factor_[root];
+      root = root_[root];
+    }
+    root_[joint] = root;
+    factor_[joint] = factor;
+    return root;
+  }
+
+  std::vector<std::size_t> root_;
+  std::vector<double> factor_;
+};
 
 class GearRules {
  public:
@@ -25,6 +62,24 @@ class GearRules {
     if (!both || gear.joint1 != gear.joint2) return both;
     add(gear.name + ".joint2", fmt::format("both joints are '{}'", gear.joint2), "two different joints");
     return false;
+  }
+
+  // Ratios that contradict each other would hold all their joints. A ratio of 0 does so on purpose.
+  void check_circles() {
+    constexpr double kEqual = 1e-4;  // the root of what the assembly takes as dependent
+    GearedJoints geared(m_.joints.size());
+    for (const GearDef& gear : m_.gears) {
+      if (gear.ratio == 0) continue;
+      const auto joint1 = static_cast<std::size_t>(joint_of(gear.joint1) - m_.joints.data());
+      const auto joint2 = static_cast<std::size_t>(joint_of(gear.joint2) - m_.joints.data());
+      const std::optional<double> held = geared.join(joint1, joint2, gear.ratio);
+      if (!held || std::fabs(gear.ratio - *held) <= kEqual * std::fabs(*held)) continue;
+      const char* key = gear.kind == GearKind::rack_and_pinion ? "radius" : "ratio";
+      add(fmt::format("{}.{}", gear.name, key),
+          fmt::format("{:.6g} contradicts the gears before it, which hold '{}' to '{}' with {:.6g}: neither could move",
+                      gear.ratio, gear.joint2, gear.joint1, *held),
+          "ratios that agree round every circle of gears, or one gear less");
+    }
   }
 
   void check_start(const GearDef& gear, std::span<const Pose> poses, const std::vector<TreeEdge>& tree) {
@@ -94,6 +149,7 @@ bool check_gears(const MechanicsDef& mechanics, Problems& problems) {
   GearRules rules(mechanics, problems);
   bool is_sound = true;
   for (const GearDef& gear : mechanics.gears) is_sound = rules.check(gear) && is_sound;
+  if (is_sound) rules.check_circles();
   return is_sound;
 }
 

@@ -11,8 +11,8 @@
 
 namespace slew::multibody {
 
-// Checks that both joints exist and have one coordinate of the kind of the gear's type. False otherwise: starts then
-// cannot be checked.
+// Checks that both joints exist and have one coordinate of the kind of the gear's type, and that ratios round a circle
+// of gears agree. False where joints are not right: starts then cannot be checked.
 [[nodiscard]] bool check_gears(const MechanicsDef& mechanics, Problems& problems);
 
 // Checks that both joints belong to the tree, and that their start positions fit the gear within the assembly's

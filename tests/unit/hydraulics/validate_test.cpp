@@ -343,6 +343,41 @@ TEST(PumpLines, are_not_relieved_by_what_passes_less_than_the_pump_or_opens_too_
   EXPECT_NE(what_at(findings(late).warnings, "Pump.port_a"), "");
 }
 
+// a relief valve on Vol_Q, behind a component that passes the pump's flow
+TEST(PumpLines, are_relieved_behind_a_filter_as_dirty_as_it_is) {
+  HydraulicsDef def = pump_on_a_block();
+  relieve(def, "Vol_Q");
+  FilterDef& filter = add<FilterDef>(def, "Filter");
+  filter.port_1 = "Vol_P", filter.port_2 = "Vol_Q", filter.nominal_flow = 100.0 / 60000;
+  EXPECT_EQ(what_at(findings(def).warnings, "Pump.port_a"), "");
+  std::swap(filter.port_1, filter.port_2);
+  EXPECT_EQ(what_at(findings(def).warnings, "Pump.port_a"), "");
+  filter.clogging = 1;
+  EXPECT_NE(what_at(findings(def).warnings, "Pump.port_a"), "");
+  filter.bypass.nominal_flow = 100.0 / 60000;  // in the other direction
+  EXPECT_NE(what_at(findings(def).warnings, "Pump.port_a"), "");
+  std::swap(filter.port_1, filter.port_2);
+  EXPECT_EQ(what_at(findings(def).warnings, "Pump.port_a"), "");
+}
+
+TEST(PumpLines, are_relieved_behind_a_shuttle_valve) {
+  for (const bool is_first : {true, false}) {
+    HydraulicsDef def = pump_on_a_block();
+    add_volume(def, "Vol_R").rigid_volume = 1e-3;
+    relieve(def, "Vol_Q");
+    ShuttleValveDef& shuttle = add<ShuttleValveDef>(def, "Shuttle");
+    shuttle.port_1 = is_first ? "Vol_P" : "Vol_R", shuttle.port_2 = is_first ? "Vol_R" : "Vol_P";
+    shuttle.port_3 = "Vol_Q", shuttle.nominal_flow = 100.0 / 60000;
+    EXPECT_EQ(what_at(findings(def).warnings, "Pump.port_a"), "");
+    shuttle.nominal_flow = 1.0 / 60000;
+    EXPECT_NE(what_at(findings(def).warnings, "Pump.port_a"), "");
+    // the outlet is no inlet
+    shuttle.nominal_flow = 100.0 / 60000;
+    std::swap(is_first ? shuttle.port_1 : shuttle.port_2, shuttle.port_3);
+    EXPECT_NE(what_at(findings(def).warnings, "Pump.port_a"), "");
+  }
+}
+
 TEST(PumpLines, of_the_crane_have_their_relief_valve) {
   EXPECT_EQ(what_at(findings(crane_circuit()).warnings, "MainPump.port_a"), "");
 }

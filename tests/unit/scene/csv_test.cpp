@@ -134,7 +134,9 @@ TEST_F(Csv, ListedColumnsAreTakenAlone) {
   EXPECT_EQ(load(csv, ", columns: [Stick]").script.tracks.size(), 1u);
   EXPECT_EQ(stick(csv, ", columns: [Stick]"), kRamp);
   EXPECT_EQ(refusal(csv, ", columns: [Stock]"), "t.csv:1:1: no column 'Stock'; did you mean 'Stick'?");
-  EXPECT_EQ(refusal(csv, ", columns: [Oil]"), "t.csv:1:18: no input 'Oil'\nt.csv:1:29: no input 'Oil'");
+  EXPECT_EQ(refusal(csv, ", columns: [Oil]"),
+            "t.csv:1:18: no input 'Oil'; expected an input of the scene: Stick, Lever\nt.csv:1:29: no input 'Oil'; "
+            "expected an input of the scene: Stick, Lever");
 }
 
 TEST_F(Csv, AScriptFileWithoutAValueIsRefusedWithWhatItLacks) {

@@ -72,6 +72,12 @@ TEST_F(Parameters, AnAssignmentIsRefusedWithAReason) {
   const auto refusal = [&](const char* text) { return directory.parse_assignment(text).status.text; };
   EXPECT_EQ(refusal("Rod.mas=5"), "no parameter 'Rod.mas'; did you mean 'Rod.mass'?");
   EXPECT_EQ(refusal("Rot.mass=5"), "no parameter 'Rot.mass'; did you mean 'Rod.mass'?");
+  EXPECT_EQ(refusal("Rod=5"), "'Rod' alone is no parameter; expected one of its own, such as Rod.mass");
+  EXPECT_EQ(refusal("pressure=5 bar").find("no parameter 'pressure'; expected Element.key, such as "), 0U)
+      << refusal("pressure=5 bar");
+  EXPECT_EQ(refusal("mechanics.gravity=[0, 0, 0]"),
+            "mechanics.gravity is three numbers, which change one by one; expected mechanics.gravity.x, "
+            "mechanics.gravity.y or mechanics.gravity.z");
   EXPECT_EQ(refusal("session.step=2 ms"),
             "session.step cannot be changed while the session runs; start it again with --set session.step=VALUE");
   EXPECT_EQ(refusal("Rod.mass=-1 kg"), "Rod.mass: -1 kg is out of range; expected more than 0 kg");

@@ -11,7 +11,10 @@
 
 #include "build_paths.h"
 #include "core/failure.h"
+#include "io_node/saved_session.h"
 #include "io_node/scene_config.h"
+#include "io_node/session_scene.h"
+#include "node/identity.h"
 
 namespace slew::session {
 namespace scene_options_test {
@@ -129,6 +132,51 @@ TEST_F(SceneOptionsTest, AContinuedSessionMayHaveAnotherControllerOfAnInput) {
   EXPECT_THROW(static_cast<void>(scene::continue_scene(on, saved.expanded_text, saved.name)), scene::LoadError);
   on.overrides = {"Input_Lift.ramp=1 s"};
   EXPECT_THROW(static_cast<void>(scene::continue_scene(on, saved.expanded_text, saved.name)), Failure);
+}
+
+// A table of --input has the times of the session, which goes on at 2 s.
+TEST_F(SceneOptionsTest, ATableForAContinuedSessionCountsTheSessionsTime) {
+  options_.file =
+      write("push.yaml",
+            "bodies: {Block: {mass: 2 kg, inertia: [1, 1, 1]}}\njoints: {Slide: {type: prismatic, body2: "
+            "Block}}\nforces: {Push: {type: point_force, body: Block, direction: [1, 0, 0], force: 1 N}}\ninputs: "
+            "{Stick: {type: analog, primitive: Push, scale: 200}}\nsession: {duration: 9 s}\n");
+  const scene::Scene scene = scene::load_scene(options_);
+  io_node::SavedSession saved{.build = node::build_id(),
+                              .session_name = "s",
+                              .scene_name = scene.name,
+                              .scene_text = scene.expanded_text,
+                              .assets = {},
+                              .communication_step = milliseconds(1),
+                              .step = 2000,
+                              .states = {{wire::Role::io, {2000, 0, {}}}, {wire::Role::mechanics, {2000, 0, {}}}}};
+  scene::SceneOptions on;
+  on.from = (folder_ / "push.saved").string();
+  ASSERT_TRUE(io_node::write_saved(on.from, saved, io_node::Replace::never).is_ok());
+  // warnings with a table of these rows, or the failure
+  const auto messages = [&](const std::string& rows) {
+    on.input = write("table.csv", "time,Stick\n" + rows);
+    std::string text;
+    try {
+      for (const std::string& warning : io_node::load_session_scene(on).scene.warnings) text += warning + "\n";
+    } catch (const Failure& failure) {
+      text = failure.what();
+    }
+    return text.find(on.input) == std::string::npos ? text : text.substr(text.find(on.input) + on.input.size());
+  };
+  EXPECT_EQ(messages("2,0\n3,1\n"), "");
+  EXPECT_EQ(messages("0,0.5\n"), "");  // held at all times
+  EXPECT_EQ(
+      messages("0,0\n3,1\n"),
+      ": its times, 0 s to 3 s, are those of the session, which goes on at 2 s: the rows before are not played\n");
+  EXPECT_EQ(
+      messages("2.5,0\n3,1\n"),
+      ": its times, 2.5 s to 3 s, are those of the session, which goes on at 2 s: until 2.5 s the inputs have its "
+      "first values\n");
+  EXPECT_EQ(
+      messages("0,0\n2,1\n"),
+      ": its times, 0 s to 2 s of the session, are over: the session goes on at 2 s; nothing was started; add 2 s "
+      "to the times of the table");
 }
 
 TEST_F(SceneOptionsTest, ArgumentsForAChildGiveTheSameScene) {

@@ -300,17 +300,69 @@ TEST(GearRules, LeaveOutAGearThatOthersImply) {
   EXPECT_EQ(warnings[0].path, "Back");
 }
 
-TEST(GearRules, HoldStillWhatTwoRatiosContradict) {
-  MechanicsDef def = geared_pendulums(0);
-  def.bodies[0].orientation = {0.3, 0, 0};
-  def.bodies[1].orientation = {0.3 * kRatio, 0, 0};
-  GearDef other = gear(GearKind::gear, "Pivot1", "Pivot2", 1);
-  other.name = "Other";
-  def.gears.push_back(other);
-  Mechanism pendulums(def);
-  EXPECT_EQ(pendulums.model.degrees_of_freedom(), 0);
-  pendulums.run(0.1, 1e-3);
-  EXPECT_NEAR(pendulums.value("Pivot1.position"), 0.3, 1e-9);
+// Pendulums on axes in a row, geared in pairs.
+struct Train {
+  struct Pair {
+    int joint1, joint2;
+    double ratio;
+  };
+  MechanicsDef def;
+  explicit Train(int joints, const std::vector<Pair>& pairs) {
+    for (int i = 0; i < joints; ++i) {
+      const std::string number = std::to_string(i);
+      // the inertias differ by a factor of 1e6, as those of a motor and of what it moves
+      const double size = std::pow(1e3, i % 3);
+      def.bodies.push_back(rod("Rod" + number, {2 * size, 0.4, 0.05 * size}, i));
+      def.joints.push_back({.name = "Axis" + number, .point1 = {1.0 * i, 0, 0}, .body2 = "Rod" + number});
+    }
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      def.gears.push_back(gear(GearKind::gear, "Axis" + std::to_string(pairs[k].joint1),
+                               "Axis" + std::to_string(pairs[k].joint2), pairs[k].ratio));
+      def.gears.back().name = "Gear" + std::to_string(k);
+    }
+  }
+  [[nodiscard]] std::string problems(Formulation formulation) {
+    def.formulation = formulation;
+    return problems_of(def);
+  }
+};
+
+TEST(GearRules, RefuseRatiosThatContradictEachOther) {
+  for (const Formulation formulation : kFormulations) {
+    EXPECT_EQ(Train(2, {{0, 1, -2.5}, {1, 0, 1}}).problems(formulation),
+              "Gear1.ratio: 1 contradicts the gears before it, which hold 'Axis0' to 'Axis1' with -0.4: neither could "
+              "move; expected ratios that agree round every circle of gears, or one gear less\n");
+    // one per mille round a circle of three, and a part of the machine that moves
+    EXPECT_EQ(Train(5, {{3, 4, 2}, {0, 1, 2}, {1, 2, 3}, {2, 0, 1.001 / 6}}).problems(formulation),
+              "Gear3.ratio: 0.166833 contradicts the gears before it, which hold 'Axis0' to 'Axis2' with 0.166667: "
+              "neither could move; expected ratios that agree round every circle of gears, or one gear less\n");
+  }
+}
+
+TEST(GearRules, TakeRatiosThatAgreeAndGearsThatHoldAJoint) {
+  for (const Formulation formulation : kFormulations) {
+    EXPECT_EQ(Train(3, {{0, 1, 2}, {1, 2, 3}, {2, 0, 1.0 / 6}}).problems(formulation), "");
+    EXPECT_EQ(Train(2, {{0, 1, -2.5}, {0, 1, -2.5}, {1, 0, -0.4}}).problems(formulation), "");
+    EXPECT_EQ(Train(6, {{0, 1, 1e-3}, {1, 2, 20}, {4, 3, 1e-3}, {3, 2, 50}, {4, 5, -1}}).problems(formulation), "");
+    EXPECT_EQ(Train(3, {{0, 1, 0}, {1, 2, 4}}).problems(formulation), "");  // ratio 0 holds joint 2
+  }
+}
+
+TEST(GearRules, RefuseARatioOtherThanThatOfTheLoopOfTheirJoints) {
+  // a parallelogram of 1 m by 2 m, whose cranks turn alike
+  MechanicsDef def;
+  def.bodies = {rod("Left", kFirst, 0),
+                rod("Right", kFirst, 2),
+                {.name = "Coupler", .position = {0, 1, 0}, .mass = 3, .inertia = {1, 1, 1}}};
+  def.joints = {{.name = "A", .body2 = "Left"},
+                {.name = "B", .point1 = {2, 0, 0}, .body2 = "Right"},
+                {.name = "C", .body1 = "Left", .point1 = {0, 1, 0}, .body2 = "Coupler"},
+                {.name = "D", .body1 = "Right", .point1 = {0, 1, 0}, .body2 = "Coupler", .point2 = {2, 0, 0}}};
+  for (const double ratio : {1.0, 2.0}) {
+    def.gears = {gear(GearKind::gear, "A", "B", ratio)};
+    EXPECT_EQ(problems_of(def).find("Gear: neither 'A' nor 'B' can move") != std::string::npos, ratio != 1.0)
+        << problems_of(def);
+  }
 }
 
 }  // namespace gear_test
