@@ -11,6 +11,8 @@
 namespace slew::scene {
 namespace {
 
+constexpr std::size_t kCanBytes = 8, kCanFdBytes = 64;
+
 template <typename Def>
 void add_bus_fields(std::vector<Field>& fields) {
   using devices::CanOpenDef, devices::J1939UnitDef;
@@ -219,6 +221,22 @@ void check_protocol(const std::string& name, const CanBusDef& bus, Problems& pro
   }
 }
 
+// A message is one frame: longer ones of J1939 need its transport protocol.
+void check_lengths(const std::string& name, const CanBusDef& bus, std::span<const devices::CanMessage> messages,
+                   Problems& problems) {
+  const bool is_j1939 = bus.protocol == CanProtocol::j1939;
+  const std::size_t most = is_j1939 ? kCanBytes : kCanFdBytes;
+  for (const devices::CanMessage& message : messages) {
+    if (message.bytes <= most) continue;
+    problems.push_back({name + (bus.database.empty() ? ".definition" : ".database"),
+                        fmt::format("message {} has {} bytes", message.name, message.bytes),
+                        is_j1939 ? "at most 8, since longer messages of J1939 come in several frames (transport "
+                                   "protocol), which are not supported"
+                                 : "at most 64, as a frame has",
+                        ""});
+  }
+}
+
 // The messages, if they are sound and have all signals.
 std::optional<std::vector<devices::CanMessage>> read_messages(const std::string& name, CanBusDef& bus, CanFlow flow,
                                                               Problems& problems) {
@@ -249,6 +267,7 @@ std::optional<std::vector<devices::CanMessage>> read_messages(const std::string&
     }
   }
   if (!found.empty()) return std::nullopt;
+  check_lengths(name, bus, messages, problems);
   for (const CanSignalDef& signal : bus.signals)
     static_cast<void>(find_message_of(name, bus.protocol, messages, signal.signal, problems));
   if (problems.size() > before) return std::nullopt;

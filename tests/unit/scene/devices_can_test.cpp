@@ -169,5 +169,23 @@ TEST(CanSection, J1939HasItsJoystickAndItsEngineWithoutADatabase) {
       "and its states");
 }
 
+// such a message would not fit into a frame
+TEST(CanSection, AMessageIsOneFrame) {
+  const auto with_bytes = [](int bytes, const std::string& protocol) {
+    return problems_of(kPushed + "  Panel:\n    type: can_in\n    interface: can0\n    protocol: " + protocol +
+                       "\n    definition: |\n      BO_ 2364540158 Long: " + std::to_string(bytes) +
+                       " X\n       SG_ Lift : 0|16@1- (1,0) [0|0] \"\" X\n"
+                       "    signals: [{signal: Long.Lift, input: Input_Push}]\n");
+  };
+  EXPECT_EQ(with_bytes(8, "j1939"), "");
+  EXPECT_EQ(
+      with_bytes(9, "j1939"),
+      "test:16:17: Panel.definition: message Long has 9 bytes; expected at most 8, since longer messages of J1939 "
+      "come in several frames (transport protocol), which are not supported");
+  EXPECT_EQ(with_bytes(64, "plain"), "");
+  EXPECT_EQ(with_bytes(65, "plain"),
+            "test:16:17: Panel.definition: message Long has 65 bytes; expected at most 64, as a frame has");
+}
+
 }  // namespace devices_can_test
 }  // namespace slew::scene
