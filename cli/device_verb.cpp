@@ -187,7 +187,8 @@ std::unique_ptr<InputDevice> open_of_scene(const DeviceOptions& options) {
   const auto reach = options.is_insecure ? device_node::Reach::network : device_node::Reach::this_machine;
   if (const auto* rig = find_device(scene.devices.udp_ins, options.device))
     return device_node::open_udp_in(*rig, reach);
-  if (const auto* panel = find_device(scene.devices.can_ins, options.device)) return device_node::open_can_in(*panel);
+  if (const auto* panel = find_device(scene.devices.can_ins, options.device))
+    return device_node::open_can_in(*panel, device_node::BusPart::listens);
   if (const auto* dash = find_device(scene.devices.udp_outs, options.device))
     return open_receiver(dash->name, dash->send, dash->layout, reach);
   if (const auto* seat = find_device(scene.devices.platforms, options.device))

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -32,6 +33,8 @@ class CanBus {
 
 // Null and the reason: there is no such interface at present, or this kernel has no CAN.
 [[nodiscard]] std::unique_ptr<CanBus> open_can(const std::string& interface, std::string& reason);
+// The same, for tests another one.
+using OpenCan = std::function<std::unique_ptr<CanBus>(const std::string& interface, std::string& reason)>;
 // Throws Failure (bad_input).
 [[nodiscard]] std::unique_ptr<CanBus> open_can_log(const std::string& path);
 

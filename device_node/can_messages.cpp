@@ -2,24 +2,23 @@
 #include "device_node/can_messages.h"
 
 #include "core/failure.h"
-#include "devices/dbc.h"
-#include "devices/j1939.h"
 
 namespace slew::device_node {
 
-std::vector<devices::CanMessage> read_messages(const scene::CanBusDef& bus) {
+std::vector<devices::CanMessage> read_messages(const scene::CanBusDef& bus, scene::CanFlow flow) {
   Problems problems;
-  devices::CanDatabase database = devices::read_dbc(bus.definition, "definition", problems);
+  std::vector<devices::CanMessage> messages = can_messages(bus, flow, problems);
   if (!problems.empty()) throw Failure(ExitCode::bad_input, problems[0].path + ": " + problems[0].what);
-  return std::move(database.messages);
+  return messages;
 }
 
 SignalPlace place_of(const std::vector<devices::CanMessage>& messages, const std::string& name) {
   for (std::size_t i = 0; i < messages.size(); ++i) {
     const std::string& message = messages[i].name;
     if (!name.starts_with(message + ".")) continue;
-    if (const auto signal = find_signal(messages[i], std::string_view(name).substr(message.size() + 1)))
-      return {i, *signal};
+    const std::string_view signal_name = std::string_view(name).substr(message.size() + 1);
+    if (const auto signal = find_signal(messages[i], signal_name)) return {i, *signal};
+    if (const auto axis = devices::find_joystick_axis(messages[i], signal_name)) return {i, axis->position, axis};
   }
   throw Failure(ExitCode::bad_input, "the definition has no signal '" + name + "'");
 }

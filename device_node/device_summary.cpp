@@ -15,6 +15,23 @@ std::string counted_text(const Json& counts, std::string_view key, std::string_v
   return fmt::format(", {} {}", number->integer(), what);
 }
 
+// What happened to nodes and to the address on CAN.
+std::string bus_text(const Json& counts) {
+  std::string text;
+  if (const Json* const nodes = counts.find("nodes")) {
+    for (const Json& node : nodes->items()) {
+      const std::int64_t number = node.at("node").integer();
+      text += counted_text(node, "losses", fmt::format("times node {} was missing", number));
+      text += counted_text(node, "boot_ups", fmt::format("starts of node {}", number));
+    }
+  }
+  if (const Json* const address = counts.find("address")) {
+    const std::string& phase = address->at("phase").text();
+    text += phase == "claimed" ? fmt::format(", address {}", address->at("address").integer()) : ", address " + phase;
+  }
+  return text;
+}
+
 std::string platform_text(const Json& platform) {
   std::string text = fmt::format("{} at the end, {} of {} steps active", platform.at("phase").text(),
                                  platform.at("active_steps").integer(), platform.at("steps").integer());
@@ -36,8 +53,9 @@ std::string summary_text(const Json& summary) {
     text += fmt::format("{} packets sent", packets->at("sent").integer());
     text += counted_text(*packets, "unsent", "not taken by the system");
     text += counted_text(*packets, "not_finite", "not sent since a value was not finite");
+    text += counted_text(*packets, "held_back", "held back without an address or before NMT start");
     text += counted_text(*packets, "incomplete_steps", "steps incomplete");
-    return text;
+    return text + bus_text(*packets);
   }
   if (inputs == nullptr) return "";
   if (packets != nullptr) {
@@ -55,6 +73,8 @@ std::string summary_text(const Json& summary) {
     text += counted_text(*frames, "other_identifiers", "of other identifiers");
     for (const char* state : {"not available", "error", "out of range", "not finite"})
       text += counted_text(frames->at("without_value"), state, std::string("values ") + state);
+    text += counted_text(*frames, "unsent", "not taken by the system");
+    text += bus_text(*frames);
   } else {
     text = fmt::format("{} reports", summary.at("events").at("reports").integer());
     text += counted_text(summary.at("events"), "dropped", "times events dropped by the kernel");

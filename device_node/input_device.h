@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "core/json.h"
+#include "device_node/bus_protocol.h"
+#include "device_node/can_bus.h"
 #include "scene/devices.h"
 
 namespace slew::scene {
@@ -66,6 +68,7 @@ void check_reach(const std::string& key, const std::string& address, Reach reach
 [[nodiscard]] std::unique_ptr<InputDevice> open_joystick(const scene::JoystickDef& def,
                                                          std::span<const scene::InputDef> inputs);
 [[nodiscard]] std::unique_ptr<InputDevice> open_udp_in(const scene::UdpInDef& def, Reach reach);
-[[nodiscard]] std::unique_ptr<InputDevice> open_can_in(const scene::CanInDef& def);
+[[nodiscard]] std::unique_ptr<InputDevice> open_can_in(const scene::CanInDef& def, BusPart part = BusPart::takes_part,
+                                                       OpenCan open = open_can);
 
 }  // namespace slew::device_node

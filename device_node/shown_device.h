@@ -44,9 +44,6 @@ class ShownDevice {
   std::vector<std::string> notices_;
 };
 
-// False: the system did not take it.
-using SendFrame = std::function<bool(const CanFrame&)>;
-
 // With a sender of the caller's, for tests; without, on the network. Throws Failure.
 [[nodiscard]] std::unique_ptr<ShownDevice> open_udp_out(const scene::UdpOutDef& def, const scene::OutputsDef& outputs,
                                                         Reach reach, SendBytes send = nullptr);
@@ -55,6 +52,6 @@ using SendFrame = std::function<bool(const CanFrame&)>;
                                                                 const scene::OutputsDef& outputs, const Triple& gravity,
                                                                 Reach reach, SendBytes send = nullptr);
 [[nodiscard]] std::unique_ptr<ShownDevice> open_can_out(const scene::CanOutDef& def, const scene::OutputsDef& outputs,
-                                                        SendFrame send = nullptr);
+                                                        OpenCan open = open_can);
 
 }  // namespace slew::device_node

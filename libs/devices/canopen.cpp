@@ -10,9 +10,9 @@
 namespace slew::devices {
 namespace {
 
-constexpr unsigned kMaxNode = 127;
+constexpr unsigned kMaxNode = kMaxCanOpenNode;
 constexpr unsigned kMaxPdoBits = 64;
-constexpr std::uint32_t kFirstTransmitPdo = 0x180, kFirstReceivePdo = 0x200, kPdoStep = 0x100, kHeartbeat = 0x700;
+constexpr std::uint32_t kFirstTransmitPdo = 0x180, kFirstReceivePdo = 0x200, kPdoStep = 0x100;
 
 constexpr Field kPdoFields[] = {
     field<&PdoDef::node>("node", {.range = {.min = 1, .max = kMaxNode, .min_is_open = false, .max_is_open = false},
@@ -22,6 +22,7 @@ constexpr Field kPdoFields[] = {
     field<&PdoDef::direction>("direction", {.choices = kPdoDirectionNames, .doc = "as the node sees it"}),
     field<&PdoDef::cob_id>("cob_id", {.range = {.min = 0, .max = 0x7FF, .min_is_open = false, .max_is_open = false},
                                       .doc = "identifier; 0: that of the predefined connection set"}),
+    field<&PdoDef::is_synchronous>("synchronous", {.doc = "sent: after each SYNC, in place of at once"}),
 };
 
 constexpr Field kPdoObjectFields[] = {
@@ -73,6 +74,18 @@ bool is_state(std::uint8_t state) {
   return false;
 }
 
+bool is_command(std::uint8_t command) {
+  switch (static_cast<NmtCommand>(command)) {
+    case NmtCommand::start:
+    case NmtCommand::stop:
+    case NmtCommand::enter_preoperational:
+    case NmtCommand::reset_node:
+    case NmtCommand::reset_communication:
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::span<const Field> pdo_fields() noexcept {
@@ -118,11 +131,19 @@ std::array<std::byte, 2> nmt_frame(NmtCommand command, unsigned node) noexcept {
   return {static_cast<std::byte>(command), static_cast<std::byte>(node)};
 }
 
+std::optional<NmtRequest> read_nmt(std::uint32_t id, std::span<const std::byte> frame) noexcept {
+  if (id != kNmtCobId || frame.size() != 2) return std::nullopt;
+  const auto command = std::to_integer<std::uint8_t>(frame[0]);
+  const auto node = std::to_integer<unsigned>(frame[1]);
+  if (!is_command(command) || node > kMaxNode) return std::nullopt;
+  return NmtRequest{static_cast<NmtCommand>(command), node};
+}
+
 std::optional<Heartbeat> read_heartbeat(std::uint32_t id, std::span<const std::byte> frame) noexcept {
-  if (id <= kHeartbeat || id > kHeartbeat + kMaxNode || frame.size() != 1) return std::nullopt;
+  if (id <= kHeartbeatCobId || id > kHeartbeatCobId + kMaxNode || frame.size() != 1) return std::nullopt;
   const auto state = std::to_integer<std::uint8_t>(frame[0]);
   if (!is_state(state)) return std::nullopt;
-  return Heartbeat{id - kHeartbeat, static_cast<NmtState>(state)};
+  return Heartbeat{id - kHeartbeatCobId, static_cast<NmtState>(state)};
 }
 
 }  // namespace slew::devices

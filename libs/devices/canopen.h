@@ -3,11 +3,12 @@
 //
 // A PDO's objects follow each other bit by bit, each with its least significant bit first. Identifiers are those of the
 // predefined connection set:
-//   NMT 0x000, TPDO1..4 0x180 0x280 0x380 0x480 + node, RPDO1..4 0x200 0x300 0x400 0x500 + node, heartbeat 0x700 + node
+//   NMT 0x000, SYNC 0x080, TPDO1..4 0x180 0x280 0x380 0x480 + node, RPDO1..4 0x200 0x300 0x400 0x500 + node,
+//   heartbeat 0x700 + node
 // T and R are the node's view: it transmits a TPDO and receives an RPDO.
 //
-// Not covered: SDO (object dictionary), SYNC, EMCY, the mapping in the node: it is configured by its own tool.
-// Source: CiA 301, application layer and communication profile, 7.2.2, 7.2.8, 7.3.5.
+// Not covered: SDO (object dictionary), EMCY, the mapping in the node: it is configured by its own tool.
+// Source: CiA 301, application layer and communication profile, 7.2.2, 7.2.5, 7.2.8, 7.3.5.
 #pragma once
 
 #include <array>
@@ -41,7 +42,8 @@ struct PdoDef {
   std::int64_t node = 1;    // 1 to 127
   std::int64_t number = 1;  // 1 to 4
   PdoDirection direction = PdoDirection::transmit;
-  std::int64_t cob_id = 0;  // 0: of the predefined connection set
+  std::int64_t cob_id = 0;      // 0: of the predefined connection set
+  bool is_synchronous = false;  // sent after each SYNC, not at once
   std::vector<PdoObjectDef> objects{};
 };
 
@@ -63,6 +65,9 @@ enum class NmtCommand : std::uint8_t {
   reset_communication = 0x82
 };
 inline constexpr std::uint32_t kNmtCobId = 0;
+inline constexpr std::uint32_t kSyncCobId = 0x080;
+inline constexpr std::uint32_t kHeartbeatCobId = 0x700;  // + node
+inline constexpr unsigned kMaxCanOpenNode = 127;
 
 // Frame for identifier kNmtCobId. node 0: all nodes. Pre-condition: node <= 127.
 [[nodiscard]] std::array<std::byte, 2> nmt_frame(NmtCommand command, unsigned node) noexcept;
@@ -73,6 +78,13 @@ struct Heartbeat {
   unsigned node = 0;
   NmtState state{};
 };
+
+struct NmtRequest {
+  NmtCommand command{};
+  unsigned node = 0;  // 0: all nodes
+};
+// No value for a frame that is no NMT command: another identifier, not two bytes, no command of the list.
+[[nodiscard]] std::optional<NmtRequest> read_nmt(std::uint32_t id, std::span<const std::byte> frame) noexcept;
 
 // No value for a frame that is no heartbeat: another identifier, not one byte, no state of the list.
 [[nodiscard]] std::optional<Heartbeat> read_heartbeat(std::uint32_t id, std::span<const std::byte> frame) noexcept;

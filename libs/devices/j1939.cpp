@@ -38,6 +38,8 @@ CanMessage message_of(const char* name, std::uint32_t pgn, std::initializer_list
   return message;
 }
 
+constexpr std::string_view kJoystickAxes[] = {"X", "Y"};
+
 bool is_valid(const SignalValue& value) {
   return value.state == SignalState::valid;
 }
@@ -115,6 +117,31 @@ std::optional<double> joystick_axis(const SignalValue& position, const SignalVal
   if ((negative && positive) || (neutral && (negative || positive))) return std::nullopt;
   if (!negative && !positive) return position.value == 0 || neutral ? std::optional(0.0) : std::nullopt;
   return (negative ? -1 : 1) * position.value / kFullPosition;
+}
+
+std::optional<JoystickAxis> find_joystick_axis(const CanMessage& message, std::string_view axis) noexcept {
+  if (!message.is_extended || split_j1939(message.id).pgn != kPgnBjm1) return std::nullopt;
+  const bool is_x = axis == kJoystickAxes[0];
+  if (!is_x && axis != kJoystickAxes[1]) return std::nullopt;
+  const auto position = find_signal(message, is_x ? "XPosition_2660" : "YPosition_2661");
+  const auto neutral = find_signal(message, is_x ? "XNeutral_2675" : "YNeutral_2676");
+  const auto negative = find_signal(message, is_x ? "XNegative_2670" : "YNegative_2671");
+  const auto positive = find_signal(message, is_x ? "XPositive_2665" : "YPositive_2666");
+  if (!position || !neutral || !negative || !positive) return std::nullopt;
+  return JoystickAxis{*position, *neutral, *negative, *positive};
+}
+
+std::vector<std::string_view> joystick_axes(const CanMessage& message) {
+  std::vector<std::string_view> axes;
+  for (const std::string_view axis : kJoystickAxes) {
+    if (find_joystick_axis(message, axis)) axes.push_back(axis);
+  }
+  return axes;
+}
+
+std::optional<double> joystick_axis(const JoystickAxis& axis, std::span<const SignalValue> values) noexcept {
+  return joystick_axis(values[axis.position], values[axis.is_neutral], values[axis.is_negative],
+                       values[axis.is_positive]);
 }
 
 }  // namespace slew::devices

@@ -10,8 +10,11 @@
 // AX436683569858en-000101, p. 12 to 13, and JS6000, 520L0760, p. 23 to 26.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 #include "devices/can_message.h"
 #include "devices/dbc.h"
@@ -48,5 +51,17 @@ struct J1939Id {
 [[nodiscard]] std::optional<double> joystick_axis(const SignalValue& position, const SignalValue& is_neutral,
                                                   const SignalValue& is_negative,
                                                   const SignalValue& is_positive) noexcept;
+
+// Signals of a message that are an axis together, by their places in it.
+struct JoystickAxis {
+  std::size_t position = 0, is_neutral = 0, is_negative = 0, is_positive = 0;
+};
+// Axis "X" or "Y" of a message of BJM1's parameter group that has the signals of bjm1().
+[[nodiscard]] std::optional<JoystickAxis> find_joystick_axis(const CanMessage& message, std::string_view axis) noexcept;
+// Names of the axes that a message has.
+[[nodiscard]] std::vector<std::string_view> joystick_axes(const CanMessage& message);
+// values: of the message.
+[[nodiscard]] std::optional<double> joystick_axis(const JoystickAxis& axis,
+                                                  std::span<const SignalValue> values) noexcept;
 
 }  // namespace slew::devices

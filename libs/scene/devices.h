@@ -15,7 +15,10 @@
 #include "core/problem.h"
 #include "devices/analog_output.h"
 #include "devices/byte_layout.h"
+#include "devices/can_message.h"
+#include "devices/canopen_network.h"
 #include "devices/enable_chain.h"
+#include "devices/j1939_claim.h"
 #include "devices/motion_platform.h"
 #include "devices/output_condition.h"
 #include "devices/platform_quantities.h"
@@ -53,15 +56,21 @@ struct UdpOutDef {
   devices::LayoutDef layout;
 };
 
-enum class CanProtocol : int { plain, j1939 };
+enum class CanProtocol : int { plain, j1939, canopen };
 
 // A signal of a message on CAN.
 struct CanSignalDef {
-  std::string signal;      // "Message.Signal" of the database
+  std::string signal;      // "Message.Signal" of the database, "Pdo.object" with CANopen
   std::string input{};     // of the session, which a received value moves
   std::string variable{};  // of the session, whose value is sent
   std::string output{};    // of the scene, whose state is sent
   double gain = 1;         // received: input = gain * value; sent: value = gain * variable
+};
+
+// An object of a PDO, in the order of the list; without a name bits that are not used.
+struct CanObjectDef {
+  std::string pdo;
+  devices::PdoObjectDef object;
 };
 
 struct CanBusDef {
@@ -70,6 +79,10 @@ struct CanBusDef {
   std::string definition;  // the messages that the signals are of, as a DBC text: from `database` where that is read
   CanProtocol protocol = CanProtocol::plain;
   std::vector<CanSignalDef> signals;
+  devices::J1939UnitDef unit;         // j1939: what it claims an address with
+  devices::CanOpenDef canopen;        // canopen: nodes, and the device as a node
+  std::vector<devices::PdoDef> pdos;  // canopen: messages of the signals, with their objects in `objects`
+  std::vector<CanObjectDef> objects;
 };
 
 struct CanInDef {
@@ -159,6 +172,8 @@ inline constexpr std::size_t kMaxDevices = 16;  // each is a process
 [[nodiscard]] std::span<const Field> can_in_fields();    // without the list
 [[nodiscard]] std::span<const Field> can_out_fields();   // without the list
 [[nodiscard]] std::span<const Field> can_signal_fields() noexcept;
+[[nodiscard]] std::span<const Field> can_pdo_fields();
+[[nodiscard]] std::span<const Field> can_object_fields();
 [[nodiscard]] std::span<const Field> motion_platform_fields();  // without the list
 [[nodiscard]] std::span<const Field> switched_fields();
 [[nodiscard]] std::span<const Field> analog_fields();
@@ -170,8 +185,13 @@ inline constexpr std::size_t kMaxDevices = 16;  // each is a process
 // True if a quantity in the first unit can be compared with a variable in the second. Empty: SI, fits all.
 [[nodiscard]] bool is_same_dimension(const std::string& a, const std::string& b);
 
-// Fills the definition from the database in the folder: the messages that the signals name.
+enum class CanFlow : std::uint8_t { received, sent };  // by the device
+
+// Fills the definition with the messages that the signals name: from the database at the path, where one is named, and
+// with J1939 from the messages that are built in (devices/j1939.h).
 void read_database(const std::string& device, CanBusDef& bus, const std::string& path, Problems& problems);
+// The messages of a bus: of the definition, with CANopen the PDOs in their order.
+[[nodiscard]] std::vector<devices::CanMessage> can_messages(const CanBusDef& bus, CanFlow flow, Problems& problems);
 
 // Fills what follows from the texts of outputs, and checks the rules between the fields.
 void read_outputs(OutputsDef& outputs, Problems& problems);

@@ -142,7 +142,13 @@ std::span<const ListTable> layout_lists() {
 template <typename Def>
 std::span<const ListTable> signal_lists() {
   static const ListTable lists[] = {
-      list<&Def::bus, &CanBusDef::signals>("signals", "signal of a message", can_signal_fields())};
+      list<&Def::bus, &CanBusDef::signals>("signals", "signal of a message", can_signal_fields()),
+      list<&Def::bus, &CanBusDef::canopen, &devices::CanOpenDef::nodes>(
+          "nodes", "canopen: node that is started and watched", devices::canopen_node_fields()),
+      list<&Def::bus, &CanBusDef::pdos>(
+          "pdos", "canopen: PDO; can_in receives TPDOs of nodes and RPDOs of own_node, can_out sends the others",
+          can_pdo_fields()),
+      list<&Def::bus, &CanBusDef::objects>("objects", "canopen: object of a PDO, in its order", can_object_fields())};
   return lists;
 }
 

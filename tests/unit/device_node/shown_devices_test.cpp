@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets and frames with variables of a session and outputs of its scene.
+// Packets with variables of a session and outputs of its scene.
 #include "device_node/shown_device.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
-
-#include "support/temporary_folder.h"
 
 namespace slew::device_node {
 namespace shown_devices_test {
@@ -141,125 +139,6 @@ TEST(UdpOut, AResetBeginsAgain) {
   ASSERT_EQ(dash.packets.size(), 2u);
   EXPECT_EQ(dash.height(1), 2);
   EXPECT_EQ(dash.lamp(1), 0);
-}
-
-// ---- CAN ------------------------------------------------------------------------------------------------------
-
-// messages of a panel and of an engine
-constexpr const char* kMessages =
-    "BO_ 256 Panel: 4 X\n SG_ Lift : 0|16@1- (0.5,0) [0|0] \"%\" X\n SG_ Enable : 16|1@1+ (1,0) [0|0] \"\" X\n SG_ "
-    "More : 24|8@1+ (1,0) [0|0] \"\" X\n"
-    "BO_ 2364540158 EEC1: 8 X\n SG_ EngineSpeed : 24|16@1+ (0.125,0) [0|8031.875] \"rpm\" X\n";
-
-scene::CanBusDef bus_of(scene::CanProtocol protocol, std::vector<scene::CanSignalDef> signals) {
-  scene::CanBusDef bus;
-  bus.interface = "can0";
-  bus.definition = kMessages;
-  bus.protocol = protocol;
-  bus.signals = std::move(signals);
-  return bus;
-}
-
-TEST(CanOut, AFrameForEachMessageHasTheValuesOfOneStep) {
-  scene::CanOutDef def;
-  def.name = "Cluster";
-  def.every = 0.001;
-  def.bus = bus_of(scene::CanProtocol::j1939, {{.signal = "EEC1.EngineSpeed", .variable = "Engine.speed", .gain = 9.5},
-                                               {.signal = "Panel.Lift", .variable = "Engine.speed"}});
-  std::vector<CanFrame> frames;
-  const auto device = open_can_out(def, {}, [&](const CanFrame& frame) {
-    frames.push_back(frame);
-    return true;
-  });
-  wire::VariableDirectory directory;
-  directory.header.role = wire::Role::hydraulics;
-  directory.entries = {{"Engine.speed", "rad/s"}};
-  device->feed().take(directory);
-  wire::VariableBlock block;
-  block.header.role = wire::Role::hydraulics;
-  block.values.push_back(100);
-  device->feed().take(block, 0);
-  ASSERT_EQ(frames.size(), 2u);
-  EXPECT_EQ(frames[0].id, 256u);
-  EXPECT_FALSE(frames[0].is_extended);
-  ASSERT_EQ(frames[0].size, 4u);
-  EXPECT_EQ(frames[0].bytes[0], std::byte{200});
-  // a signal without a source is not available where it has a code for that, else 0; bits of no signal are 1
-  EXPECT_EQ(frames[0].bytes[2], std::byte{0xFE});
-  EXPECT_EQ(frames[0].bytes[3], std::byte{0xFF});
-  EXPECT_EQ(frames[1].id, 0x0CF004FEu);
-  EXPECT_TRUE(frames[1].is_extended);
-  // 950 rpm are 7600 counts
-  EXPECT_EQ(frames[1].bytes[3], std::byte{7600 & 0xFF});
-  EXPECT_EQ(frames[1].bytes[4], std::byte{7600 >> 8});
-  EXPECT_EQ(device->counts().at("sent").integer(), 2);
-}
-
-TEST(CanIn, RecordedFramesMoveInputsWhileAllSignalsAreThere) {
-  const testing::TemporaryFolder folder("can_in");
-  scene::CanInDef def;
-  def.name = "Panel";
-  def.timeout = 0.1;
-  def.bus = bus_of(scene::CanProtocol::j1939,
-                   {{.signal = "Panel.Lift", .input = "Input_Lift", .gain = 0.01}, {.signal = "Panel.Enable"}});
-  def.bus.interface = "";
-  def.enable.dead_man = "Panel.Enable";
-  // 100 counts are 50 %
-  def.path = folder
-                 .write("panel.log",
-                        "(10.000000) can0 100#64000100\n(10.010000) can0 101#FF\n(10.020000) can0 100#9CFF0100\n"
-                        "(10.020001) can0 100#64\n(10.300000) can0 100#64000000\n")
-                 .string();
-  const auto device = open_can_in(def);
-  constexpr std::int64_t kMs = 1'000'000;
-  EXPECT_FALSE(device->is_fresh());
-  EXPECT_TRUE(device->take(1000 * kMs));
-  EXPECT_TRUE(device->is_fresh());
-  EXPECT_EQ(device->values()[0], 0.5);
-  EXPECT_EQ(device->dead_man(), true);
-  EXPECT_FALSE(device->take(1011 * kMs));  // of another identifier
-  EXPECT_TRUE(device->take(1020 * kMs));
-  EXPECT_EQ(device->values()[0], -0.5);
-  EXPECT_FALSE(device->take(1021 * kMs));  // too short
-  EXPECT_FALSE(device->take(1150 * kMs));
-  EXPECT_FALSE(device->is_fresh());  // silent
-  EXPECT_EQ(device->dead_man(), std::nullopt);
-  EXPECT_TRUE(device->take(1300 * kMs));
-  EXPECT_EQ(device->dead_man(), false);
-  EXPECT_EQ(device->counts().at("used").integer(), 3);
-  EXPECT_EQ(device->counts().at("too_short").integer(), 1);
-  EXPECT_EQ(device->counts().at("other_identifiers").integer(), 1);
-}
-
-TEST(CanIn, AnErrorOrNotAvailableIsNoValue) {
-  const testing::TemporaryFolder folder("can_error");
-  scene::CanInDef def;
-  def.name = "Engine";
-  def.bus = bus_of(scene::CanProtocol::j1939, {{.signal = "EEC1.EngineSpeed", .input = "Input_Lift", .gain = 0.001}});
-  def.bus.interface = "";
-  // from another source, with another priority; then not available, then an error
-  def.path = folder
-                 .write("engine.log",
-                        "(1.000000) can0 18F00405#000000401F000000\n(1.010000) can0 18F00405#000000FFFF000000\n"
-                        "(1.020000) can0 18F00405#000000401F000000\n(1.030000) can0 18F00405#00000000FE000000\n")
-                 .string();
-  const auto device = open_can_in(def);
-  constexpr std::int64_t kMs = 1'000'000;
-  EXPECT_TRUE(device->take(1000 * kMs));
-  EXPECT_EQ(device->values()[0], 1.0);
-  static_cast<void>(device->take(1011 * kMs));
-  EXPECT_FALSE(device->is_fresh());
-  EXPECT_TRUE(device->take(1021 * kMs));
-  static_cast<void>(device->take(1031 * kMs));
-  EXPECT_FALSE(device->is_fresh());
-  EXPECT_EQ(device->counts().at("without_value").at("not available").integer(), 1);
-  EXPECT_EQ(device->counts().at("without_value").at("error").integer(), 1);
-}
-
-TEST(CanBus, AnInterfaceThatIsNotThereIsAwaited) {
-  std::string reason;
-  EXPECT_EQ(open_can("slewcan9", reason), nullptr);
-  EXPECT_TRUE(reason.starts_with("interface slewcan9: ")) << reason;
 }
 
 }  // namespace shown_devices_test
