@@ -129,25 +129,21 @@ def rest(folder):
 
 def chart(_):
     """Loads that the lift cylinder's full pressure bears, and the tested forwarder's net force at 4 m."""
-    lift, fold = 15, (-98, -30)
-    poses = json.loads(output("loadchart", f"{PROJECT}/scenes/forwarder_crane.yaml", "--over",
-                              f"Fold_Pin={fold[0]}deg,{fold[1]}deg", "--over", f"Lift_Pin={lift}deg", "--set",
-                              "start.Slide_1=0m", "--set", "start.Slide_2=0m", "--structure", "Lift_Cylinder=230kN",
-                              "--json", "--quiet"))["poses"]
-    good = True
-    for pose, angle in zip(poses, fold):
-        angles = math.radians(lift), math.radians(angle)
-        empty, arm = static_force("lift_line", "lift", *angles, 0, 0)
-        per_kilogram = static_force("lift_line", "lift", *angles, 0, 1)[0] - empty
-        good &= near(f"load at 230 kN, {pose['reach']:.3f} m:", pose["Lift_Cylinder structure"], (230e3 - empty) / per_kilogram,
-                     1e-5, "kg")
-        # 211 bar absolute on the bottom side, the back pressure of the return line and friction take the rest
-        most = (211e5 * AREA_A - empty) / per_kilogram
-        good &= expect(f"at 210 bar {pose['Lift_Cylinder']:.1f} kg, without friction and back pressure {most:.1f} kg",
-                       0.80 * most < pose["Lift_Cylinder"] < most)
-        print(f"gross lifting torque {211e5 * AREA_A * arm / 1e3:.1f} kNm")
-    force, reach = poses[0]["Lift_Cylinder"] * GRAVITY / 1e3, poses[0]["reach"]
-    good &= expect(f"at {reach:.2f} m {force:.1f} kN, the tested forwarder 16.1 kN at 4 m", abs(force * reach / (16.1 * 4) - 1) < 0.1)
+    lift, fold = math.radians(15), math.radians(-98)
+    pose = json.loads(output("loadchart", f"{PROJECT}/scenes/forwarder_crane.yaml", "--over", "Fold_Pin=-98deg", "--over",
+                             "Lift_Pin=15deg", "--set", "start.Slide_1=0m", "--set", "start.Slide_2=0m", "--structure",
+                             "Lift_Cylinder=230kN", "--json", "--quiet"))["poses"][0]
+    empty, arm = static_force("lift_line", "lift", lift, fold, 0, 0)
+    per_kilogram = static_force("lift_line", "lift", lift, fold, 0, 1)[0] - empty
+    good = near("load at 230 kN:", pose["Lift_Cylinder structure"], (230e3 - empty) / per_kilogram, 1e-5, "kg")
+    # 211 bar absolute on the bottom side; friction and the back pressure of the return line take the rest
+    most = (211e5 * AREA_A - empty) / per_kilogram
+    good &= expect(f"at 210 bar {pose['Lift_Cylinder']:.1f} kg, without friction and back pressure {most:.1f} kg",
+                   0.9 * most < pose["Lift_Cylinder"] < most)
+    print(f"gross lifting torque {211e5 * AREA_A * arm / 1e3:.1f} kNm")
+    force, reach = pose["Lift_Cylinder"] * GRAVITY / 1e3, pose["reach"]
+    good &= expect(f"at {reach:.2f} m {force:.1f} kN, the tested forwarder 16.1 kN at 4 m",
+                   abs(force * reach / (16.1 * 4) - 1) < 0.12)
     return good
 
 
