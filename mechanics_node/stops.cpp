@@ -54,7 +54,19 @@ PortProblem::Stop PortProblem::stop_at(std::size_t row, double x) const noexcept
   return {stop.force, -stop.d_x};
 }
 
-// Energy f^2/2k of a stop's spring, as a speed of the row's mass 1/W. After a sub-step, evaluated at its end.
+// Largest net acceleration of a row: at the end of the sub-step, with all its forces, and the mean over it.
+double PortProblem::net_acceleration(std::size_t k, double h) noexcept {
+  const std::size_t rows = active_.size();
+  double at_end = dynamics_.a_free()[k];
+  for (std::size_t l = 0; l < rows; ++l) {
+    at_end += dynamics_.W()[k * rows + l] * (dynamics_.f_mean()[l] + h / 2 * dynamics_.f_slope()[l]);
+  }
+  return std::max(std::fabs(at_end), std::fabs(dynamics_.v()[k] - v_begin_[k]) / h);
+}
+
+// Energy f^2/2k of a stop's spring, as a speed of the row's mass 1/W, after a sub-step, evaluated at its end. The row's
+// other forces take back their share of a difference df: (df/k) (f + f_others) is created, and W (f + f_others) is the
+// row's acceleration. A row at rest against a stop creates none, whatever presses it.
 bool PortProblem::strays_in_stop(double h) noexcept {
   const std::size_t rows = active_.size();
   for (std::size_t k = 0; k < rows; ++k) {
@@ -66,8 +78,8 @@ bool PortProblem::strays_in_stop(double h) noexcept {
     const double speed =
         std::max({std::fabs(v_begin_[k]), std::fabs(dynamics_.v()[k]), h * std::fabs(dynamics_.a_free()[k])});
     if (std::fabs(x - dynamics_.x()[k]) > kLargestStray * h * speed) return true;
-    const double energy = std::fabs(there.force * there.force - expected.force * expected.force) / stiffness;
-    if (dynamics_.W()[k * rows + k] * energy > kLargestStray * kLargestStray * speed * speed) return true;
+    const double displacement = std::fabs(there.force - expected.force) / stiffness;
+    if (2 * displacement * net_acceleration(k, h) > kLargestStray * kLargestStray * speed * speed) return true;
   }
   return false;
 }

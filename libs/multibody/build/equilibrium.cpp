@@ -59,8 +59,7 @@ class Rest {
     gravity_ = norm(model_.gravity) > 0 ? norm(model_.gravity) : 1;
     scale_speeds();
     pin_speeds();
-    wanted_ = values(state_.q);
-    if (model_.has_closing_rows()) std::fill_n(wanted_.begin(), ws_.loops.rows.size(), 0.0);
+    want_start_values();
   }
 
   RestSearch find() {
@@ -212,10 +211,26 @@ class Rest {
     move_from(model_, from, {1, zero_, turn}, u, q, ws_);
   }
 
-  // moves q by the smallest displacement that gives the rows their values again
-  bool close(Vector& q) {
+  // A held length within a loop whose joint is held too depends on the loop's rows: its value fits only where they are
+  // closed.
+  void want_start_values() {
+    wanted_ = values(state_.q);
+    if (!model_.has_closing_rows()) return;
+    const std::size_t loops = ws_.loops.rows.size();
+    std::fill_n(wanted_.begin(), loops, 0.0);
+    Vector q = state_.q;
+    if (!close(q, loops)) return;
+    state_.q = q;
+    const Vector at_closed_loops = values(q);
+    std::copy(at_closed_loops.begin() + static_cast<std::ptrdiff_t>(loops), at_closed_loops.end(),
+              wanted_.begin() + static_cast<std::ptrdiff_t>(loops));
+  }
+
+  // moves q by the smallest displacement that gives the first rows their values again
+  bool close(Vector& q, std::size_t rows) {
     for (int i = 0; i < kMostClosings; ++i) {
       Vector g = values(q);
+      g.resize(rows);
       double worst = 0;
       for (std::size_t k = 0; k < g.size(); ++k) {
         g[k] -= wanted_[k];
@@ -224,7 +239,6 @@ class Rest {
       if (worst <= kRowsClosed * size_) return true;
       if (std::isinf(worst)) return false;
       const std::vector<Vector> C = rows_at(q);
-      const std::size_t rows = C.size();
       Vector W(rows * rows), step(n_);
       for (std::size_t k = 0; k < rows; ++k) {
         for (std::size_t l = 0; l <= k; ++l) W[k * rows + l] = product(C[k], C[l]);
@@ -243,7 +257,7 @@ class Rest {
     Vector step(n_);
     for (std::size_t k = 0; k < T.size(); ++k) add(dx[k], T[k], step);
     move(state_.q, step, q);
-    return close(q);
+    return close(q, wanted_.size());
   }
 
   // ---- forces

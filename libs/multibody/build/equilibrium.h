@@ -42,7 +42,8 @@ struct RestSearch {
   bool turns = false;       // the unit
 };
 
-// Moves state.q to the equilibrium near it; speeds are zero afterwards. Pre-condition: the rows are closed at state.q.
+// Moves state.q to the equilibrium near it; speeds are zero afterwards. Loops that are nearly closed at state.q
+// are closed first; held lengths and angles keep the values that they have then.
 // Allocates: not for a step.
 [[nodiscard]] RestSearch find_rest(const Model& model, const RestOptions& options, State& state);
 

@@ -165,5 +165,38 @@ TEST(Equilibrium, AParallelogramHangsStraightDown) {
   EXPECT_NEAR(rested.center_of("Right")[0], 2, 1e-8);
 }
 
+// a held joint and a held line in one loop, which the start leaves open by some nanometres
+TEST(Equilibrium, ALoadHangsFromALoopWhoseJointAndLineAreBothHeld) {
+  const double s = std::sin(kPi / 3), c = std::cos(kPi / 3);
+  MechanicsDef def = under_gravity();
+  add_hinged(def, "Left", "Ground", {}, bar(1, {0.5 * s, 0, -0.5 * c}));
+  add_hinged(def, "Seat", "Left", {s, 0, -c}, bar(30, {1, 0, 0}));
+  add_hinged(def, "Right", "Ground", {2, 0, 0}, bar(1, {0.5 * s, 0, -0.5 * c}));
+  add_hinged(def, "Load", "Seat", {1, 0, 0}, bar(500, {0.3, 0, -0.9}));
+  def.joints.push_back({.name = "Closing",
+                        .body1 = "Seat",
+                        .point1 = {2, 0, 0},
+                        .orientation1 = kAboutY,
+                        .body2 = "Right",
+                        .point2 = {s, 0, -c},
+                        .orientation2 = kAboutY});
+  TranslationalForceDef line;
+  line.name = "Line";
+  line.body1 = "Ground", line.point1 = {0.5, 0, -2};
+  line.body2 = "Seat", line.point2 = {1.5, 0, 0};
+  def.translational_forces.push_back(line);
+  const std::string rows[] = {"Line"};
+  const Model model = build_model(def, rows);
+  State state = start_state(model);
+  for (double& coordinate : state.q) coordinate += 3e-9;
+  const RestSearch found = find_rest(model, {.held_rows = 1, .coordinates = {{0, 0}}}, state);
+  ASSERT_TRUE(found.is_stable);
+  Workspace ws(model);
+  observe(model, state, ws);
+  const Triple load = body_pose(model, ws, find_body(model, "Load")).center_of_mass;
+  EXPECT_NEAR(load[0], s + 1, 3e-8);
+  EXPECT_NEAR(load[2], -c - std::hypot(0.3, 0.9), 3e-8);
+}
+
 }  // namespace equilibrium_test
 }  // namespace slew::multibody
