@@ -261,18 +261,18 @@ void check_forces(const HydraulicsDef& def, Problems& errors) {
 // The laws of oil_properties.h over their whole range of temperatures.
 void check_oil_properties(const HydraulicsDef& def, Problems& errors) {
   if (def.oil_temperature == OilTemperature::one) return;
-  if (!(def.hot_temperature > def.reference_temperature)) {
-    errors.push_back({"hydraulics.hot_temperature",
-                      fmt::format("{:g} K is not above reference_temperature", def.hot_temperature),
-                      "two temperatures at which the oil is known, the hotter one here", ""});
-    return;
-  }
   if (!(def.hot_viscosity < def.oil_viscosity) || def.hot_viscosity < kLeastViscosity) {
     errors.push_back({"hydraulics.hot_viscosity",
                       def.hot_viscosity == 0
                           ? std::string("the viscosity at hot_temperature is not stated")
                           : fmt::format("{:g} m2/s is not between 1 mm2/s and oil_viscosity", def.hot_viscosity),
                       "the viscosity at hot_temperature from the oil's data sheet", ""});
+  }
+  if (!(def.hot_temperature > def.reference_temperature)) {
+    errors.push_back({"hydraulics.hot_temperature",
+                      fmt::format("{:g} K is not above reference_temperature", def.hot_temperature),
+                      "two temperatures at which the oil is known, the hotter one here", ""});
+    return;
   }
   const auto check_end = [&](const char* key, double cold, double hot) {
     if (hot == 0) return;
