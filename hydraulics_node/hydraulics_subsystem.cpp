@@ -195,8 +195,12 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
                                        coupling::OwnSample& sample) noexcept {
   apply_tick(n, controls);
   if (partners.mechanism != nullptr && m_ > 0) alarm_.update(*partners.mechanism, published_, stiffness_, levels_);
+  const bool is_step = n >= 0 && circuit_->has_temperatures();
+  if (is_step) circuit_->begin_heat(integrator_->state().data());
   std::copy(step.state.begin(), step.state.end(), integrator_->mutable_state().begin());
   circuit_->set_vapour_capacities(step.vapour);
+  // from the flows at both ends of the step
+  if (is_step) circuit_->add_heat(H_.seconds(), step.state.data()), circuit_->end_heat(H_.seconds(), step.state.data());
   integrator_->refresh();
   StepReport report;
   report.flags = circuit_->flags(step.state.data());
@@ -233,6 +237,7 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
     sample.Q_A[i] = a.Q_a;
     sample.Q_B[i] = a.Q_b;
     circuit_->set_line_force(static_cast<int>(i), reduced_.law(i).evaluate(a.F, a.x, a.v).force);
+    if (circuit_->has_temperatures()) circuit_->set_friction(static_cast<int>(i), reduced_.law(i).friction(a.F, a.v));
   }
   if (shared_.any()) {
     shared_.write(*integrator_, *circuit_, exchange_every_ * H_.seconds(), sample.lambda, sample.K_cross);

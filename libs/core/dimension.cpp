@@ -43,6 +43,8 @@ constexpr std::array<DimensionInfo, static_cast<std::size_t>(Dimension::number_o
     {"mobility", "1/kg", "1e-4 1/kg", {-1, 0, 0, 0, 0}},
     {"second moment of area", "m4", "450 cm4", {0, 4, 0, 0, 0}},
     {"control signal", "1", "500", {0, 0, 0, 0, 0}},
+    {"specific heat", "J/kg/K", "1900 J/kg/K", {0, 2, -2, -1, 0}},
+    {"thermal conductance", "W/K", "50 W/K", {1, 2, -3, -1, 0}},
 }};
 
 }  // namespace

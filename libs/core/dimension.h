@@ -48,6 +48,8 @@ enum class Dimension : std::uint8_t {
   mobility,               // 1/kg
   second_moment_of_area,  // m4
   electric_signal,        // the valve's control signal, V or mA as the maker states it: a plain number
+  specific_heat,          // J/(kg K)
+  thermal_conductance,    // W/K
   number_of_dimensions
 };
 

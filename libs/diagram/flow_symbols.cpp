@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Check valves, restrictions, filters, flow dividers: what stands in a line.
+// Check valves, restrictions, filters, coolers, flow dividers: what stands in a line; walls that lose heat.
 #include "diagram/symbol_parts.h"
 
 namespace slew::diagram {
@@ -162,6 +162,31 @@ Symbol filter_symbol(const ComponentDef& def) {
   return symbol;
 }
 
+// heat leaves the oil: arrows point out of the square
+Symbol cooler_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 64, .height = 56};
+  Pen pen;
+  pen.path("M32 10L50 28L32 46L14 28Z");
+  pen.line({32, 0}, {32, 56});
+  pen.arrow({38, 28}, {60, 28});
+  pen.arrow({26, 28}, {4, 28});
+  add_line_ports(symbol, def, 32);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
+// wall of a volume with an arrow through it
+Symbol heat_loss_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = 44, .height = 44, .place = Place::store};
+  Pen pen;
+  pen.path("M4 8H32V30H4Z");
+  pen.arrow({20, 19}, {42, 19});
+  pen.line({18, 30}, {18, 44});
+  symbol.ports.push_back(straight(def, "port_1", Role::inlet, Side::bottom, 18, 44));
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
 // pipe whose length matters
 Symbol line_symbol(const ComponentDef& def) {
   Symbol symbol{.width = 28, .height = kLineHeight};
@@ -249,6 +274,8 @@ constexpr SymbolRow kFlowRows[] = {{"check_valve", check_symbol},
                                    {"orifice", orifice_symbol},
                                    {"laminar_restriction", laminar_symbol},
                                    {"filter", filter_symbol},
+                                   {"cooler", cooler_symbol},
+                                   {"heat_loss", heat_loss_symbol},
                                    {"line", line_symbol},
                                    {"flow_divider", flow_divider_symbol},
                                    {"gear_flow_divider", gear_flow_divider_symbol},

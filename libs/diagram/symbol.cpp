@@ -96,6 +96,8 @@ constexpr Figure kFigures[] = {
     {"laminar_restriction", "diameter"},
     {"laminar_restriction", "length"},
     {"filter", "nominal_flow"},
+    {"cooler", "conductance"},
+    {"heat_loss", "conductance"},
 };
 
 std::string value_text(const ComponentDef& def, std::string_view key) {

@@ -268,7 +268,7 @@ int Circuit::farthest_beyond_oil_law(const double* y) const noexcept {
   for (int i = 0; i < volume_count(); ++i) {
     if (y[i] > highest) farthest = i, highest = y[i];
   }
-  return farthest;
+  return farthest < 0 && has_temperatures() ? first_beyond_temperatures() : farthest;
 }
 
 std::uint32_t Circuit::flags(const double* y) noexcept {
@@ -298,6 +298,10 @@ void Circuit::read_variables(const double* y, std::span<double> values) noexcept
     *out++ = C.content;
     *out++ = C.value > 0 ? C.content * p.slope / C.value : 0;
     *out++ = !is_fixed_[i] && y[i] < floor_ ? 1 : 0;
+    if (!has_temperatures()) continue;
+    *out++ = heat_->T[i];
+    *out++ = heat_->properties[i].viscosity;
+    *out++ = heat_->power[i];
   }
   const CircuitView now = view(y);
   evaluate_ls(now);

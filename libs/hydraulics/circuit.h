@@ -8,7 +8,7 @@
 // u is the pressure p; in a cavitating volume it measures the vapour (vapour.h), and C_i is constant there.
 // V_k: hoses, rigid blocks, and chambers V_0 +- A x; kappa_oil in oil.h, wall moduli B_k by their component.
 // Sources: the flexible-body tutorial thesis (Saimaa UAS 2017), eq. 22 to 27 (lumped fluid theory). Not covered:
-// inertia of the oil, wave travel, temperature.
+// inertia of the oil, wave travel. Temperatures are constant within a communication step (oil_heat.h).
 //
 // Built once from a validated Def; afterwards only control signals, line forces for display and live parameters change.
 #pragma once
@@ -29,6 +29,7 @@
 #include "hydraulics/hydraulics_def.h"
 #include "hydraulics/line_chambers.h"
 #include "hydraulics/oil.h"
+#include "hydraulics/oil_heat.h"
 #include "hydraulics/start_pressures.h"
 #include "hydraulics/vapour.h"
 
@@ -191,6 +192,21 @@ class Circuit {
   [[nodiscard]] std::span<LineChamber> mutable_lines() noexcept { return lines_; }  // for tests
   void add_lines_to(StateHash& hash) const noexcept;
 
+  // Temperatures of the volumes (oil_heat.h); everything else below needs has_temperatures(). start: all volumes at the
+  // start temperature. A communication step of H seconds from y on: begin, add after each sub-step of h seconds, end.
+  [[nodiscard]] bool has_temperatures() const noexcept { return heat_ != nullptr; }
+  void start_heat(const double* y) noexcept;
+  void set_temperatures(std::span<const double> T, const double* y) noexcept;
+  void begin_heat(const double* y) noexcept;
+  void add_heat(double h, const double* y) noexcept;
+  void end_heat(double H, const double* y) noexcept;
+  // Friction of an actuator against its speed, held over the coming step [N or Nm].
+  void set_friction(int actuator, double F) noexcept { heat_->friction[static_cast<std::size_t>(actuator)] = F; }
+  [[nodiscard]] std::span<const double> temperatures() const noexcept { return heat_->T; }  // K, by volume
+  void save_heat(StateWriter& bytes) const;
+  void load_heat(StateReader& bytes, const double* y) noexcept;
+  void add_heat_to(StateHash& hash) const noexcept;
+
   // All state beside y: live parameters, signals, line forces and load-sensing pressures for display, lines.
   void save(StateWriter& bytes) const;
   void load(StateReader& bytes) noexcept;
@@ -202,7 +218,7 @@ class Circuit {
   // pressed shut); and the first volume that cavitates (-1: none).
   [[nodiscard]] std::uint32_t flags(const double* y) noexcept;
   [[nodiscard]] int first_cavitating(const double* y) const noexcept;
-  // The volume with the highest pressure beyond the oil's law; -1: none.
+  // The volume with the highest pressure beyond the oil's law, else one with a temperature beyond it; -1: none.
   [[nodiscard]] int farthest_beyond_oil_law(const double* y) const noexcept;
 
   // variables of all volumes and components, in a fixed order
@@ -256,7 +272,11 @@ class Circuit {
   void start_components(std::span<double> y) const;
   void add_contents(const CircuitBuilder& builder);
   void order_ls_sources(const CircuitBuilder& builder);
+  void evaluate_heat(const double* y, std::vector<HeatFlow>& now, std::vector<double>& contents) noexcept;
+  void follow_temperatures(const double* y) noexcept;
+  [[nodiscard]] int first_beyond_temperatures() const noexcept;
   void declare_pattern();
+  void make_heat(const HydraulicsDef& def);
   void list_variables();
   void list_parameters();
   void evaluate_ls(const CircuitView& now) noexcept;
@@ -320,6 +340,7 @@ class Circuit {
   };
   std::vector<LsSource> ls_order_;
   math::SparsityPattern pattern_{0};
+  std::unique_ptr<OilHeat> heat_;  // null: the oil has one temperature
 
   std::vector<double> control_;
   std::vector<std::string> control_name_;

@@ -77,8 +77,19 @@ Circuit::Circuit(const HydraulicsDef& def)
   for (std::size_t i = 0; i < volumes_.size(); ++i) vapour_.capacity.push_back(capacity_at_floor(i, moved_.data()));
   order_ls_sources(builder);
   declare_pattern();
+  if (def.oil_temperature == OilTemperature::by_volume) make_heat(def);
   list_variables();
   list_parameters();
+}
+
+// Temperatures, with the properties at the initial pressures.
+void Circuit::make_heat(const HydraulicsDef& def) {
+  heat_ = std::make_unique<OilHeat>(def, actuators_.size(), at(size_));
+  for (const VolumeContent& volume : volumes_) heat_->wall.push_back(volume.wall);
+  for (const Piece& piece : pieces_) heat_->piece_wall.push_back(piece.wall_compressibility);
+  std::vector<double> y(at(size_), 0);
+  std::copy(initial_pressure_.begin(), initial_pressure_.end(), y.begin());
+  start_heat(y.data());
 }
 
 void Circuit::add_contents(const CircuitBuilder& builder) {
@@ -171,6 +182,10 @@ void Circuit::list_variables() {
     variables_.push_back({name + ".content", Dimension::volume});
     variables_.push_back({name + ".effective_bulk_modulus", Dimension::pressure});
     variables_.push_back({name + ".is_cavitating", Dimension::none});
+    if (!has_temperatures()) continue;
+    variables_.push_back({name + ".temperature", Dimension::temperature});
+    variables_.push_back({name + ".viscosity", Dimension::kinematic_viscosity});
+    variables_.push_back({name + ".heat", Dimension::power});
   }
   for (const auto& component : components_) component->list_variables(variables_);
 }

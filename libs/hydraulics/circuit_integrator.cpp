@@ -131,6 +131,7 @@ void CircuitIntegrator::start(std::span<const double> x, std::span<const double>
     y_[static_cast<std::size_t>(circuit_.speed(static_cast<int>(j)))] = v[j];
     published_[j].work = published_[j].impulse = 0;
   }
+  if (circuit_.has_temperatures()) circuit_.start_heat(y_.data());
   solver_->restart();
   has_failed_ = false;
   choose_quasi_static();
@@ -312,6 +313,7 @@ void CircuitIntegrator::accepted(double h, const double* y_before, const double*
   was_clamped_ = circuit_.bound(y) || was_clamped_;
   circuit_.keep_closed_oil(h, y_before, f_before, y, substep_pressure_);
   circuit_.follow_vapour(y);
+  if (circuit_.has_temperatures()) circuit_.add_heat(h, y);
 }
 
 void CircuitIntegrator::integrate_pressures(double h, const double* y_before, const double* f_before,
@@ -356,6 +358,7 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
   open_quadrature_ = 0;
   if (!inputs_.empty()) note_inputs();
   if (!quasi_static_.empty()) is_consistent_ = make_consistent();
+  if (circuit_.has_temperatures()) circuit_.begin_heat(y_.data());
   report_ = solver_->advance(*this, y_, H);
   if (!report_.is_finite || report_.is_impossible) {
     has_failed_ = true;
@@ -363,6 +366,7 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
     std::copy(y_start_.begin(), y_start_.end(), y_.begin());
     open_quadrature_ = 0;
   }
+  if (circuit_.has_temperatures() && !has_failed_) circuit_.end_heat(H, y_.data());
   circuit_.rates_and_outflow(y_.data(), f_.data(), outflow_.data(), C_.data());
   add_accelerations(y_.data(), f_.data());
   close_quadrature(y_.data(), f_.data());
@@ -489,6 +493,7 @@ void CircuitIntegrator::add_to(StateHash& hash) const noexcept {
   circuit_.add_vapour_to(hash, y_.data());
   hash.add(circuit_.parameter_values());
   circuit_.add_lines_to(hash);
+  if (circuit_.has_temperatures()) circuit_.add_heat_to(hash);
 }
 
 }  // namespace slew::hydraulics

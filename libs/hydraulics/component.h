@@ -20,6 +20,9 @@
 
 namespace slew::hydraulics {
 
+class Passages;
+class PortOil;
+
 using StateIndex = int;  // position in y; a volume's StateIndex is its number
 using LsIndex = int;     // number of a load-sensing pressure
 
@@ -128,6 +131,14 @@ class HydraulicComponent {
   [[nodiscard]] virtual double ls_pressure(const CircuitView&) const noexcept { return 0; }
   virtual void declare_ls_dependencies(DependencyList&) const {}
   virtual void add_ls_jacobian(const CircuitView&, JacobianStamp&) const noexcept {}
+
+  // Flows of oil and heat between volumes, for their temperatures (passages.h): by default the oil that add_rates()
+  // takes from volumes is mixed, and the mixture delivered. Power that a shaft adds to the oil [W].
+  virtual void add_passages(const CircuitView& view, Passages& passages) const noexcept;
+  [[nodiscard]] virtual double shaft_power(const CircuitView&) const noexcept { return 0; }
+  // Takes the viscosity and density of the oil; at the start and at the end of every communication step, in circuits
+  // with temperatures only.
+  virtual void follow_oil(const PortOil& /*oil*/) noexcept {}
 
   // Raises outflow_slope[volume] (-dQ/dp) to the steeper side near the switch of a unilateral element.
   virtual void raise_outflow_slopes(const CircuitView&, double* /*outflow_slope*/) const noexcept {}

@@ -5,6 +5,7 @@
 #include "hydraulics/components/accumulator.h"
 #include "hydraulics/components/check_valves.h"
 #include "hydraulics/components/compensated_orifice.h"
+#include "hydraulics/components/cooler.h"
 #include "hydraulics/components/counterbalance_valve.h"
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_acting_cylinder.h"
@@ -14,6 +15,7 @@
 #include "hydraulics/components/flow_divider.h"
 #include "hydraulics/components/flushing_valve.h"
 #include "hydraulics/components/four_way_valve.h"
+#include "hydraulics/components/heat_loss.h"
 #include "hydraulics/components/hose.h"
 #include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
@@ -76,6 +78,8 @@ std::span<const ComponentType> component_types() {
       orifice_type(),
       laminar_restriction_type(),
       filter_type(),
+      cooler_type(),
+      heat_loss_type(),
   };
   return types;
 }

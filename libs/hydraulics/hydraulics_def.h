@@ -19,11 +19,13 @@ namespace slew::hydraulics {
 
 enum class Solver : int { rodas3, rk4, implicit_euler, cvode };
 enum class OilLaw : int { oil_and_air, density_parabola };
+enum class OilTemperature : int { one, by_volume };
 enum class StartState : int { equilibrium, table13 };
 enum class Interpolation : int { linear, pchip };
 
 inline constexpr std::string_view kSolverChoices[] = {"rodas3", "rk4", "implicit_euler", "cvode"};
 inline constexpr std::string_view kOilLawChoices[] = {"oil_and_air", "density_parabola"};
+inline constexpr std::string_view kOilTemperatureChoices[] = {"one", "by_volume"};
 inline constexpr std::string_view kStartChoices[] = {"equilibrium", "table13"};
 inline constexpr std::string_view kInterpolationChoices[] = {"linear", "pchip"};
 
@@ -50,14 +52,22 @@ struct HydraulicsDef {
   OilLaw oil_law = OilLaw::oil_and_air;
   double oil_bulk_modulus = 1.5e9;       // Pa, modulus of the oil without air
   double oil_density = 870;              // kg/m3
-  double oil_viscosity = 46e-6;          // m2/s, at working temperature
+  double oil_viscosity = 46e-6;          // m2/s, at working temperature, or at reference_temperature
   double entrained_air = 0.005;          // air volume / oil volume at the reference pressure
   double air_reference_pressure = 1e5;   // Pa absolute
   double polytropic_exponent = 1.2;      // exponent of the entrained air
   double oil_compressibility = 6.5e-10;  // 1/Pa at zero pressure, for the density parabola
   double oil_density_peak = 3000e5;      // Pa absolute, at the top of the density parabola
-  double pressure_floor = 5e3;           // Pa absolute; below it a volume is cavitating
-  double orifice_transition = 1e4;       // Pa; below it an orifice is laminar
+  OilTemperature oil_temperature = OilTemperature::one;
+  double reference_temperature = 313.15;  // K, of all values of the oil and of leaks
+  double hot_temperature = 373.15;        // K, of the three values below
+  double hot_viscosity = 0;               // m2/s
+  double hot_density = 0;                 // kg/m3; 0: by the usual expansion
+  double hot_bulk_modulus = 0;            // Pa; 0: by the usual fall
+  double oil_specific_heat = 1900;        // J/(kg K)
+  double start_temperature = 313.15;      // K
+  double pressure_floor = 5e3;            // Pa absolute; below it a volume is cavitating
+  double orifice_transition = 1e4;        // Pa; below it an orifice is laminar
 
   // solver
   Solver solver = Solver::rodas3;
@@ -84,6 +94,8 @@ inline constexpr Range kBudgetRange{.min = 1, .max = 1e6, .min_is_open = false, 
 // a top below 1300 bar would be within the pressure range of a circuit
 inline constexpr Range kPeakRange{.min = 1300e5};
 inline constexpr Range kAirRange{.min = 0, .max = 0.2, .min_is_open = false, .max_is_open = false};
+// range of the laws of the oil's properties: -40 to 150 degC
+inline constexpr Range kOilTemperatureRange{.min = 233.15, .max = 423.15, .min_is_open = false, .max_is_open = false};
 inline constexpr Range kPolytropicRange{.min = 1, .max = 2, .min_is_open = false, .max_is_open = false};
 
 inline constexpr ReadBy kReadByAir[] = {
@@ -93,6 +105,12 @@ inline constexpr ReadBy kReadByAirThere[] = {
     read_by_set<&HydraulicsDef::entrained_air>("entrained_air", "entrained_air above 0")};
 inline constexpr ReadBy kReadByParabola[] = {
     read_by<&HydraulicsDef::oil_law, OilLaw::density_parabola>("oil_law", "oil_law: density_parabola")};
+inline constexpr ReadBy kReadByTemperatures[] = {read_by<&HydraulicsDef::oil_temperature, OilTemperature::by_volume>(
+    "oil_temperature", "oil_temperature: by_volume", ReadBy::Otherwise::error_in_files)};
+inline constexpr ReadBy kReadByTemperaturesOfAir[] = {
+    read_by<&HydraulicsDef::oil_temperature, OilTemperature::by_volume>("oil_temperature", "oil_temperature: by_volume",
+                                                                        ReadBy::Otherwise::error_in_files),
+    read_by<&HydraulicsDef::oil_law, OilLaw::oil_and_air>("oil_law", "oil_law: oil_and_air")};
 inline constexpr ReadBy kReadByTolerance[] = {
     read_by<&HydraulicsDef::solver, Solver::rodas3, Solver::implicit_euler, Solver::cvode>(
         "solver", "solver: rodas3, implicit_euler or cvode", ReadBy::Otherwise::warning)};
@@ -117,7 +135,8 @@ inline constexpr Field kHydraulicsFields[] = {
     field<&HydraulicsDef::oil_viscosity>("oil_viscosity",
                                          {.dimension = Dimension::kinematic_viscosity,
                                           .range = kPositive,
-                                          .doc = "kinematic viscosity of the oil at working temperature"}),
+                                          .doc = "kinematic viscosity of the oil at working temperature, or at "
+                                                 "reference_temperature"}),
     field<&HydraulicsDef::entrained_air>(
         "entrained_air", {.range = kAirRange,
                           .read_by = kReadByAir,
@@ -139,6 +158,42 @@ inline constexpr Field kHydraulicsFields[] = {
                                              .range = kPeakRange,
                                              .read_by = kReadByParabola,
                                              .doc = "absolute pressure at the top of the density parabola"}),
+    field<&HydraulicsDef::oil_temperature>(
+        "oil_temperature", {.choices = kOilTemperatureChoices,
+                            .doc = "one: of all oil, constant; by_volume: every volume has its own, with the heat of "
+                                   "losses, and the properties follow"}),
+    field<&HydraulicsDef::reference_temperature>(
+        "reference_temperature",
+        {.dimension = Dimension::temperature,
+         .range = kOilTemperatureRange,
+         .read_by = kReadByTemperatures,
+         .doc = "temperature of oil_viscosity, oil_density, oil_bulk_modulus and of stated leaks"}),
+    field<&HydraulicsDef::hot_temperature>("hot_temperature", {.dimension = Dimension::temperature,
+                                                               .range = kOilTemperatureRange,
+                                                               .read_by = kReadByTemperatures,
+                                                               .doc = "second temperature of known properties"}),
+    field<&HydraulicsDef::hot_viscosity>("hot_viscosity", {.dimension = Dimension::kinematic_viscosity,
+                                                           .range = kNotNegative,
+                                                           .read_by = kReadByTemperatures,
+                                                           .doc = "kinematic viscosity at hot_temperature; must be "
+                                                                  "stated with oil_temperature: by_volume"}),
+    field<&HydraulicsDef::hot_density>("hot_density", {.dimension = Dimension::density,
+                                                       .range = kNotNegative,
+                                                       .read_by = kReadByTemperatures,
+                                                       .doc = "density at hot_temperature; 0: 7e-4 less per K"}),
+    field<&HydraulicsDef::hot_bulk_modulus>(
+        "hot_bulk_modulus", {.dimension = Dimension::pressure,
+                             .range = kNotNegative,
+                             .read_by = kReadByTemperaturesOfAir,
+                             .doc = "bulk modulus of the oil without air at hot_temperature; 0: 4e-3 less per K"}),
+    field<&HydraulicsDef::oil_specific_heat>("oil_specific_heat", {.dimension = Dimension::specific_heat,
+                                                                   .range = kPositive,
+                                                                   .read_by = kReadByTemperatures,
+                                                                   .doc = "specific heat of the oil"}),
+    field<&HydraulicsDef::start_temperature>("start_temperature", {.dimension = Dimension::temperature,
+                                                                   .range = kOilTemperatureRange,
+                                                                   .read_by = kReadByTemperatures,
+                                                                   .doc = "temperature of all volumes at the start"}),
     field<&HydraulicsDef::pressure_floor>(
         "pressure_floor", {.dimension = Dimension::pressure,
                            .range = kPositive,

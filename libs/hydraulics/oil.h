@@ -9,7 +9,7 @@
 // 1e-3 p_f on as piecewise cubics over 32 equal parts of each octave of p (relative error below 1e-6) and read without
 // a transcendental function. Sources: the flexible-body tutorial thesis (Saimaa UAS 2017), eq. 22 to 27; the air term
 // is the usual polytropic one; (3) as 1 + a p + b p^2 in Naya et al. 2011, p_m = -a/(2 b): kappa keeps its value at
-// 1000 bar beyond that, and there is no air. Not covered: dissolution of air, temperature.
+// 1000 bar beyond that, and there is no air. Temperature: oil_heat.h. Not covered: dissolution of air.
 #pragma once
 
 #include <array>

@@ -99,6 +99,7 @@ void CircuitIntegrator::save(StateWriter& bytes) const {
   visit(*this, bytes);
   circuit_.save_vapour(bytes, y_.data());
   solver_->save(bytes);
+  if (circuit_.has_temperatures()) circuit_.save_heat(bytes);
 }
 
 void CircuitIntegrator::load(StateReader& bytes) {
@@ -107,6 +108,7 @@ void CircuitIntegrator::load(StateReader& bytes) {
   if (bytes.is_sound()) list_quasi_static();
   circuit_.load_vapour(bytes, y_.data());
   solver_->load(bytes);
+  if (circuit_.has_temperatures()) circuit_.load_heat(bytes, y_.data());
   // no other field can be inconsistent
   if (!is_consistent_ && quasi_static_.empty()) bytes.refuse();
 }

@@ -15,6 +15,9 @@
 namespace slew::hydraulics {
 namespace {
 
+constexpr double kLeastViscosity = 1e-6;  // m2/s: (1) of oil_properties.h needs lg(nu/nu_0 + 0.7) above zero
+constexpr double kLeastShare = 0.1;       // of a property at the reference temperature
+
 // Field::member takes the Def's address without const; it is only read here.
 template <typename T>
 const T& member(const Field& row, const void* def) {
@@ -255,8 +258,50 @@ void check_forces(const HydraulicsDef& def, Problems& errors) {
   }
 }
 
+// The laws of oil_properties.h over their whole range of temperatures.
+void check_oil_properties(const HydraulicsDef& def, Problems& errors) {
+  if (def.oil_temperature == OilTemperature::one) return;
+  if (!(def.hot_viscosity < def.oil_viscosity) || def.hot_viscosity < kLeastViscosity) {
+    errors.push_back({"hydraulics.hot_viscosity",
+                      def.hot_viscosity == 0
+                          ? std::string("the viscosity at hot_temperature is not stated")
+                          : fmt::format("{:g} m2/s is not between 1 mm2/s and oil_viscosity", def.hot_viscosity),
+                      "the viscosity at hot_temperature from the oil's data sheet", ""});
+  }
+  if (!(def.hot_temperature > def.reference_temperature)) {
+    errors.push_back({"hydraulics.hot_temperature",
+                      fmt::format("{:g} K is not above reference_temperature", def.hot_temperature),
+                      "two temperatures at which the oil is known, the hotter one here", ""});
+    return;
+  }
+  const auto check_end = [&](const char* key, double cold, double hot) {
+    if (hot == 0) return;
+    const double per_kelvin = (hot - cold) / (def.hot_temperature - def.reference_temperature);
+    const auto at = [&](double T) { return cold + per_kelvin * (T - def.reference_temperature); };
+    if (std::min(at(kOilTemperatureRange.min), at(kOilTemperatureRange.max)) >= kLeastShare * cold) return;
+    errors.push_back({std::string("hydraulics.") + key,
+                      "the line through both values falls below a tenth of the value at reference_temperature "
+                      "between -40 and 150 degC",
+                      "values that belong to the two temperatures", ""});
+  };
+  check_end("hot_density", def.oil_density, def.hot_density);
+  check_end("hot_bulk_modulus", def.oil_bulk_modulus, def.hot_bulk_modulus);
+}
+
+// A tank without a stated content would never become warm.
+void warn_of_held_temperatures(const HydraulicsDef& def, Problems& warnings) {
+  if (def.oil_temperature == OilTemperature::one) return;
+  for (const VolumeDef& volume : def.volumes) {
+    if (!volume.fixed || volume.rigid_volume > 0) continue;
+    warnings.push_back({volume.name + ".rigid_volume",
+                        "the content of this fixed volume is not stated, so its oil keeps start_temperature",
+                        "the oil in the tank", ""});
+  }
+}
+
 void check_circuit_numbers(const HydraulicsDef& def, Problems& errors) {
   check_fields("hydraulics", kHydraulicsFields, &def, errors);
+  check_oil_properties(def, errors);
   if (def.quasi_static_above > 0 && !takes_quasi_static(def.solver)) {
     errors.push_back({"hydraulics.quasi_static_above", no_quasi_static(def.solver),
                       "solver: rodas3 or implicit_euler, or quasi_static_above: 0", ""});
@@ -337,6 +382,7 @@ void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
     check_port_pair(*component, *type, component->address(), errors);
   }
   check_volumes(def, errors);
+  warn_of_held_temperatures(def, warnings);
   if (!are_types_known) return;
   check_ls_chain(def, errors, warnings);
   check_forces(def, errors);

@@ -53,6 +53,7 @@ SceneEquations::SceneEquations(const scene::Scene& scene)
     work_ = component_ + states - static_cast<std::size_t>(circuit_->first_component_state());
     circuit_y_.assign(states, 0);
     circuit_rates_.assign(states, 0);
+    observed_y_.assign(states, 0);
     start_ = scene.hydraulics.start;
     SLEW_CHECK(static_cast<std::size_t>(circuit_->actuator_count()) == ports_.size());
   }
@@ -149,6 +150,7 @@ void SceneEquations::take(const multibody::Model& model, const multibody::State&
     circuit_->set_parameter(static_cast<int>(i), circuit->parameter_values()[i]);
   }
   circuit_->set_vapour_capacities(circuit->vapour_capacities());
+  if (circuit_->has_temperatures()) circuit_->set_temperatures(circuit->temperatures(), circuit_y.data());
   std::copy_n(circuit_y.begin(), component_ - p_, y.begin() + static_cast<std::ptrdiff_t>(p_));
   std::copy(circuit_y.begin() + circuit_->first_component_state(), circuit_y.end(),
             y.begin() + static_cast<std::ptrdiff_t>(component_));
@@ -208,6 +210,7 @@ Status SceneEquations::start(std::span<double> y) {
     if (const Status status = find_static_forces(F_, mobility); !status.is_ok()) return status;
   }
   circuit_->start(F_, circuit_y_, mobility);
+  if (circuit_->has_temperatures()) circuit_->start_heat(circuit_y_.data());
   std::copy_n(circuit_y_.begin(), component_ - p_, y.begin() + static_cast<std::ptrdiff_t>(p_));
   std::copy(circuit_y_.begin() + circuit_->first_component_state(), circuit_y_.end(),
             y.begin() + static_cast<std::ptrdiff_t>(component_));
@@ -349,6 +352,7 @@ void SceneEquations::rates(double t, const double* y, double* f) noexcept {
 void SceneEquations::observe(double t, const double* y) {
   take_state(t, y);
   if (circuit_) circuit_->follow_vapour(circuit_y_.data());
+  if (circuit_ && circuit_->has_temperatures()) take_heat(t);
   evaluate_ports();
   const std::size_t rows = model_.rows.size();
   const std::span<const double> W = multibody::row_mobility(workspace_);
@@ -362,8 +366,20 @@ void SceneEquations::observe(double t, const double* y) {
     now.work = y[work_ + i];
     now.impulse = y[impulse_ + i];
     if (circuit_) circuit_->set_line_force(static_cast<int>(i), now.line_force);
+    if (circuit_ && circuit_->has_temperatures()) circuit_->set_friction(static_cast<int>(i), now.friction);
   }
   multibody::observe(model_, state_, workspace_);
+}
+
+// Temperatures at t, from the flows at both ends of the interval.
+void SceneEquations::take_heat(double t) noexcept {
+  if (t > observed_) {
+    circuit_->begin_heat(observed_y_.data());
+    circuit_->add_heat(t - observed_, circuit_y_.data());
+    circuit_->end_heat(t - observed_, circuit_y_.data());
+  }
+  std::copy(circuit_y_.begin(), circuit_y_.end(), observed_y_.begin());
+  observed_ = t;
 }
 
 void SceneEquations::list_variables() {

@@ -137,6 +137,7 @@ class SceneEquations {
   void evaluate_ports() noexcept;
   [[nodiscard]] Status find_static_forces(std::span<double> F, std::vector<double>& mobility);
   void list_variables();
+  void take_heat(double t) noexcept;
 
   multibody::Model model_;
   multibody::State state_;
@@ -154,6 +155,9 @@ class SceneEquations {
   bool is_closed_ = true;  // at the instant: the joints that are cut
   // at the instant
   std::vector<double> circuit_y_, circuit_rates_, F_;
+  // of a circuit with temperatures: the last observed instant
+  double observed_ = 0;
+  std::vector<double> observed_y_;
   std::vector<double> row_force_;
   RowForces row_forces_ = RowForces::follow;
   std::vector<double> q_rate_, u_rate_;

@@ -5,6 +5,7 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/passages.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -110,6 +111,11 @@ class Accumulator final : public HydraulicComponent {
     *values++ = (z_ < 0 ? 1 : view[z_]) * std::pow(nu, 1 - def_.polytropic_exponent);
     *values++ = flow(view).value;
     return values;
+  }
+  // the drop at the inlet heats the oil of the volume
+  void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
+    passages.add_content(p_, view[f_] * def_.gas_volume);
+    passages.add_heat(p_, flow(view).value * (view[p_] - gas(view).p));
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override { K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop); }

@@ -64,7 +64,11 @@ class CheckPoppet {
     jacobian.move(ports_.inlet, ports_.outlet, ports_.pilot, Q.pilot);
     jacobian.move(ports_.inlet, ports_.outlet, ports_.back, -Q.pilot);
   }
-  void move(const PoppetFlow& Q, Rates& rates) const noexcept { rates.move(ports_.inlet, ports_.outlet, Q.value); }
+  // flows: Rates or Passages
+  template <typename Flows>
+  void move(const PoppetFlow& Q, Flows& flows) const noexcept {
+    flows.move(ports_.inlet, ports_.outlet, Q.value);
+  }
 
   // near the switch of the free direction the partner gets the slope of the poppet at its full lift, the steepest
   void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept {

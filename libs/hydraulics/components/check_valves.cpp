@@ -12,6 +12,7 @@
 #include "hydraulics/components/check_poppet.h"
 #include "hydraulics/components/shared_fields.h"
 #include "hydraulics/oil.h"
+#include "hydraulics/passages.h"
 #include "hydraulics/pump_lines.h"
 
 namespace slew::hydraulics {
@@ -146,6 +147,9 @@ class CheckValve final : public HydraulicComponent {
       poppet.move(Q, rates);
       poppet.stamp(Q, jacobian);
     }
+  }
+  void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
+    for (const CheckPoppet& poppet : poppets_) poppet.move(poppet.flow(view), passages);
   }
   void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept override {
     for (const CheckPoppet& poppet : poppets_) poppet.raise_outflow_slopes(view, outflow_slope);

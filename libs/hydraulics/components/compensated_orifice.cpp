@@ -5,6 +5,7 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/ls_tap.h"
+#include "hydraulics/oil_properties.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -71,6 +72,10 @@ class CompensatedOrifice final : public HydraulicComponent {
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void follow_oil(const PortOil& oil) noexcept override {
+    root_2_rho_ = std::sqrt(2 / oil.between(p_, a_).density);
+    apply_parameters();
+  }
   void apply_parameters() noexcept override {
     K_ = def_.opening * def_.discharge_coefficient * def_.area * root_2_rho_;
   }

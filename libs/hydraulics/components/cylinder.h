@@ -10,6 +10,8 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/cylinder_def.h"
+#include "hydraulics/oil_properties.h"
+#include "hydraulics/passages.h"
 
 namespace slew::hydraulics {
 
@@ -25,7 +27,15 @@ class Cylinder final : public HydraulicComponent {
   void list_variables(std::vector<ElementVariable>& variables) const override;
   double* read_variables(const CircuitView& view, double* values) const noexcept override;
   [[nodiscard]] void* def_address() noexcept override { return def_->address(); }
-  void apply_parameters() noexcept override { G_leak_ = common_.leak_flow / common_.leak_pressure; }
+  void apply_parameters() noexcept override { G_leak_ = fluidity_ * common_.leak_flow / common_.leak_pressure; }
+  void follow_oil(const PortOil& oil) noexcept override {
+    fluidity_ = oil.fluidity(a_, b_);
+    apply_parameters();
+  }
+  // what the piston sweeps does not leave the chambers
+  void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
+    passages.move(a_, b_, leak(view));
+  }
 
  private:
   [[nodiscard]] double leak(const CircuitView& view) const noexcept { return G_leak_ * (view[a_] - view[b_]); }
@@ -38,7 +48,8 @@ class Cylinder final : public HydraulicComponent {
   double ratio_;  // m/rad when rotary
   int actuator_ = 0;
   StateIndex x_ = 0, v_ = 0;
-  double G_leak_ = 0;  // m3/s/Pa
+  double G_leak_ = 0;    // m3/s/Pa
+  double fluidity_ = 1;  // of the oil
 };
 
 // The area of a full piston [m2].

@@ -6,6 +6,7 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/oil.h"
+#include "hydraulics/oil_properties.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -93,6 +94,10 @@ class DirectReliefValve final : public HydraulicComponent {
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void follow_oil(const PortOil& oil) noexcept override {
+    root_2_rho_ = std::sqrt(2 / oil.between(p_1_, p_2_).density);
+    apply_parameters();
+  }
   void apply_parameters() noexcept override {
     seat_area_ = 0.25 * std::numbers::pi * def_.seat_diameter * def_.seat_diameter;
     const double w = std::numbers::pi * def_.seat_diameter * std::sin(def_.half_angle);

@@ -10,6 +10,7 @@
 #include "hydraulics/components/check_poppet.h"
 #include "hydraulics/components/shared_fields.h"
 #include "hydraulics/oil.h"
+#include "hydraulics/oil_properties.h"
 #include "hydraulics/pump_lines.h"
 
 namespace slew::hydraulics {
@@ -90,9 +91,13 @@ class Filter final : public HydraulicComponent {
     *values++ = view[p_1_] - view[p_2_];
     return values;
   }
+  void follow_oil(const PortOil& oil) noexcept override {
+    fluidity_ = oil.fluidity(p_1_, p_2_);
+    apply_parameters();
+  }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
-    G_ = (1 - def_.clogging) * def_.nominal_flow / def_.nominal_pressure_drop;
+    G_ = fluidity_ * (1 - def_.clogging) * def_.nominal_flow / def_.nominal_pressure_drop;
     bypass_.set(def_.bypass, 0);
   }
 
@@ -105,7 +110,8 @@ class Filter final : public HydraulicComponent {
   FilterDef def_;
   StateIndex p_1_, p_2_;
   CheckPoppet bypass_;
-  double G_ = 0;  // m3/s/Pa
+  double G_ = 0;         // m3/s/Pa
+  double fluidity_ = 1;  // of the oil
 };
 
 void validate_filter(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {

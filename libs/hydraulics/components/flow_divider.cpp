@@ -7,6 +7,7 @@
 #include "hydraulics/component.h"
 #include "hydraulics/components/shared_fields.h"
 #include "hydraulics/components/spring_spool.h"
+#include "hydraulics/oil_properties.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -210,9 +211,13 @@ class GearFlowDivider final : public HydraulicComponent {
     for (int i : {0, 1}) *values++ = flow(view, i);
     return values;
   }
+  void follow_oil(const PortOil& oil) noexcept override {
+    fluidity_ = oil.fluidity(p_1_, branches_[0]);
+    apply_parameters();
+  }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
-    G_ = def_.leak_flow / def_.leak_pressure;
+    G_ = fluidity_ * def_.leak_flow / def_.leak_pressure;
     T_f_ = (D_[0] + D_[1]) * def_.friction_pressure;
   }
 
@@ -232,6 +237,7 @@ class GearFlowDivider final : public HydraulicComponent {
   StateIndex w_;  // rad/s
   double D_[2];
   double G_ = 0, T_f_ = 0;
+  double fluidity_ = 1;  // of the oil, for leaks
 };
 
 template <typename Def>

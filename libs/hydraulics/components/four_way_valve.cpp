@@ -6,6 +6,8 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/oil_properties.h"
+#include "hydraulics/passages.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -85,6 +87,17 @@ class FourWayValve final : public HydraulicComponent {
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
+    const double forward = conductance_ * opening(view), back = conductance_ - forward;
+    passages.move(p_, a_, flow(view, p_, a_, forward).value);
+    passages.move(b_, t_, flow(view, b_, t_, forward).value);
+    passages.move(p_, b_, flow(view, p_, b_, back).value);
+    passages.move(a_, t_, flow(view, a_, t_, back).value);
+  }
+  void follow_oil(const PortOil& oil) noexcept override {
+    root_2_rho_ = std::sqrt(2 / oil.between(p_, t_).density);
+    apply_parameters();
+  }
   void apply_parameters() noexcept override {
     conductance_ = def_.discharge_coefficient * def_.edge_area * root_2_rho_;
   }

@@ -8,6 +8,7 @@
 #include "hydraulics/components/shared_fields.h"
 #include "hydraulics/components/spring_spool.h"
 #include "hydraulics/oil.h"
+#include "hydraulics/oil_properties.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -76,12 +77,16 @@ class HoseBurstValve final : public HydraulicComponent {
     *values++ = -flow(view).value;
     return values;
   }
+  void follow_oil(const PortOil& oil) noexcept override {
+    fluidity_ = oil.fluidity(p_2_, p_1_);
+    apply_parameters();
+  }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
     plate_.set(def_.nominal_flow, def_.nominal_pressure_drop, def_.step_response);
     const double root_drop = def_.closing_flow / plate_.K();
     closing_drop_ = root_drop * root_drop;
-    G_ = def_.leak_flow / def_.leak_pressure;
+    G_ = fluidity_ * def_.leak_flow / def_.leak_pressure;
   }
 
  private:
@@ -103,6 +108,7 @@ class HoseBurstValve final : public HydraulicComponent {
   StateIndex p_1_, p_2_;
   StateIndex u_;  // opening 0..1
   SpringSpool plate_;
+  double fluidity_ = 1;  // of the oil, for leaks
   double closing_drop_ = 0, G_ = 0;
 };
 

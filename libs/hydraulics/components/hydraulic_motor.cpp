@@ -11,6 +11,7 @@
 #include "hydraulics/components/cylinder_rules.h"
 #include "hydraulics/components/displacement_servo.h"
 #include "hydraulics/components/shared_fields.h"
+#include "hydraulics/oil_properties.h"
 
 namespace slew::hydraulics {
 namespace {
@@ -250,10 +251,18 @@ class HydraulicMotor final : public HydraulicComponent {
   [[nodiscard]] double brake_grip(const CircuitView& view) const noexcept override {
     return shaft_brake::grip(brake_share(view)).value / def_.brake.twist;
   }
+  // the shaft takes the work of the pressures
+  [[nodiscard]] double shaft_power(const CircuitView& view) const noexcept override {
+    return -(view[a_] - view[b_]) * displacement(view) * view[v_];
+  }
+  void follow_oil(const PortOil& oil) noexcept override {
+    fluidity_ = oil.fluidity(a_, b_);
+    apply_parameters();
+  }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
-    G_ = def_.leak_flow / def_.leak_pressure;
-    G_case_ = def_.case_leak_flow / def_.leak_pressure;
+    G_ = fluidity_ * def_.leak_flow / def_.leak_pressure;
+    G_case_ = fluidity_ * def_.case_leak_flow / def_.leak_pressure;
   }
 
  private:
@@ -288,6 +297,7 @@ class HydraulicMotor final : public HydraulicComponent {
   StateIndex setting_ = -1, brake_ = -1, brake_port_ = -1;  // -1: fixed displacement, no brake
   int control_ = -1;
   double G_ = 0, G_case_ = 0;  // m3/s/Pa
+  double fluidity_ = 1;        // of the oil, for leaks
 };
 
 void validate_motor(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {

@@ -5,121 +5,15 @@
 #include <cmath>
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/components/l90ls_fields.h"
 #include "hydraulics/components/l90ls_laws.h"
+#include "hydraulics/oil_properties.h"
+#include "hydraulics/passages.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
 namespace {
-
-constexpr Range kOverlapRange{.min = 0, .max = 0.99, .min_is_open = false, .max_is_open = false};
-
-constexpr ReadBy kReadByAntiCavitation[] = {
-    read_by_set<&L90lsValveDef::anti_cavitation_flow>("anti_cavitation_flow", "anti_cavitation_flow above 0")};
-
-constexpr Field kL90lsValveFields[] = {
-    field<&L90lsValveDef::port_p>("port_p",
-                                  {.presence = Presence::required, .reference = "volume", .doc = "volume at port P"}),
-    field<&L90lsValveDef::port_a>("port_a",
-                                  {.presence = Presence::required, .reference = "volume", .doc = "volume at port A"}),
-    field<&L90lsValveDef::port_b>("port_b",
-                                  {.presence = Presence::required, .reference = "volume", .doc = "volume at port B"}),
-    field<&L90lsValveDef::port_t>("port_t",
-                                  {.presence = Presence::required, .reference = "volume", .doc = "volume at port T"}),
-    field<&L90lsValveDef::overlap>("overlap", {.range = kOverlapRange,
-                                               .change = Change::live,
-                                               .doc = "positive overlap of the spool, fraction of its travel"}),
-    field<&L90lsValveDef::maximum_control_signal>(
-        "maximum_control_signal",
-        {.dimension = Dimension::electric_signal, .range = kPositive, .doc = "largest control signal"}),
-    field<&L90lsValveDef::nominal_control_signal>(
-        "nominal_control_signal",
-        {.dimension = Dimension::electric_signal, .range = kPositive, .doc = "control signal at nominal flow"}),
-    field<&L90lsValveDef::nominal_flow_pa>("nominal_flow_pa", {.dimension = Dimension::volume_flow,
-                                                               .range = kPositive,
-                                                               .change = Change::live,
-                                                               .doc = "flow of edge P-A at nominal_pressure_drop"}),
-    field<&L90lsValveDef::nominal_flow_at>("nominal_flow_at", {.dimension = Dimension::volume_flow,
-                                                               .range = kPositive,
-                                                               .change = Change::live,
-                                                               .doc = "flow of edge A-T at nominal_pressure_drop"}),
-    field<&L90lsValveDef::nominal_flow_pb>("nominal_flow_pb", {.dimension = Dimension::volume_flow,
-                                                               .range = kPositive,
-                                                               .change = Change::live,
-                                                               .doc = "flow of edge P-B at nominal_pressure_drop"}),
-    field<&L90lsValveDef::nominal_flow_bt>("nominal_flow_bt", {.dimension = Dimension::volume_flow,
-                                                               .range = kPositive,
-                                                               .change = Change::live,
-                                                               .doc = "flow of edge B-T at nominal_pressure_drop"}),
-    field<&L90lsValveDef::nominal_pressure_drop>(
-        "nominal_pressure_drop",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of the nominal flows"}),
-    field<&L90lsValveDef::leak_flow>("leak_flow", {.dimension = Dimension::volume_flow,
-                                                   .range = kNotNegative,
-                                                   .change = Change::live,
-                                                   .doc = "leak of each edge at leak_pressure"}),
-    field<&L90lsValveDef::leak_pressure>(
-        "leak_pressure", {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of leak_flow"}),
-    field<&L90lsValveDef::opening_pressure_rise>("opening_pressure_rise",
-                                                 {.dimension = Dimension::pressure,
-                                                  .range = kPositive,
-                                                  .doc = "supply above load at which the lock-hold is fully open"}),
-    field<&L90lsValveDef::step_response>(
-        "step_response",
-        {.dimension = Dimension::time, .range = kPositive, .doc = "three time constants of the spool"}),
-    field<&L90lsValveDef::compensator_pressure>("compensator_pressure",
-                                                {.dimension = Dimension::pressure,
-                                                 .range = kPositive,
-                                                 .change = Change::live,
-                                                 .doc = "drop that the compensator holds across the metering edge"}),
-    field<&L90lsValveDef::compensator_flow>("compensator_flow",
-                                            {.dimension = Dimension::volume_flow,
-                                             .range = kPositive,
-                                             .doc = "flow of the open compensator at compensator_pressure_drop"}),
-    field<&L90lsValveDef::compensator_pressure_drop>(
-        "compensator_pressure_drop",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of compensator_flow"}),
-    field<&L90lsValveDef::shock_pressure_a>("shock_pressure_a", {.dimension = Dimension::pressure,
-                                                                 .range = kPositive,
-                                                                 .change = Change::live,
-                                                                 .doc = "setting of the shock valve at A, above tank"}),
-    field<&L90lsValveDef::shock_pressure_b>("shock_pressure_b", {.dimension = Dimension::pressure,
-                                                                 .range = kPositive,
-                                                                 .change = Change::live,
-                                                                 .doc = "setting of the shock valve at B, above tank"}),
-    field<&L90lsValveDef::shock_flow>("shock_flow",
-                                      {.dimension = Dimension::volume_flow,
-                                       .range = kPositive,
-                                       .doc = "flow of a shock valve at shock_pressure_rise above its setting"}),
-    field<&L90lsValveDef::shock_pressure_rise>("shock_pressure_rise",
-                                               {.dimension = Dimension::pressure,
-                                                .range = kPositive,
-                                                .doc = "rise above the setting that opens a shock valve fully"}),
-    field<&L90lsValveDef::anti_cavitation_flow>(
-        "anti_cavitation_flow", {.dimension = Dimension::volume_flow,
-                                 .range = kNotNegative,
-                                 .doc = "flow of an anti-cavitation valve at anti_cavitation_pressure_drop"}),
-    field<&L90lsValveDef::anti_cavitation_pressure_drop>("anti_cavitation_pressure_drop",
-                                                         {.dimension = Dimension::pressure,
-                                                          .range = kPositive,
-                                                          .read_by = kReadByAntiCavitation,
-                                                          .doc = "pressure drop of anti_cavitation_flow"}),
-    field<&L90lsValveDef::anti_cavitation_crack_pressure>("anti_cavitation_crack_pressure",
-                                                          {.dimension = Dimension::pressure,
-                                                           .range = kNotNegative,
-                                                           .read_by = kReadByAntiCavitation,
-                                                           .doc = "pressure drop that opens an anti-cavitation valve"}),
-    field<&L90lsValveDef::maximum_ls_pressure_a>("maximum_ls_pressure_a",
-                                                 {.dimension = Dimension::pressure,
-                                                  .range = kPositive,
-                                                  .change = Change::live,
-                                                  .doc = "limit of the load-sensing pressure of port A, above tank"}),
-    field<&L90lsValveDef::maximum_ls_pressure_b>("maximum_ls_pressure_b",
-                                                 {.dimension = Dimension::pressure,
-                                                  .range = kPositive,
-                                                  .change = Change::live,
-                                                  .doc = "limit of the load-sensing pressure of port B, above tank"}),
-};
 
 constexpr double kOverlapWidth = 1e-3;  // share of the opening, smoothing where the spool's edge uncovers the port
 constexpr double kLsOpening = 0.02;     // opening at which the load-sensing port is fully connected
@@ -186,6 +80,18 @@ class L90lsValve final : public HydraulicComponent {
       rates.move(port_[s], t_, out.Q);
       stamp_supply(jacobian, s, in, x.supply[s].slope);
       stamp_return(jacobian, s, out, x.supply[1 - s].slope);
+    }
+  }
+
+  void follow_oil(const PortOil& oil) noexcept override {
+    fluidity_ = oil.fluidity(p_, t_);
+    apply_parameters();
+  }
+  void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
+    const Openings x = openings(view);
+    for (int s = kA; s < kSides; ++s) {
+      passages.move(p_, port_[s], supply_flow(view, s, x.supply[s].value).Q);
+      passages.move(port_[s], t_, return_flow(view, s, x.supply[1 - s].value).Q);
     }
   }
 
@@ -304,8 +210,9 @@ class L90lsValve final : public HydraulicComponent {
   int control_;
   LsIndex ls_;
   double transition_;
-  double rate_ = 0;  // 1/tau
-  double gain_ = 0;  // 1/(1 - overlap)
+  double fluidity_ = 1;  // of the oil, for leaks
+  double rate_ = 0;      // 1/tau
+  double gain_ = 0;      // 1/(1 - overlap)
   L90Side law_[kSides];
 };
 
@@ -317,7 +224,7 @@ void L90lsValve::apply_parameters() noexcept {
   const L90Side common{.K_comp_2 = K_comp * K_comp,
                        .compensator_pressure = def_.compensator_pressure,
                        .opening_rise = def_.opening_pressure_rise,
-                       .G_leak = def_.leak_flow / def_.leak_pressure,
+                       .G_leak = fluidity_ * def_.leak_flow / def_.leak_pressure,
                        .shock_rise = def_.shock_pressure_rise,
                        .K_anti_cavitation = def_.anti_cavitation_flow / std::sqrt(def_.anti_cavitation_pressure_drop -
                                                                                   def_.anti_cavitation_crack_pressure),

@@ -7,6 +7,8 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/shared_fields.h"
+#include "hydraulics/oil_properties.h"
+#include "hydraulics/passages.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -146,6 +148,17 @@ class Line final : public HydraulicComponent {
     *values++ = p;
     return values;
   }
+  // the oil inside counts half at either end
+  void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
+    passages.move(p_1_, p_2_, view[q_] * unit_);
+    for (const StateIndex port : {p_1_, p_2_}) passages.add_content(port, 0.5 * (1 - rest_) * A_ * def_.length);
+  }
+  void follow_oil(const PortOil& oil) noexcept override {
+    const OilProperties& inside = oil.between(p_1_, p_2_);
+    rho_ = inside.density, nu_ = inside.viscosity;
+    a_ = 4 * nu_ / (def_.diameter * def_.diameter);
+    apply_parameters();
+  }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
     unit_ = A_;  // 1 m/s
@@ -165,14 +178,13 @@ class Line final : public HydraulicComponent {
     if (i == 0) first = state;
   }
   // what the modes lack of the line's content, with the wall that makes the oil's modulus the line's
-  void add_rest(CircuitBuilder& builder) const {
-    double share = 1;
-    for (int i = 1; i <= n_; i += 2) share -= 8 / (pi * pi * i * i);
+  void add_rest(CircuitBuilder& builder) {
+    for (int i = 1; i <= n_; i += 2) rest_ -= 8 / (pi * pi * i * i);
     WallLaw wall;
     const double oil = builder.def().oil_bulk_modulus;
     if (modulus_ < oil) wall.lowest = wall.highest = 1 / (1 / modulus_ - 1 / oil);
     for (const StateIndex port : {p_1_, p_2_}) {
-      builder.add_content({.volume_index = port, .volume = 0.5 * share * A_ * def_.length, .wall = wall});
+      builder.add_content({.volume_index = port, .volume = 0.5 * rest_ * A_ * def_.length, .wall = wall});
     }
   }
   // (3)
@@ -198,6 +210,7 @@ class Line final : public HydraulicComponent {
   int n_;
   StateIndex q_ = 0, P_ = 0, z_ = 0;  // first of q_0..q_n and z in units of unit_, of P_1..P_n in Pa
   double rho_, nu_, A_, modulus_;
+  double rest_ = 1;  // share of the content at the ends
   double a_;         // 1/s
   double unit_ = 1;  // m3/s
   double gain_ = 0;  // units of q_0' per Pa

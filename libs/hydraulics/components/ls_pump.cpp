@@ -3,6 +3,7 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/oil_properties.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -125,7 +126,7 @@ class LsPump final : public HydraulicComponent {
     variables.push_back(variable("power", Dimension::power));
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
-    const double torque = drive_.torque(view[alpha_], view[a_] - view[b_]);
+    const double torque = shaft_torque(view);
     *values++ = view[alpha_];
     *values++ = flow(view);
     *values++ = set_point(view).value;
@@ -133,16 +134,26 @@ class LsPump final : public HydraulicComponent {
     *values++ = torque * drive_.speed(view, def_.speed);
     return values;
   }
+  [[nodiscard]] double shaft_power(const CircuitView& view) const noexcept override {
+    return shaft_torque(view) * drive_.speed(view, def_.speed);
+  }
+  void follow_oil(const PortOil& oil) noexcept override {
+    fluidity_ = oil.fluidity(a_, b_);
+    apply_parameters();
+  }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
     per_speed_ = def_.displacement * def_.volumetric_coefficient;
     full_flow_ = def_.displacement * def_.speed * def_.volumetric_coefficient;
-    G_leak_ = def_.leak_flow / def_.leak_pressure;
+    G_leak_ = fluidity_ * def_.leak_flow / def_.leak_pressure;
     rate_ = 1 / def_.time_constant;
     full_torque_rise_ = def_.mechanical_coefficient * def_.maximum_torque / def_.displacement;
   }
 
  private:
+  [[nodiscard]] double shaft_torque(const CircuitView& view) const noexcept {
+    return drive_.torque(view[alpha_], view[a_] - view[b_]);
+  }
   // set pressure of the controller at the outlet, above tank; slope with respect to the LS pressure
   [[nodiscard]] ValueSlope set_point(const CircuitView& view) const noexcept {
     if (ls_ < 0) return {def_.standby_pressure, 0};
@@ -180,6 +191,7 @@ class LsPump final : public HydraulicComponent {
   PumpDrive drive_;
   double per_speed_ = 0;  // m3/rad, flow per speed at full swash
   double full_flow_ = 0, G_leak_ = 0, rate_ = 0;
+  double fluidity_ = 1;          // of the oil, for leaks
   double full_torque_rise_ = 0;  // Pa, at which the full swash takes maximum_torque; 0: no limiter
 };
 

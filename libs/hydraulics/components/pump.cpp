@@ -10,6 +10,7 @@
 #include "hydraulics/component.h"
 #include "hydraulics/components/displacement_servo.h"
 #include "hydraulics/components/shared_fields.h"
+#include "hydraulics/oil_properties.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -166,11 +167,18 @@ class Pump final : public HydraulicComponent {
     if (case_ >= 0) *values++ = G_case_ * (view[a_] + view[b_] - 2 * view[case_]);
     return values;
   }
+  void follow_oil(const PortOil& oil) noexcept override {
+    fluidity_ = oil.fluidity(a_, b_);
+    apply_parameters();
+  }
+  [[nodiscard]] double shaft_power(const CircuitView& view) const noexcept override {
+    return drive_.torque(view[alpha_], rise(view)) * speed(view);
+  }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
     per_speed_ = def_.displacement * def_.volumetric_coefficient;
-    G_leak_ = def_.leak_flow / def_.leak_pressure;
-    G_case_ = def_.case_leak_flow / def_.leak_pressure;
+    G_leak_ = fluidity_ * def_.leak_flow / def_.leak_pressure;
+    G_case_ = fluidity_ * def_.case_leak_flow / def_.leak_pressure;
   }
 
  private:
@@ -234,6 +242,7 @@ class Pump final : public HydraulicComponent {
   PumpDrive drive_;
   double per_speed_ = 0;            // m3/rad, flow per speed at full swash
   double G_leak_ = 0, G_case_ = 0;  // m3/s/Pa
+  double fluidity_ = 1;             // of the leaks
 };
 
 void validate_plain_pump(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {

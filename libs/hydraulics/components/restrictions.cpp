@@ -6,6 +6,7 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/oil.h"
+#include "hydraulics/oil_properties.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -51,26 +52,22 @@ constexpr Field kLaminarRestrictionFields[] = {
         {.dimension = Dimension::length, .range = kPositive, .presence = Presence::required, .doc = "length"}),
 };
 
-struct OilNumbers {
-  double density, viscosity;  // kg/m3, m2/s
-};
-
 // Q = K root(drop) + G drop
 struct Conductance {
   double K = 0;  // m3/s/sqrt(Pa)
   double G = 0;  // m3/s/Pa
 };
 
-Conductance conductance(const BleedDef& def, const OilNumbers&) noexcept {
+Conductance conductance(const BleedDef& def, const OilProperties&) noexcept {
   return {.K = def.nominal_flow / std::sqrt(def.nominal_pressure_drop)};
 }
 
-Conductance conductance(const OrificeDef& def, const OilNumbers& oil) noexcept {
+Conductance conductance(const OrificeDef& def, const OilProperties& oil) noexcept {
   const double area = 0.25 * std::numbers::pi * def.diameter * def.diameter;
   return {.K = def.opening * def.discharge_coefficient * area * std::sqrt(2 / oil.density)};
 }
 
-Conductance conductance(const LaminarRestrictionDef& def, const OilNumbers& oil) noexcept {
+Conductance conductance(const LaminarRestrictionDef& def, const OilProperties& oil) noexcept {
   const double d_2 = def.diameter * def.diameter;
   return {.G = std::numbers::pi * d_2 * d_2 / (128 * oil.density * oil.viscosity * def.length)};
 }
@@ -107,6 +104,10 @@ class Restriction final : public HydraulicComponent {
     *values++ = flow(view).value;
     return values;
   }
+  void follow_oil(const PortOil& oil) noexcept override {
+    oil_ = oil.between(p_1_, p_2_);
+    apply_parameters();
+  }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override { c_ = conductance(def_, oil_); }
 
@@ -122,7 +123,7 @@ class Restriction final : public HydraulicComponent {
   }
 
   Def def_;
-  OilNumbers oil_;
+  OilProperties oil_;
   StateIndex p_1_, p_2_;
   double transition_;
   Conductance c_;

@@ -7,6 +7,7 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/shared_fields.h"
+#include "hydraulics/passages.h"
 #include "hydraulics/pump_lines.h"
 
 namespace slew::hydraulics {
@@ -74,6 +75,9 @@ class FlowSource final : public HydraulicComponent {
     *values++ = flow(view) * (view[p_2_] - view[p_1_]);
     return values;
   }
+  [[nodiscard]] double shaft_power(const CircuitView& view) const noexcept override {
+    return flow(view) * (view[p_2_] - view[p_1_]);
+  }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {}
 
@@ -93,7 +97,8 @@ class PressureSource final : public HydraulicComponent {
       : HydraulicComponent(def),
         def_(def),
         p_(builder.volume(def.port_1)),
-        control_(builder.add_control(def.name, SignalMoves::flows)) {
+        control_(builder.add_control(def.name, SignalMoves::flows)),
+        supply_temperature_(builder.def().start_temperature) {
     apply_parameters();
   }
   void declare_dependencies(DependencyList& dependencies) const override { dependencies.add(p_, p_); }
@@ -108,6 +113,11 @@ class PressureSource final : public HydraulicComponent {
     *values++ = flow(view);
     return values;
   }
+  // fresh oil has the start temperature
+  void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
+    const double Q = flow(view);
+    if (Q > 0) passages.deliver(p_, Q, supply_temperature_, Q * (pressure(view) - view[p_]));
+  }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override { G_ = def_.nominal_flow / def_.nominal_pressure_drop; }
 
@@ -120,6 +130,7 @@ class PressureSource final : public HydraulicComponent {
   PressureSourceDef def_;
   StateIndex p_;
   int control_;
+  double supply_temperature_;  // K
   double G_ = 0;
 };
 

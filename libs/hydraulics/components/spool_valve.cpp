@@ -11,6 +11,8 @@
 #include "hydraulics/component.h"
 #include "hydraulics/components/shared_fields.h"
 #include "hydraulics/curve.h"
+#include "hydraulics/oil_properties.h"
+#include "hydraulics/passages.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -198,10 +200,20 @@ class SpoolValve final : public HydraulicComponent {
     for (const Edge& edge : edges_) *values++ = flow(edge, view).value;
     return values;
   }
+  void follow_oil(const PortOil& oil) noexcept override {
+    const Edge& supply = edges_[0];
+    const StateIndex tank = edges_[1].to;
+    root_2_rho_ = std::sqrt(2 / oil.between(supply.from, tank).density);
+    fluidity_ = oil.fluidity(supply.from, tank);
+    apply_parameters();
+  }
+  void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
+    for (const Edge& edge : edges_) passages.move(edge.from, edge.to, flow(edge, view).value);
+  }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
     rate_ = kTravelTimeConstants / def_.step_response;
-    const double c = def_.discharge_coefficient * root_2_rho_, G = def_.leak_flow / def_.leak_pressure;
+    const double c = def_.discharge_coefficient * root_2_rho_, G = fluidity_ * def_.leak_flow / def_.leak_pressure;
     const MeteringEdge* const metering[] = {&def_.pa, &def_.bt, &def_.pb, &def_.at};
     for (std::size_t i = 0; i < std::size(metering); ++i) {
       edges_[i].begin = metering[i]->overlap;
@@ -241,7 +253,8 @@ class SpoolValve final : public HydraulicComponent {
   StateIndex spool_;  // -1..1
   int control_;
   double transition_, root_2_rho_;
-  double rate_ = 0;  // 1/tau
+  double fluidity_ = 1;  // of the oil, for leaks
+  double rate_ = 0;      // 1/tau
   std::array<Edge, 5> edges_;
 };
 

@@ -151,6 +151,9 @@ const std::vector<Way> kCraneWays = {
     {"implicit_euler", kCrane, {"hydraulics.solver=implicit_euler"}},
     {"quasi_static", kCrane, {"hydraulics.quasi_static_above=2000"}},
     {"from_one_bar", kCrane, {kTable13}, {20, 100}},
+    {"oil_temperature",
+     kCrane,
+     {"hydraulics.oil_temperature=by_volume", "hydraulics.hot_viscosity=7 cSt", "Vol_Tank.rigid_volume=50 l"}},
     {"touching", kCrane, {kFloor}, {300, 60}, true},
     {"touching_augmented", kCrane, {kFloor, "mechanics.formulation=augmented"}, {300, 30}, true}};
 const std::vector<Way> kMoreCraneWays = {

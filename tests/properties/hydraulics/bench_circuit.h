@@ -5,6 +5,7 @@
 #include "hydraulics/components/accumulator.h"
 #include "hydraulics/components/check_valves.h"
 #include "hydraulics/components/compensated_orifice.h"
+#include "hydraulics/components/cooler.h"
 #include "hydraulics/components/counterbalance_valve.h"
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_rod_cylinder.h"
@@ -13,6 +14,7 @@
 #include "hydraulics/components/flow_divider.h"
 #include "hydraulics/components/flushing_valve.h"
 #include "hydraulics/components/four_way_valve.h"
+#include "hydraulics/components/heat_loss.h"
 #include "hydraulics/components/hose_burst_valve.h"
 #include "hydraulics/components/hydraulic_motor.h"
 #include "hydraulics/components/line.h"
@@ -119,7 +121,7 @@ inline void add_sources(HydraulicsDef& circuit) {
   pressure.nominal_flow = 1e-4;
 }
 
-// An engine with a pump of either kind, and filters with and without a bypass.
+// An engine with a pump of either kind, filters with and without a bypass, a cooler and a wall.
 inline void add_engine_and_filters(HydraulicsDef& circuit) {
   circuit.curves.push_back({.name = "Full_Load", .points = {{80, 200}, {150, 400}, {220, 300}}});
   PumpDef& pump = add<PumpDef>(circuit, "Engine_Pump");
@@ -137,6 +139,10 @@ inline void add_engine_and_filters(HydraulicsDef& circuit) {
   filter.nominal_pressure_drop = 5 * kBar, filter.bypass.nominal_flow = 5e-4;
   FilterDef& plain = add<FilterDef>(circuit, "Plain_Filter");
   plain.port_1 = "Vol_C", plain.port_2 = "Vol_T", plain.nominal_flow = 1e-5;
+  CoolerDef& cooler = add<CoolerDef>(circuit, "Cooler");
+  cooler.port_1 = "Vol_D", cooler.port_2 = "Vol_T", cooler.nominal_flow = 2e-5, cooler.conductance = 50;
+  HeatLossDef& wall = add<HeatLossDef>(circuit, "Wall");
+  wall.port_1 = "Vol_B", wall.conductance = 5;
 }
 
 // A section with flow sharing, priority valves with and without load sensing, a reducing valve with a signal.
@@ -218,9 +224,11 @@ inline HydraulicsDef bench_circuit() {
 }
 
 // Dividers of both types, a shuttle, an unloading valve, lines of laminar and of turbulent flow: a circuit of its own,
-// since a line has many states.
+// since a line has many states. Its oil is warm.
 inline HydraulicsDef divider_circuit() {
   HydraulicsDef circuit;
+  circuit.oil_temperature = OilTemperature::by_volume, circuit.hot_viscosity = 6.8e-6;
+  circuit.start_temperature = 350;
   for (const char* name : {"Vol_P", "Vol_A", "Vol_B", "Vol_C"}) add_volume(circuit, name).rigid_volume = 1e-3;
   add_tank(circuit, "Vol_T");
   FlowDividerDef& spool = add<FlowDividerDef>(circuit, "Divider");

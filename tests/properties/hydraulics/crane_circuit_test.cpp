@@ -359,5 +359,31 @@ TEST(CraneCircuit, one_thousand_steps_do_not_allocate) {
   EXPECT_EQ(guard.frees(), 0u);
 }
 
+TEST(OilTemperature, two_hundred_steps_of_every_component_do_not_allocate) {
+  for (const auto make : {bench_circuit, divider_circuit}) {
+    HydraulicsDef def = make();
+    def.oil_temperature = OilTemperature::by_volume, def.hot_viscosity = 6.8e-6;
+    def.start = StartState::table13, def.volumes[0].initial_pressure = 100e5;
+    Circuit circuit(def);
+    CircuitIntegrator integrator(circuit, def);
+    const std::vector<double> x(static_cast<std::size_t>(circuit.actuator_count()), 0.4), zero(x.size(), 0.0);
+    const HeldSpeed held(x.size());
+    integrator.start(x, zero, zero);
+    std::vector<double> values(circuit.variables().size());
+    integrator.step(kStep, held);
+    const std::vector<double> before(circuit.temperatures().begin(), circuit.temperatures().end());
+    const AllocationGuard guard;
+    for (int k = 0; k < 200; ++k) {
+      integrator.step(kStep, held);
+      circuit.read_variables(integrator.state().data(), values);
+      StateHash hash;
+      integrator.add_to(hash);
+    }
+    EXPECT_EQ(guard.allocations(), 0u);
+    EXPECT_EQ(guard.frees(), 0u);
+    EXPECT_FALSE(std::equal(before.begin(), before.end(), circuit.temperatures().begin()));
+  }
+}
+
 }  // namespace crane_circuit_test
 }  // namespace slew::hydraulics::test
