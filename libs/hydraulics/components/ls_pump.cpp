@@ -87,7 +87,7 @@ class LsPump final : public HydraulicComponent {
         b_(builder.volume(def.port_b)),
         ls_(def.ls_port.empty() ? -1 : builder.ls_index(def.ls_port)),
         alpha_(builder.add_state({.initial = 0, .scale = 1})),
-        drive_(def.drive, def.displacement, def.mechanical_coefficient, builder) {
+        drive_(def.drive, def.displacement, def.mechanical_coefficient, def.volumetric_coefficient, builder) {
     builder.mark_supply(a_);
     apply_parameters();
   }
@@ -110,10 +110,12 @@ class LsPump final : public HydraulicComponent {
     jacobian.add(alpha_, a_, -d_rise);
     jacobian.add(alpha_, b_, d_rise);
     if (ls_ >= 0) jacobian.add_ls(alpha_, ls_, d_command * set_point(view).slope);
-    jacobian.move(b_, a_, alpha_, full_flow(view));
-    jacobian.move(b_, a_, a_, -G_leak_);
-    jacobian.move(b_, a_, b_, G_leak_);
-    drive_.stamp(a_, b_, alpha_, view, per_speed_, jacobian);
+    const ValueSlope displaced = drive_.displaced(view[alpha_], view[a_] - view[b_]);
+    const double G = G_leak_ - full_flow(view) * view[alpha_] * displaced.slope;
+    jacobian.move(b_, a_, alpha_, full_flow(view) * displaced.value);
+    jacobian.move(b_, a_, a_, -G);
+    jacobian.move(b_, a_, b_, G);
+    drive_.stamp(a_, b_, alpha_, view, per_speed_ * displaced.value, jacobian);
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("swash", Dimension::none));
@@ -123,7 +125,7 @@ class LsPump final : public HydraulicComponent {
     variables.push_back(variable("power", Dimension::power));
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
-    const double torque = def_.displacement * view[alpha_] * (view[a_] - view[b_]) / def_.mechanical_coefficient;
+    const double torque = drive_.torque(view[alpha_], view[a_] - view[b_]);
     *values++ = view[alpha_];
     *values++ = flow(view);
     *values++ = set_point(view).value;
@@ -164,7 +166,8 @@ class LsPump final : public HydraulicComponent {
     return {least.value, least.slope * u.slope, -(1 - least.slope) * limit / rise};
   }
   [[nodiscard]] double flow(const CircuitView& view) const noexcept {
-    return full_flow(view) * view[alpha_] - G_leak_ * (view[a_] - view[b_]);
+    const double p = view[a_] - view[b_];
+    return full_flow(view) * view[alpha_] * drive_.displaced(view[alpha_], p).value - G_leak_ * p;
   }
   [[nodiscard]] double full_flow(const CircuitView& view) const noexcept {
     return drive_.has_engine() ? per_speed_ * drive_.speed(view, 0) : full_flow_;

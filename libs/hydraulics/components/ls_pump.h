@@ -7,6 +7,7 @@
 //   alpha_T = eta_m maximum_torque / (V_rad (p_A - p_B))                      torque limiter, 0: none
 //   Q_A = V_rad omega alpha eta_v - G (p_A - p_B),  Q_B = -Q_A                into the volumes
 //   torque = V_rad alpha (p_A - p_B) / eta_m,  power = torque omega
+// for p_A > p_B; a pump that the tank's oil drives divides by eta_v and multiplies by eta_m (pump_drive.h).
 // Steady droop: a flow Q lowers the outlet by alpha / K = Q / (V_rad omega eta_v K) below p_set.
 //
 // Source: the flexible-body tutorial thesis (Saimaa UAS 2017), table 21. Deviations: its controller gain 3.5e-5 is read

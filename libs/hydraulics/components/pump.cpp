@@ -109,7 +109,7 @@ class Pump final : public HydraulicComponent {
         case_(def.port_c.empty() ? -1 : builder.volume(def.port_c)),
         control_(builder.add_control(def.name, SignalMoves::a_state)),
         alpha_(builder.add_state({.initial = def.swash, .scale = 1})),
-        drive_(def.drive, def.displacement, def.mechanical_coefficient, builder) {
+        drive_(def.drive, def.displacement, def.mechanical_coefficient, def.volumetric_coefficient, builder) {
     builder.mark_supply(a_);
     apply_parameters();
   }
@@ -137,10 +137,12 @@ class Pump final : public HydraulicComponent {
     jacobian.add(alpha_, alpha_, -rate);
     jacobian.add(alpha_, a_, d_rise);
     jacobian.add(alpha_, b_, -d_rise);
-    jacobian.move(b_, a_, alpha_, per_speed_ * speed(view));
-    jacobian.move(b_, a_, a_, -G_leak_);
-    jacobian.move(b_, a_, b_, G_leak_);
-    drive_.stamp(a_, b_, alpha_, view, per_speed_, jacobian);
+    const ValueSlope displaced = drive_.displaced(view[alpha_], rise(view));
+    const double G = G_leak_ - per_speed_ * speed(view) * view[alpha_] * displaced.slope;
+    jacobian.move(b_, a_, alpha_, per_speed_ * speed(view) * displaced.value);
+    jacobian.move(b_, a_, a_, -G);
+    jacobian.move(b_, a_, b_, G);
+    drive_.stamp(a_, b_, alpha_, view, per_speed_ * displaced.value, jacobian);
     drive_.stamp_speed(alpha_, rate * least.over_speed, jacobian);
     if (case_ < 0) return;
     for (const StateIndex port : {a_, b_}) {
@@ -220,7 +222,8 @@ class Pump final : public HydraulicComponent {
   }
   // (1)
   [[nodiscard]] double flow(const CircuitView& view) const noexcept {
-    return per_speed_ * speed(view) * view[alpha_] - G_leak_ * rise(view);
+    const double p = rise(view), displaced = drive_.displaced(view[alpha_], p).value;
+    return per_speed_ * speed(view) * view[alpha_] * displaced - G_leak_ * p;
   }
 
   PumpDef def_;

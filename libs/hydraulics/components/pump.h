@@ -14,7 +14,7 @@
 //
 // A pump over centre (minimum_swash < 0) delivers out of port b at a negative swash. Its limits then hold for both
 // directions of delivery: (2) bounds -alpha by (4) and (5) at the rise p_b - p_a as well. Oil that drives it gives
-// the torque alpha D (p_a - p_b) eta_m back to the drive.
+// the torque alpha D (p_a - p_b) eta_m back to the drive, and its flow is alpha D n / eta_v (pump_drive.h).
 //
 // Source: Merritt 1967, section 4.2, for flow and torque; the limits are those of pump regulators in practice. Not
 // covered: ripple, losses that follow pressure or speed, force of the swash plate's drive.

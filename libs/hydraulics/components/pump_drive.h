@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shaft that turns a pump: at a given speed, or of an engine (engine.h) through a ratio.
 //
-//   n = r w,   load of the engine r T,   T = alpha D p / eta_m (alpha p > 0),  alpha D p eta_m (alpha p < 0)
-// n speed of the pump, w of the engine, r speed_ratio, alpha swash, p pressure rise.
+//   n = r w,   load of the engine r T,   T = alpha D p / eta_m (alpha p > 0),  alpha D p eta_m (alpha p < 0)       (1)
+//   Q = alpha D n eta_v^s,   s = x (15 - 10 x^2 + 3 x^4)/8,   x = clip(alpha p/(|alpha| p_w), -1, 1)             (2)
+// n speed of the pump, w of the engine, r speed_ratio, alpha swash, p pressure rise, p_w = 2 bar. (2) is alpha D n
+// eta_v for a pump and alpha D n / eta_v for one that its oil drives, which takes more oil than its displacement;
+// smooth between them, and without a loss at p = 0. With (1) the oil and the shaft never give more than they take.
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "hydraulics/circuit_builder.h"
@@ -21,8 +25,8 @@ class PumpDrive {
  public:
   // displacement: D [m3/rad]
   PumpDrive(const PumpDriveParameters& def, double displacement, double mechanical_coefficient,
-            const CircuitBuilder& builder)
-      : D_(displacement), efficiency_(mechanical_coefficient) {
+            double volumetric_coefficient, const CircuitBuilder& builder)
+      : D_(displacement), efficiency_(mechanical_coefficient), log_volumetric_(std::log(volumetric_coefficient)) {
     if (def.engine.empty()) return;
     const EngineShaft& shaft = builder.shaft(def.engine);
     shaft_ = shaft.speed;
@@ -48,6 +52,16 @@ class PumpDrive {
   }
   // T [Nm]
   [[nodiscard]] double torque(double alpha, double p) const noexcept { return alpha * D_ * p * factor(alpha, p); }
+  // Flow (2) over that of a pump, alpha D n eta_v; slope over the pressure rise p.
+  [[nodiscard]] ValueSlope displaced(double alpha, double p) const noexcept {
+    constexpr double kWidth = 2e5;  // Pa, p_w
+    const double x = (alpha < 0 ? -p : p) / kWidth;
+    if (x >= 1 || log_volumetric_ == 0) return {1, 0};
+    if (x <= -1) return {std::exp(-2 * log_volumetric_), 0};
+    const double y = x * x, s = x * (15 + y * (3 * y - 10)) / 8, d_s = 15 * (1 - y) * (1 - y) / 8;
+    const double value = std::exp((s - 1) * log_volumetric_);
+    return {value, value * log_volumetric_ * d_s / (alpha < 0 ? -kWidth : kWidth)};
+  }
   // a, b, alpha: outlet, inlet and state of the swash, full_slope: flow per speed at full swash [m3/rad]
   void stamp(StateIndex a, StateIndex b, StateIndex alpha, const CircuitView& view, double full_slope,
              JacobianStamp& jacobian) const noexcept {
@@ -69,7 +83,7 @@ class PumpDrive {
     return (alpha < 0 ? p < 0 : p > 0) ? 1 / efficiency_ : efficiency_;
   }
 
-  double D_, efficiency_;
+  double D_, efficiency_, log_volumetric_;
   StateIndex shaft_ = -1;
   double speed_per_state_ = 0;  // rad/s
   double rate_per_torque_ = 0;  // 1/(N m s)

@@ -109,6 +109,7 @@ inline void add_sources(HydraulicsDef& circuit) {
   PumpDef& over_centre = add<PumpDef>(circuit, "Over_Centre");
   over_centre.port_a = "Vol_C", over_centre.port_b = "Vol_D", over_centre.port_c = "Vol_T", over_centre.speed = 157;
   over_centre.displacement = 8e-6, over_centre.case_leak_flow = kLeak, over_centre.mechanical_coefficient = 0.9;
+  over_centre.volumetric_coefficient = 0.9;
   over_centre.minimum_swash = -1, over_centre.swash = -0.7, over_centre.swash_per_signal = 1e-3;
   over_centre.maximum_pressure = 190 * kBar, over_centre.maximum_power = 10e3;
   FlowSourceDef& flow = add<FlowSourceDef>(circuit, "Flow_Source");
@@ -130,6 +131,7 @@ inline void add_engine_and_filters(HydraulicsDef& circuit) {
   LsPumpDef& ls_pump = add<LsPumpDef>(circuit, "Engine_Ls_Pump");
   ls_pump.port_a = "Vol_C", ls_pump.port_b = "Vol_T", ls_pump.displacement = 5e-6, ls_pump.drive = {"Engine", 0.8};
   ls_pump.standby_pressure = 150 * kBar, ls_pump.mechanical_coefficient = 0.9, ls_pump.maximum_torque = 50;
+  ls_pump.volumetric_coefficient = 0.8, pump.volumetric_coefficient = 0.7;
   FilterDef& filter = add<FilterDef>(circuit, "Filter");
   filter.port_1 = "Vol_A", filter.port_2 = "Vol_C", filter.nominal_flow = 1e-4, filter.clogging = 0.5;
   filter.nominal_pressure_drop = 5 * kBar, filter.bypass.nominal_flow = 5e-4;

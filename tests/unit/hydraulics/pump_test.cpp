@@ -161,6 +161,32 @@ TEST(Pump, oil_that_drives_it_gives_its_torque_less_the_losses) {
   EXPECT_NEAR(rig.variable("Pump.torque"), -0.8 * 1e-5 * 200e5 * 0.9, 1e-6);
 }
 
+// Oil and shaft exchange power with a loss in all four quadrants: alpha and the rise p of either sign. As a pump Q = D
+// n alpha eta_v and T = D alpha p / eta_m; driven by its oil Q = D n alpha / eta_v and T = D alpha p eta_m.
+TEST(Pump, loses_power_in_every_quadrant) {
+  constexpr double kEta_m = 0.96, kEta_v = 0.9, kFlow = 1.5e-3;
+  for (const double swash : {0.8, -0.8}) {
+    for (const double bar : {-200.0, -20.0, -2.0, -1.9, -0.5, -0.01, 0.0, 0.01, 0.5, 1.9, 2.0, 20.0, 200.0}) {
+      CircuitRig rig;
+      const double p = bar * kBar;
+      add_tank(rig.def, "A", 201 * kBar + std::min(p, 0.0)), add_tank(rig.def, "B", 201 * kBar - std::max(p, 0.0));
+      PumpDef& pump = add<PumpDef>(rig.def, "Pump");
+      pump.port_a = "A", pump.port_b = "B", pump.speed = 150, pump.displacement = 1e-5, pump.minimum_swash = -1;
+      pump.swash = swash, pump.mechanical_coefficient = kEta_m, pump.volumetric_coefficient = kEta_v;
+      rig.run(0.01);
+      const double flow = rig.variable("Pump.flow"), power = rig.variable("Pump.power"), oil = flow * p;
+      EXPECT_GE(power - oil, 0) << swash << " " << bar;
+      EXPECT_GE(std::fabs(flow), 0.8 * kFlow * kEta_v * (1 - 1e-12));
+      EXPECT_LE(std::fabs(flow), 0.8 * kFlow / kEta_v * (1 + 1e-12));
+      if (bar == 0) EXPECT_NEAR(flow, swash * kFlow, 1e-12);
+      if (std::fabs(bar) < 2) continue;
+      const bool is_driven = swash * bar < 0;
+      EXPECT_NEAR(flow, swash * kFlow * (is_driven ? 1 / kEta_v : kEta_v), 1e-12) << swash << " " << bar;
+      EXPECT_NEAR(power, swash * kFlow * p * (is_driven ? kEta_m : 1 / kEta_m), 1e-6) << swash << " " << bar;
+    }
+  }
+}
+
 TEST(Pump, leaks_into_its_case_from_both_ports) {
   CircuitRig rig;
   add_tank(rig.def, "High", 201 * kBar), add_tank(rig.def, "Low", 21 * kBar), add_tank(rig.def, "Case", 1 * kBar);
@@ -205,6 +231,19 @@ TEST(LsPump, its_torque_limiter_holds_the_torque_at_every_pressure) {
     rig.run(2);
     EXPECT_NEAR(rig.variable("Pump.swash"), 1, 2e-3) << pressure;
   }
+}
+
+// a tank under pressure drives the pump: the published torque is the one that an engine receives
+TEST(LsPump, oil_that_drives_it_gives_its_torque_less_the_losses) {
+  CircuitRig rig;
+  add_tank(rig.def, "Line", 1 * kBar), add_tank(rig.def, "Tank", 21 * kBar);
+  LsPumpDef& pump = add<LsPumpDef>(rig.def, "Pump");
+  pump.port_a = "Line", pump.port_b = "Tank", pump.speed = 150, pump.displacement = 1e-5;
+  pump.mechanical_coefficient = 0.9, pump.volumetric_coefficient = 0.95;
+  rig.run(2);
+  EXPECT_NEAR(rig.variable("Pump.swash"), 1, 1e-6);
+  EXPECT_NEAR(rig.variable("Pump.torque"), -1e-5 * 20e5 * 0.9, 1e-6);
+  EXPECT_NEAR(rig.variable("Pump.flow"), 1.5e-3 / 0.95, 1e-10);
 }
 
 }  // namespace pump_test
