@@ -13,6 +13,7 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
 
