@@ -155,8 +155,8 @@ void HydraulicsSubsystem::take_mechanism(StepIndex n, const coupling::MechanismS
   if (!is_free_running_) return;
   late_samples_.keep_pistons(n, *circuit_, *integrator_);
   const double late = static_cast<double>(age) * H_.seconds();
-  if (age > 0 && coupling::coupling_frequency(mechanism.W, published_.K, late, published_.K_cross) >
-                     coupling::kDegradedAbove) {
+  if (age > 0 &&
+      coupling::coupling_frequency(mechanism.W, published_.K, late, published_.K_cross) > coupling::kDegradedAbove) {
     report.raise(StepFlag::late_input);
   }
 }

@@ -31,8 +31,8 @@ SharedVolumes::SharedVolumes(const hydraulics::Circuit& circuit) {
   }
 }
 
-void SharedVolumes::write(const hydraulics::CircuitIntegrator& integrator, const hydraulics::Circuit& circuit,
-                          double H, const coupling::PortArray& lambda, coupling::PortMatrix& K_cross) const noexcept {
+void SharedVolumes::write(const hydraulics::CircuitIntegrator& integrator, const hydraulics::Circuit& circuit, double H,
+                          const coupling::PortArray& lambda, coupling::PortMatrix& K_cross) const noexcept {
   const std::size_t m = lambda.size();
   const double* const y = integrator.state().data();
   K_cross.resize(m * m);

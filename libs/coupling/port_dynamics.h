@@ -6,11 +6,12 @@
 //   x' = v,   v' = a_free + a_free' t + W f                                                        (1)
 // and each row's force f = f(z, x, v, t) follows the row's own law, where z is the partner's pressure force with
 //   z' = F_dot - K (v - v_ref) - lambda (z - F_n)                                                  (2)
-// (K = lambda = F_dot = 0 for rows without partner; K is a matrix over coupled rows). (1), (2) are integrated with micro-steps of the L-stable,
-// stiffly accurate two-stage SDIRK method (Alexander 1977, gamma = 1 - 1/sqrt(2), order 2); each stage is a Newton
-// iteration on the m speeds; where a law jumps, as a stop's damping does when it is touched, and no speed fits, the
-// force is the one between its two sides that holds the speed at the jump. Friction slopes of 4e4 1/s and end stops are
-// thus inside the implicit solve, while the mechanism itself sees only the mean and the slope in time of f.
+// (K = lambda = F_dot = 0 for rows without partner; K is a matrix over coupled rows). (1), (2) are integrated with
+// micro-steps of the L-stable, stiffly accurate two-stage SDIRK method (Alexander 1977, gamma = 1 - 1/sqrt(2), order
+// 2); each stage is a Newton iteration on the m speeds; where a law jumps, as a stop's damping does when it is touched,
+// and no speed fits, the force is the one between its two sides that holds the speed at the jump. Friction slopes of
+// 4e4 1/s and end stops are thus inside the implicit solve, while the mechanism itself sees only the mean and the slope
+// in time of f.
 //
 // The second stage extrapolates the first one's acceleration by a factor of 2.4: behind a stop that only pushes, this
 // would release a row that was just stopped at up to 1.4 times its speed. A micro-step in which a stop begins or ends
@@ -97,8 +98,8 @@ class PortDynamics {
   std::span<double> a_free_rate() noexcept { return {a_free_rate_.data(), rows_}; }  // over the sub-step
   std::span<double> W() noexcept { return {W_.data(), rows_ * rows_}; }              // row-major
   std::span<RowPartner> partner() noexcept { return {partner_.data(), rows_}; }
-  // The K of (2) between rows, row-major with a zero diagonal [N/m], all zero at first; rows are coupled by it until the
-  // next set_rows().
+  // The K of (2) between rows, row-major with a zero diagonal [N/m], all zero at first; rows are coupled by it until
+  // the next set_rows().
   std::span<double> couple() noexcept;
 
   // Integrates over h in `micro_steps` equal steps.

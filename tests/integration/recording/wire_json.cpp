@@ -126,14 +126,14 @@ json to_json(const wire::MechanismMessage& m) {
 
 json to_json(const wire::ActuatorMessage& m) {
   const coupling::ActuatorSample& s = m.sample;
-  const json sample = {{"F", list_of(s.F)},         {"F_dot", list_of(s.F_dot)},
-                       {"K", list_of(s.K)},         {"lambda", list_of(s.lambda)},
-                       {"D", list_of(s.D)},         {"x_ref", list_of(s.x_ref)},
-                       {"v_ref", list_of(s.v_ref)}, {"friction_scale", list_of(s.friction_scale)},
-                       {"work", list_of(s.work)},   {"impulse", list_of(s.impulse)},
-                       {"p_A", list_of(s.p_A)},     {"p_B", list_of(s.p_B)},
-                       {"Q_A", list_of(s.Q_A)},     {"Q_B", list_of(s.Q_B)},
-                       {"flags", value_of(s.flags)},   {"K_cross", list_of(s.K_cross)}};
+  const json sample = {{"F", list_of(s.F)},          {"F_dot", list_of(s.F_dot)},
+                       {"K", list_of(s.K)},          {"lambda", list_of(s.lambda)},
+                       {"D", list_of(s.D)},          {"x_ref", list_of(s.x_ref)},
+                       {"v_ref", list_of(s.v_ref)},  {"friction_scale", list_of(s.friction_scale)},
+                       {"work", list_of(s.work)},    {"impulse", list_of(s.impulse)},
+                       {"p_A", list_of(s.p_A)},      {"p_B", list_of(s.p_B)},
+                       {"Q_A", list_of(s.Q_A)},      {"Q_B", list_of(s.Q_B)},
+                       {"flags", value_of(s.flags)}, {"K_cross", list_of(s.K_cross)}};
   return {{"header", header_of(m.header)}, {"state", state_of(m.state)}, {"sample", sample}};
 }
 
