@@ -183,9 +183,40 @@ class StartPlacement {
     }
   }
 
-  // The tree with the named coordinates at these values and all others as they are.
+  // Change of the first coordinate of each joint by these values of the named ones, also of slides that gears with an
+  // offset move. Without it a gear fits the poses, and its other joint stays; angles, which have turns, are left to the
+  // gear's row.
+  [[nodiscard]] std::vector<double> changes_of_joints(const std::vector<Pose>& poses,
+                                                      const std::vector<double>& values) const {
+    std::vector<double> change(def_.joints.size());
+    std::vector<char> is_set(def_.joints.size());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (coordinates_[k].number != 0) continue;
+      const JointDef& joint = joint_named(def_, coordinates_[k].joint);
+      const double gap = values[k] - coordinates_of(joint, poses)[0];
+      const std::size_t index = at(index_of(joint.name));
+      change[index] = is_angle(joint.type, 0) ? std::remainder(gap, kTurn) : gap;
+      is_set[index] = 1;
+    }
+    // a gear behind another one is reached in a later round
+    for (std::size_t round = 0; round < def_.gears.size(); ++round) {
+      for (const GearDef& gear : def_.gears) {
+        const std::size_t first = at(index_of(gear.joint1)), second = at(index_of(gear.joint2));
+        if (!is_given(gear.offset) || gear.ratio == 0 || is_set[first] == is_set[second]) continue;
+        const std::size_t follower = is_set[first] != 0 ? second : first;
+        if (is_angle(def_.joints[follower].type, 0)) continue;
+        change[follower] = follower == second ? gear.ratio * change[first] : change[second] / gear.ratio;
+        is_set[follower] = 1;
+      }
+    }
+    return change;
+  }
+
+  // The tree with the named coordinates at these values, slides geared to them moved along, all others as they are.
+  // What loops and gears then still lack is closed in the metric of the masses, where a load behind a hinge swings.
   [[nodiscard]] std::vector<Pose> moved(const std::vector<Pose>& poses, const std::vector<double>& values) const {
     std::vector<Pose> result = poses;
+    const std::vector<double> changes = changes_of_joints(poses, values);
     for (const TreeEdge& edge : tree_) {
       const Pose& parent = result[at(edge.parent)];
       Pose& child = result[at(edge.child)];
@@ -193,13 +224,14 @@ class StartPlacement {
       if (edge.joint == kNoJoint) continue;
       const JointDef& joint = def_.joints[at(edge.joint)];
       std::array<double, 2> q = coordinates_of(joint, poses);
-      bool is_named = false;
+      bool is_moved = changes[at(edge.joint)] != 0;
+      q[0] += changes[at(edge.joint)];
       for (std::size_t k = 0; k < values.size(); ++k) {
         if (coordinates_[k].joint != joint.name) continue;
         q[at(coordinates_[k].number)] = values[k];
-        is_named = true;
+        is_moved = true;
       }
-      if (!is_named) continue;
+      if (!is_moved) continue;
       const Pose frame1{math::rotation_xyz(joint.orientation1), Vec3(joint.point1)};
       const Pose frame2{math::rotation_xyz(joint.orientation2), Vec3(joint.point2)};
       const Pose between = frame_at(joint.type, Pose(), q);

@@ -148,5 +148,39 @@ TEST(Gears, StartBeyondHalfATurnInEveryFormulation) {
   }
 }
 
+// a telescope whose chain moves the second stage: a load of ten times its mass behind a hinge goes along and hangs
+TEST(Gears, StartMovesTheGearedStageAndLeavesTheHingeBehindIt) {
+  constexpr Triple kAlongX = {0, M_PI / 2, 0};
+  MechanicsDef def;
+  def.bodies = {{.name = "Stage_1", .mass = 80, .inertia = {5, 5, 5}},
+                {.name = "Stage_2", .mass = 50, .inertia = {3, 3, 3}},
+                {.name = "Load", .mass = 500, .center_of_mass = {0, -1, 0}, .inertia = {5, 5, 5}}};
+  def.joints = {{.name = "Slide_1",
+                 .type = JointType::prismatic,
+                 .orientation1 = kAlongX,
+                 .body2 = "Stage_1",
+                 .orientation2 = kAlongX},
+                {.name = "Slide_2",
+                 .type = JointType::prismatic,
+                 .body1 = "Stage_1",
+                 .orientation1 = kAlongX,
+                 .body2 = "Stage_2",
+                 .orientation2 = kAlongX},
+                {.name = "Hang", .body1 = "Stage_2", .body2 = "Load"}};
+  def.gears = {
+      {.name = "Chain", .kind = GearKind::slides, .joint1 = "Slide_1", .joint2 = "Slide_2", .ratio = 2, .offset = 0.5}};
+  def.bodies[1].position = {0.5, 0, 0};
+  def.bodies[2].position = {0.5, 0, 0};
+  for (const StartCoordinate& named : {StartCoordinate{"Slide_1", 0, 1}, StartCoordinate{"Slide_2", 0, 2.5}}) {
+    MechanicsDef put = def;
+    Problems problems;
+    put_joints(put, std::vector<StartCoordinate>{named}, problems);
+    ASSERT_TRUE(problems.empty());
+    EXPECT_NEAR(put.bodies[0].position[0], 1, 1e-9) << named.joint;
+    EXPECT_NEAR(put.bodies[2].position[0], 3.5, 1e-9) << named.joint;
+    for (const double angle : put.bodies[2].orientation) EXPECT_NEAR(angle, 0, 1e-9) << named.joint;
+  }
+}
+
 }  // namespace gears_test
 }  // namespace slew::multibody
