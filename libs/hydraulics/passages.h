@@ -31,10 +31,10 @@ class Passages {
   [[nodiscard]] double temperature(StateIndex volume) const noexcept { return T_[at(volume)]; }
   [[nodiscard]] double rho_c() const noexcept { return rho_c_; }
 
-  // (1); a negative flow runs back.
-  void move(StateIndex from, StateIndex to, double Q) noexcept {
-    if (Q < 0) return move(to, from, -Q);
-    deliver(to, Q, temperature(from), Q * (view_[from] - view_[to]));
+  // (1), with the power of a shaft [W]; a negative flow runs back.
+  void move(StateIndex from, StateIndex to, double Q, double power = 0) noexcept {
+    if (Q < 0) return move(to, from, -Q, power);
+    deliver(to, Q, temperature(from), Q * (view_[from] - view_[to]) + power);
   }
   // Q >= 0 of the temperature T enters a volume, with heat [W].
   void deliver(StateIndex to, double Q, double T, double heat) noexcept {

@@ -12,6 +12,7 @@
 #include "hydraulics/components/displacement_servo.h"
 #include "hydraulics/components/shared_fields.h"
 #include "hydraulics/oil_properties.h"
+#include "hydraulics/passages.h"
 
 namespace slew::hydraulics {
 namespace {
@@ -254,6 +255,12 @@ class HydraulicMotor final : public HydraulicComponent {
   // the shaft takes the work of the pressures
   [[nodiscard]] double shaft_power(const CircuitView& view) const noexcept override {
     return -(view[a_] - view[b_]) * displacement(view) * view[v_];
+  }
+  // what leaks to the case does not mix with the oil that goes through
+  void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
+    passages.move(a_, b_, displacement(view) * view[v_] + leak(view), shaft_power(view));
+    if (case_ < 0) return;
+    for (const StateIndex port : {a_, b_}) passages.move(port, case_, case_leak(view, port));
   }
   void follow_oil(const PortOil& oil) noexcept override {
     fluidity_ = oil.fluidity(a_, b_);

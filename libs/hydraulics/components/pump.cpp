@@ -11,6 +11,7 @@
 #include "hydraulics/components/displacement_servo.h"
 #include "hydraulics/components/shared_fields.h"
 #include "hydraulics/oil_properties.h"
+#include "hydraulics/passages.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
@@ -166,6 +167,12 @@ class Pump final : public HydraulicComponent {
     *values++ = torque * speed(view);
     if (case_ >= 0) *values++ = G_case_ * (view[a_] + view[b_] - 2 * view[case_]);
     return values;
+  }
+  // what leaks to the case does not mix with the delivered oil
+  void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
+    passages.move(b_, a_, flow(view), shaft_power(view));
+    if (case_ < 0) return;
+    for (const StateIndex port : {a_, b_}) passages.move(port, case_, G_case_ * (view[port] - view[case_]));
   }
   void follow_oil(const PortOil& oil) noexcept override {
     fluidity_ = oil.fluidity(a_, b_);

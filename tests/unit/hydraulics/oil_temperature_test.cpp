@@ -166,7 +166,9 @@ TEST(OilTemperature, the_heat_of_a_circuit_is_the_work_that_its_components_lose)
   for (int trial = 0; trial < 300; ++trial) {
     for (std::size_t i = 0; i < n; ++i) y[i] = i < volumes ? 1e5 + 3e7 * unit(random) : unit(random);
     for (int j = 0; j < circuit.actuator_count(); ++j) {
-      y[static_cast<std::size_t>(circuit.speed(j))] = 0.4 * (unit(random) - 0.5);
+      // m/s, or rad/s of motors, which have no ends
+      const bool is_motor = std::isinf(circuit.actuators()[static_cast<std::size_t>(j)].line_force.maximum_stroke);
+      y[static_cast<std::size_t>(circuit.speed(j))] = (is_motor ? 400 : 0.4) * (unit(random) - 0.5);
     }
     for (std::size_t i = 0; i < volumes; ++i) {
       if (circuit.is_fixed(static_cast<int>(i))) y[i] = 1e5;

@@ -93,6 +93,26 @@ TEST(ValidationOilTemperature, a_pass_over_an_orifice_heats_the_oil_by_the_drop)
   }
 }
 
+// Oil that leaks from a pump's outlet to its case is warmer there by the drop between them; that of the outlet is not.
+TEST(ValidationOilTemperature, the_oil_of_a_case_drain_has_the_heat_of_the_leak) {
+  HydraulicsDef def = warm_circuit();
+  add_volume(def, "P", 150e5).rigid_volume = 1e-4;
+  add_volume(def, "C", 1e5).rigid_volume = 1e-5;
+  add_tank(def, "T", 1e5);
+  PumpDef& pump = add_pump(def, "P", "T", 5e-4);
+  pump.port_c = "C", pump.case_leak_flow = 2e-5;
+  OrificeDef& orifice = add<OrificeDef>(def, "Orifice");
+  orifice.port_1 = "P", orifice.port_2 = "T", orifice.diameter = 2e-3;
+  BleedDef& drain = add<BleedDef>(def, "Drain");
+  drain.port_1 = "C", drain.port_2 = "T", drain.nominal_flow = 1e-3, drain.nominal_pressure_drop = 1e5;
+  Rig run(def);
+  for (int k = 0; k < 6000; ++k) run.step(1e-3);
+  const double p_P = run["P.pressure"], p_C = run["C.pressure"];
+  EXPECT_NEAR(run["P.temperature"], kStart, 1e-6 * kStart);
+  EXPECT_GT(p_P - p_C, 50e5);
+  EXPECT_NEAR(run["C.temperature"], kStart + (p_P - p_C) / (kRho * kC), 1e-5 * kStart);
+}
+
 // A closed loop of a pump, a relief that keeps the power, and a tank of 10 l with heat loss: T goes to T_s + P/G with
 // tau = rho c V/G. Tolerance 0.2 % of the rise: the oil outside of the tank follows it, and H/tau.
 TEST(ValidationOilTemperature, a_closed_loop_heats_up_exponentially) {
