@@ -122,7 +122,8 @@ void try_claim(fuzz::Choices& choices) {
   J1939Claim claim(def);
   const std::uint64_t name = claim.name();
   std::vector<CanFrame> frames;
-  std::int64_t now_ns = kMs, sent_ns = 0;
+  std::int64_t now_ns = kMs, sent_ns = 0;  // sent: the first claim of the present address
+  std::uint8_t claimed = kJ1939NullAddress;
   const auto check = [&] {
     for (const CanFrame& frame : frames) {
       const J1939Id id = split_j1939(frame.id);
@@ -132,6 +133,9 @@ void try_claim(fuzz::Choices& choices) {
       fuzz::require(frame.size == 8 && sent == name);
       fuzz::require(id.source == kJ1939NullAddress || id.source == def.address ||
                     (def.has_arbitrary_address && id.source >= 128 && id.source <= 247));
+      if (id.source == claimed || id.source == kJ1939NullAddress) continue;
+      claimed = id.source;
+      sent_ns = now_ns;
     }
     const bool has_address = claim.address() != kJ1939NullAddress;
     fuzz::require(has_address == (claim.phase() == ClaimPhase::claimed));
@@ -139,7 +143,6 @@ void try_claim(fuzz::Choices& choices) {
     frames.clear();
   };
   claim.connect(now_ns, frames);
-  sent_ns = now_ns;
   check();
   for (int i = 0; i < kMostSteps && choices.has_more(); ++i) {
     if (choices.below(3) == 0) now_ns += static_cast<std::int64_t>(choices.byte()) * kMs;
@@ -150,7 +153,6 @@ void try_claim(fuzz::Choices& choices) {
       frame.id = (frame.id & 0x1FFFFF00U) | claim.address();
     claim.take(frame, now_ns, frames);
     fuzz::require(frames.size() <= 1);
-    if (claim.phase() == ClaimPhase::claiming && !frames.empty()) sent_ns = now_ns;
     claim.advance(now_ns, frames);
     fuzz::require(frames.size() <= 2);
     // a lost claim never returns by itself

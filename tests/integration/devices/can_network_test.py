@@ -120,10 +120,9 @@ class Session:
 
 def case_canopen(folder, domain):
     try:
-        import can  # noqa: F401
         import canopen
     except ImportError as error:
-        skip(f"python3 has no canopen: {error}")
+        skip(f"python3 cannot import canopen: {error}")
     session = Session(folder, domain, CANOPEN)
     network = canopen.Network()
     try:
