@@ -2,7 +2,7 @@
 // The doors of the bridge from LCM into a session: inputs with their leases, and live parameters.
 // Any messages, leases, replies and times: each message is used once or refused by cause; a value reaches the session
 // only with a lease that was granted in this epoch; a request is sent into the session at most four times a second and
-// given up after 3 s, is answered towards LCM whenever it is asked, and changes nothing unless it is finite.
+// given up after 3 s, is answered towards LCM once for each message, and changes nothing unless it is finite.
 #include <cmath>
 #include <cstdint>
 #include <map>

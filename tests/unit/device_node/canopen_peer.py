@@ -13,7 +13,7 @@ except ImportError as error:
     print(f"python3 cannot import canopen: {error}")
     sys.exit(77)
 
-DEADLINE = 60  # s
+DEADLINE = 240  # s
 network = canopen.Network()
 network.connect(interface="socketcan", channel=sys.argv[1])
 for _ in range(2):
