@@ -16,8 +16,9 @@ std::size_t index_of(const Defs& defs, const std::string& name) {
 
 }  // namespace
 
-SignalFeed::SignalFeed(const std::vector<FedSignal>& signals, const scene::OutputsDef& outputs, double every, Show show)
-    : every_(every), show_(std::move(show)), shown_(signals.size()) {
+SignalFeed::SignalFeed(const std::vector<FedSignal>& signals, const scene::OutputsDef& outputs, double every, Show show,
+                       Change change)
+    : every_(every), show_(std::move(show)), change_(std::move(change)), shown_(signals.size()) {
   for (const FedSignal& signal : signals) sources_.push_back(source_of(signal, outputs));
   values_ = observer::StepValues(variables_.size());
 }
@@ -76,8 +77,10 @@ void SignalFeed::take(const wire::VariableBlock& block, double time) {
 }
 
 void SignalFeed::step_outputs(const std::vector<double>& values, double dt) {
-  for (Switched& output : switched_)
-    static_cast<void>(step(output.def.output, values[output.variable], dt, output.state));
+  for (Switched& output : switched_) {
+    if (step(output.def.output, values[output.variable], dt, output.state) && change_)
+      change_(output.def, output.state.is_on);
+  }
   for (Analog& output : analog_) static_cast<void>(step(output.def.output, values[output.variable], dt, output.state));
 }
 

@@ -34,8 +34,11 @@ struct FedValues {
 class SignalFeed {
  public:
   using Show = std::function<void(const FedValues&)>;
+  // A switched output has gone on or off in the step of the newest block; pulses are no changes.
+  using Change = std::function<void(const scene::SwitchedDef& output, bool is_on)>;
 
-  SignalFeed(const std::vector<FedSignal>& signals, const scene::OutputsDef& outputs, double every, Show show);
+  SignalFeed(const std::vector<FedSignal>& signals, const scene::OutputsDef& outputs, double every, Show show,
+             Change change = nullptr);
 
   // Names of the variables that it needs.
   [[nodiscard]] const std::vector<std::string>& variables() const noexcept { return variables_; }
@@ -70,6 +73,7 @@ class SignalFeed {
 
   double every_;
   Show show_;
+  Change change_;  // may be empty
   std::vector<std::string> variables_;
   std::vector<Source> sources_;  // by signal
   std::vector<Switched> switched_;

@@ -101,7 +101,7 @@ std::string_view text_of(NmtState state) noexcept {
 std::string text_of(const CanOpenEvent& event) {
   switch (event.kind) {
     case CanOpenEvent::Kind::booted:
-      return fmt::format("node {} has started anew: its values from before are void", event.node);
+      return fmt::format("node {} has restarted: its values from before are void", event.node);
     case CanOpenEvent::Kind::missing:
       return fmt::format(
           "node {} is missing: its heartbeat did not come in time; its values do not count until it is "
@@ -152,7 +152,7 @@ void CanOpenNetwork::connect(std::int64_t now_ns, std::vector<CanFrame>& frames)
   start_nodes(now_ns, frames);
 }
 
-// A node that is absent is not asked again: its boot-up or its first heartbeat comes by itself.
+// The start of an absent node is not repeated: its boot-up or its first heartbeat comes by itself.
 void CanOpenNetwork::start_nodes(std::int64_t now_ns, std::vector<CanFrame>& frames) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     CanOpenNode& node = nodes_[i];

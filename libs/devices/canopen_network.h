@@ -5,7 +5,7 @@
 // (re)started:
 //   NMT start is sent   when the bus is opened, on boot-up, on a heartbeat of a node that was missing and is not
 //                       operational, and once a second while the node stays pre-operational
-//   a stopped node      is not started: another NMT master stopped it; its next boot-up begins anew
+//   a stopped node      is not started: another NMT master stopped it; its next boot-up begins again
 //   missing             no heartbeat for the node's time
 // Values of a node count only while it is operational. Those from before a restart or a silence are void.
 //

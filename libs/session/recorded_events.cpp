@@ -3,11 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
+#include <iterator>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "core/failure.h"
+#include "device_node/signal_feed.h"
 #include "math/vector3.h"
 #include "node/identity.h"
 #include "scene/scene.h"
@@ -44,16 +49,71 @@ std::string lease_text(const wire::ControllerLease& lease) {
   return with_reason(fmt::format("controller {} {} channel {}", lease.controller, what, lease.channel), lease.reason);
 }
 
-// Events of sensors by the names in the recorded scene; none if the scene cannot be read.
+// The recorded scene; an empty one if it cannot be read, as in a recording without its description.
+scene::Scene recorded_scene(const recording::Reader& reader) {
+  try {
+    return scene::load_text(recorded_scene_text(reader), reader.identity().scene);
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+// Changes of the scene's switched outputs: functions of recorded variables, as devices compute them live.
+class OutputEvents final : public observer::Receiver {
+ public:
+  OutputEvents(const recording::Reader& reader, const scene::OutputsDef& outputs) {
+    const std::vector<std::string> names = recorded_names(reader);
+    std::vector<device_node::FedSignal> signals;
+    for (const scene::SwitchedDef& output : outputs.switched) {
+      const std::string& variable = output.output.variable;
+      if (std::find(names.begin(), names.end(), variable) != names.end()) {
+        signals.push_back({.variable = "", .output = output.name});
+      } else {
+        events_.push_back(
+            {0, 0,
+             fmt::format("output {}: its changes are not known, since {} was not recorded", output.name, variable)});
+      }
+    }
+    if (signals.empty()) return;
+    feed_.emplace(
+        signals, outputs, 0.0, [](const device_node::FedValues&) {},
+        [this](const scene::SwitchedDef& output, bool is_on) {
+          events_.push_back({step_, epoch_, fmt::format("output {} goes {}", output.name, is_on ? "on" : "off")});
+        });
+    observer::SessionView view;
+    watch_recording(reader, view, *this);
+  }
+
+  void take_directory(const wire::VariableDirectory& directory) override { feed_->take(directory); }
+  void take_block(const wire::VariableBlock& block, std::span<const std::byte>, double time) override {
+    step_ = block.header.step;
+    epoch_ = block.header.epoch;
+    feed_->take(block, time);
+  }
+
+  [[nodiscard]] const std::vector<RecordedEvent>& events() const noexcept { return events_; }
+
+ private:
+  std::optional<device_node::SignalFeed> feed_;
+  StepIndex step_ = 0;
+  std::uint32_t epoch_ = 0;
+  std::vector<RecordedEvent> events_;
+};
+
+// In the order of steps where they are of different kinds.
+std::vector<RecordedEvent> merged(const std::vector<RecordedEvent>& events, const std::vector<RecordedEvent>& more) {
+  std::vector<RecordedEvent> all;
+  std::merge(events.begin(), events.end(), more.begin(), more.end(), std::back_inserter(all),
+             [](const RecordedEvent& a, const RecordedEvent& b) {
+               return std::pair(a.epoch, a.step) < std::pair(b.epoch, b.step);
+             });
+  return all;
+}
+
+// Events of sensors by the names in the recorded scene.
 class SensorTexts {
  public:
-  explicit SensorTexts(const recording::Reader& reader) {
-    try {
-      defs_ = scene::load_text(recorded_scene_text(reader), reader.identity().scene).sensors;
-    } catch (const std::exception&) {
-      // a recording without its description has no names
-    }
-  }
+  explicit SensorTexts(std::vector<sensors::SensorDef> defs) : defs_(std::move(defs)) {}
 
   void add(const wire::SensorMessage& message, std::vector<RecordedEvent>& events) const {
     for (const coupling::SensorEvent& event : message.sample.events) {
@@ -83,7 +143,8 @@ std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
     return Visit::go_on;
   }));
   filter.topics = {topic(Topic::control_reply), topic(Topic::controller_lease), topic(Topic::sensors)};
-  const SensorTexts sensor_texts(reader);
+  const scene::Scene scene = recorded_scene(reader);
+  const SensorTexts sensor_texts(scene.sensors);
   std::set<std::uint64_t> answered;  // a reply is resent to a requester that has not received it
   static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
     wire::ControlReply reply;
@@ -105,7 +166,8 @@ std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
     }
     return Visit::go_on;
   }));
-  return events;
+  if (scene.outputs.switched.empty()) return events;
+  return merged(events, OutputEvents(reader, scene.outputs).events());
 }
 
 }  // namespace slew::session

@@ -168,7 +168,15 @@ def case_closed_loop(folder, domain):
         require(one["inputs"]["latency"]["count"] > 0, f"{one}")
         require(0 < one["inputs"]["latency"]["p50"] <= one["inputs"]["latency"]["p99"], f"{one}")
     require(dash["packets"]["sent"] > 200 and dash["packets"]["not_finite"] == 0, f"{dash}")
-    require(dash["packets"]["output_changes"]["Lamp_Pressure"] >= 1, f"{dash}")
+    changes = dash["packets"]["output_changes"]["Lamp_Pressure"]
+    require(changes >= 1, f"{dash}")
+    # the recording has them too: as many as the device made, unless it missed blocks
+    done = subprocess.run([SLEWRING, "info", "--json", result["recording"]], capture_output=True, text=True,
+                          timeout=DEADLINE)
+    require(done.returncode == 0, done.stderr)
+    lamp = [e["text"] for e in json.loads(done.stdout)["events"] if e["text"].startswith("output Lamp_Pressure goes ")]
+    require(lamp and lamp[0].endswith("on") and all(a != b for a, b in zip(lamp, lamp[1:])), f"{lamp}")
+    require(dash["packets"]["incomplete_steps"] > 0 or len(lamp) >= changes, f"{lamp}, {changes}")
     require(stick["events"]["reports"] >= 102, f"{stick}")
     raw = value_at_end(result, "Input_Slew.raw")
     # (512 - 495 counts)/512, the dead zone of 5 % stretched: -(495/512 - 0.05)/0.95

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/time.h"
@@ -74,7 +75,10 @@ using Texts = std::vector<std::string>;
 
 // A device that sends a variable "Load.force" of the hydraulics, on a clock of its own; steps of 1 ms.
 struct ForceSender {
-  explicit ForceSender(const scene::CanOutDef& def) : device(open_can_out(def, {}, bus.opener())) {
+  explicit ForceSender(const scene::CanOutDef& def) : ForceSender(def, nullptr) {}
+  // open: null: the bus in memory.
+  ForceSender(const scene::CanOutDef& def, OpenCan open)
+      : device(open_can_out(def, {}, open ? std::move(open) : bus.opener())) {
     wire::VariableDirectory directory;
     directory.header.role = wire::Role::hydraulics;
     directory.entries = {{"Load.force", "N"}};

@@ -91,7 +91,7 @@ TEST(CanOpenNetwork, ABootUpIsAnsweredByAStartEachTime) {
     bus.take(0x705, {0x00});
     EXPECT_EQ(bus.sent(), Texts{"000#0105"}) << restart;
     EXPECT_FALSE(bus.network.is_operational(5));
-    EXPECT_EQ(bus.events(), Texts{"node 5 has started anew: its values from before are void"});
+    EXPECT_EQ(bus.events(), Texts{"node 5 has restarted: its values from before are void"});
     bus.wait_ms(20);
     bus.take(0x705, {0x05});
     EXPECT_TRUE(bus.network.is_operational(5));

@@ -6,6 +6,8 @@
 
 #include <map>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "node/identity.h"
@@ -41,8 +43,10 @@ class Events : public ::testing::Test {
   Events() {
     recording::SessionIdentity identity;
     identity.communication_step = milliseconds(1);
+    identity.session_id = node::to_text(wire::SessionId{});
     EXPECT_EQ(recording::Writer::create(path_, identity, {}, writer_).text, "");
-    for (const Topic topic : {Topic::control_request, Topic::control_reply, Topic::controller_lease}) {
+    for (const Topic topic : {Topic::session, Topic::variable_directory, Topic::variables, Topic::control_request,
+                              Topic::control_reply, Topic::controller_lease}) {
       EXPECT_EQ(
           writer_->add_channel({std::string(node::to_text(topic)), "slewring::Any", "", {}}, channels_[topic]).text,
           "");
@@ -50,22 +54,53 @@ class Events : public ::testing::Test {
   }
 
   template <typename Message>
-  void write_message(const Message& message) {
+  void write_message(const Message& message, StepIndex step = kStep) {
     std::vector<std::byte> bytes;
     ASSERT_TRUE(transport::encode(message, bytes));
-    ASSERT_EQ(writer_->write(channels_[transport::kTopicOf<Message>], {0, kStep, 0, 0}, bytes).text, "");
+    ASSERT_EQ(writer_->write(channels_[transport::kTopicOf<Message>], {0, step, 0, 0}, bytes).text, "");
   }
 
-  std::vector<std::string> event_texts() {
+  std::vector<RecordedEvent> events() {
     EXPECT_EQ(writer_->close({}).text, "");
     std::unique_ptr<recording::Reader> reader;
     EXPECT_EQ(recording::Reader::open(path_, reader).text, "");
+    return recorded_events(*reader);
+  }
+
+  std::vector<std::string> event_texts() {
     std::vector<std::string> texts;
-    for (const RecordedEvent& event : recorded_events(*reader)) {
+    for (const RecordedEvent& event : events()) {
       EXPECT_EQ(event.step, kStep);
       texts.push_back(event.text);
     }
     return texts;
+  }
+
+  // A session of which the mechanics publishes the ball's height, and one lamp above 1 m.
+  void write_session(const std::string& variable) {
+    wire::SessionDescription session;
+    session.header.phase = wire::Phase::running;
+    session.name = "s";
+    session.step_ns = 1'000'000;
+    session.scene_name = "lamp";
+    session.scene_text =
+        "bodies:\n  Ball: {mass: 2 kg, inertia: [0.1, 0.1, 0.1]}\njoints:\n  Free: {type: floating, body2: Ball}\n"
+        "outputs:\n  Lamp: {type: switched, condition: Ball.center_of_mass.y > 1 m, hysteresis: 0.1 m}\n";
+    write_message(session);
+    wire::VariableDirectory directory;
+    directory.header.role = wire::Role::mechanics;
+    directory.header.phase = wire::Phase::running;
+    directory.entries = {{variable, "m"}};
+    directory.total = 1;
+    write_message(directory);
+  }
+  void write_height(StepIndex step, double height) {
+    wire::VariableBlock block;
+    block.header.role = wire::Role::mechanics;
+    block.header.phase = wire::Phase::running;
+    block.header.step = step;
+    block.values.push_back(height);
+    write_message(block, step);
   }
 
  private:
@@ -126,6 +161,27 @@ TEST_F(Events, WithoutARequestHaveTheirOwnText) {
   EXPECT_EQ(event_texts(),
             (std::vector<std::string>{"session.overrun: slip: at step 40",
                                       "controller pid does not have channel Input_Lift: no value came"}));
+}
+
+// in their place among the other events, with the hysteresis of the live output
+TEST_F(Events, ListOutputsThatGoOnOrOff) {
+  write_session("Ball.center_of_mass.y");
+  write_message(accepted(node::to_text(param_set())));
+  const double heights[] = {0.5, 1.2, 0.95, 0.8, 0.95};
+  for (StepIndex i = 0; i < 5; ++i) write_height(kStep - 3 + i, heights[i]);
+  std::vector<std::pair<StepIndex, std::string>> seen;
+  for (const RecordedEvent& event : events()) seen.emplace_back(event.step, event.text);
+  EXPECT_EQ(seen, (std::vector<std::pair<StepIndex, std::string>>{{38, "output Lamp goes on"},
+                                                                  {40, node::to_text(param_set()) + " accepted"},
+                                                                  {40, "output Lamp goes off"}}));
+}
+
+TEST_F(Events, NameAnOutputWhoseVariableWasNotRecorded) {
+  write_session("Ball.center_of_mass.x");
+  write_height(kStep, 2);
+  const std::vector<RecordedEvent> seen = events();
+  ASSERT_EQ(seen.size(), 1u);
+  EXPECT_EQ(seen[0].text, "output Lamp: its changes are not known, since Ball.center_of_mass.y was not recorded");
 }
 
 }  // namespace recorded_events_test
