@@ -240,16 +240,29 @@ void add_coupling(const Parts& parts, Cases& cases) {
        .alternates = true});
 }
 
+// Why a run at a late time is not the same as at time 0; empty: it is.
+std::string obstacle_of_late_times(const multibody::MechanicsDef& mechanics) {
+  if (!mechanics.motions.empty()) return "its motions are laws of the session's time";
+  const auto& forces = mechanics.point_forces;
+  const auto& torques = mechanics.point_torques;
+  const bool has_table =
+      std::any_of(forces.begin(), forces.end(), [](const auto& load) { return !load.force_table.empty(); }) ||
+      std::any_of(torques.begin(), torques.end(), [](const auto& load) { return !load.torque_table.empty(); });
+  return has_table ? "its forces over time are laws of the session's time" : "";
+}
+
 void add_numbers(const scene::Scene& scene, const Parts& parts, Cases& cases) {
   const std::int64_t H = scene.session.step_duration().ns;
   // whole exchanges of all sides
   const std::int64_t unit = H * scene.session.exchange_every * static_cast<std::int64_t>(scene.flexible_every());
   const std::vector<InputPoint> inputs =
       parts.without_inputs().empty() ? std::vector<InputPoint>{{0.2, 1}, {1.2, 0}} : std::vector<InputPoint>{};
+  const std::string obstacle = obstacle_of_late_times(scene.mechanics);
   const auto late = [&](const char* name, const char* what, std::int64_t begin_ns) {
     ExtremeCase one{.name = name,
                     .group = CaseGroup::numbers,
                     .what = what,
+                    .obstacle = obstacle,
                     .duration = 2,
                     .inputs = inputs,
                     .begin_ns = begin_ns / unit * unit,

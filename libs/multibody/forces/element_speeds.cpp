@@ -130,14 +130,17 @@ bool has_curve(const ElementLaw& law) {
   return !law.spring_curve.empty() || !law.damper_curve.empty();
 }
 
-// What pushes on one side or saturates is left out.
+// What saturates is left out, ropes are taut.
 Model constant_laws_of(const Model& given) {
   Model model = given;
   model.gravity = {};
+  const State start = start_state(given);
+  Workspace ws(given);
+  update_motion(given, start.q, start.u, ws);
   for_each_force_kind([&](auto row) {
     auto& elements = elements_of(row, model.elements);
     if (!row.kIsLinear) elements.clear();
-    for (auto& element : elements) row.linearise(element);
+    for (auto& element : elements) row.linearise(element, ws.motion);
   });
   model.contact = nullptr;
   const auto keep = [](ElementLaw& law) {

@@ -9,9 +9,10 @@
 //   semi_implicit_euler  v_1 = v_0 + h a(x_0, v_0),  x_1 = x_0 + h v_1                                          (2)
 // whose largest factor of growth a power iteration finds.
 //
-// Constant laws only. Left out: tables, ends, kinds that are not linear (ForceRow::kIsLinear) and contacts, which push
-// on one side or saturate, so that too long a step chatters but stays bounded; gravity; rows, whose owner solves them
-// implicitly; the modes and segments alone (flexible/validate_flexible.h). An instant, not a bound for all poses.
+// Constant laws only; a rope is taken as taut, since one that pulls ever harder on a light body throws it ever further.
+// Left out: tables, ends, kinds that are not linear (ForceRow::kIsLinear) and contacts, which push on one side or
+// saturate, so that too long a step chatters but stays bounded; gravity; rows, whose owner solves them implicitly; the
+// modes and segments alone (flexible/validate_flexible.h). An instant, not a bound for all poses.
 #pragma once
 
 #include <optional>

@@ -182,6 +182,22 @@ TEST(ExtremeCases, CraneHasThemAllWithItsOwnNames) {
   }
 }
 
+TEST(ExtremeCases, LateTimesAreNotForMotionsAndForcesOverTime) {
+  EXPECT_EQ(named(extreme_cases(scene_of("joints/gears.yaml")), "step_2^32").obstacle,
+            "its motions are laws of the session's time");
+  EXPECT_EQ(named(extreme_cases(scene_of("forces/rope.yaml")), "time_2^62_ns").obstacle, "");
+}
+
+// 1 g on 316 kN/m swings 18 times in what rk4 follows once
+TEST(ExtremeCases, LightLoadOnARopeIsRefusedByName) {
+  scene::SceneOptions options;
+  options.file = std::string(SLEWRING_SOURCE_DIR) + "/scenes/forces/rope.yaml";
+  const CaseOutcome outcome = run_case(options, "load_0_kg");
+  EXPECT_EQ(outcome.judgement.verdict, Verdict::refused) << outcome.measures.failure;
+  EXPECT_NE(outcome.measures.refusal.find("Hoist: it is too fast for rk4"), std::string::npos)
+      << outcome.measures.refusal;
+}
+
 TEST(ExtremeCases, CaseThatChangesNothingIsLeftOutByName) {
   scene::SceneOptions options;
   options.file = std::string(SLEWRING_SOURCE_DIR) + "/scenes/two_dof_crane.yaml";

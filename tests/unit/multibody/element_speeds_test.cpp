@@ -66,6 +66,39 @@ TEST(ElementSpeeds, ExtremeRatesAreNamedWithAStepThatSuits) {
   EXPECT_FALSE(found(arm(0, damping), 0.95 * beyond->longest_step));
 }
 
+// A load on a rope over a pulley, slack or taut at the start: omega^2 = k/m, k = EA/L_0 or the stiffness.
+TEST(ElementSpeeds, RopeIsFollowedAsTheSpringThatItIsWhileTaut) {
+  constexpr double kMass = 3, kRigidity = 3e6;
+  for (const double free_length : {5.5, 4.9}) {
+    MechanicsDef def;
+    def.bodies = {{.name = "Load", .position = {2, -1, 0}, .mass = kMass, .inertia = {1, 1, 1}}};
+    def.joints = {{.name = "Guide",
+                   .type = JointType::prismatic,
+                   .point1 = {2, -1, 0},
+                   .orientation1 = {-M_PI / 2, 0, 0},
+                   .body2 = "Load",
+                   .orientation2 = {-M_PI / 2, 0, 0}}};
+    RopeDef rope{.name = "Hoist", .bodies = {"Ground", "Ground", "Load"}, .points = {{0, 2, 0}, {2, 2, 0}, {0, 0, 0}}};
+    rope.free_length = free_length;
+    rope.damping_constant = 1e9;  // as much as the spring at most
+    for (const bool is_by_rigidity : {true, false}) {
+      rope.axial_rigidity = is_by_rigidity ? kRigidity : 0;
+      rope.stiffness = is_by_rigidity ? 0 : kRigidity / free_length;
+      def.ropes = {rope};
+      const double limit = kRk4OnImaginary * std::sqrt(kMass * free_length / kRigidity);
+      EXPECT_FALSE(found(def, 0.99 * limit)) << free_length;
+      const auto beyond = found(def, 1.1 * limit);
+      ASSERT_TRUE(beyond) << free_length;
+      EXPECT_EQ(beyond->element, "Hoist");
+      EXPECT_NEAR(beyond->longest_step, limit, 0.05 * limit);
+      EXPECT_FALSE(found(def, 1.1 * limit, Integrator::trapezoidal));
+    }
+    def.ropes[0].stiffness = 0;
+    def.ropes[0].spring_table = {{0, 0}, {1, 1e12}};
+    EXPECT_FALSE(found(def, 1e-2));
+  }
+}
+
 TEST(ElementSpeeds, NamesTheElementThatIsTooFast) {
   MechanicsDef def = arm(10, 1);
   RotationalForceDef brake = def.rotational_forces[0];
