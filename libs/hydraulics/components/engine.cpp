@@ -63,6 +63,8 @@ constexpr double kFuelWidth = 0.02;       // share of the fuel, smoothing of the
 constexpr double kCombustionWidth = 0.1;  // share of g, smoothing
 constexpr double kCombustionRange = 0.1;  // share of stall_speed over which combustion sets in
 constexpr double kFrictionSpeed = 1;      // w_f [rad/s], below which the friction goes to zero
+// (5): a load of 250 Nm creeps at 0.1 rad/s on 2 kg m2; rk4 follows it with sub-steps of 2 ms
+constexpr double kHoldTime = 1e-3, kHoldWidth = 1e-2;  // tau_h [s], w_h [rad/s]
 
 class Engine final : public HydraulicComponent {
  public:
@@ -142,11 +144,14 @@ class Engine final : public HydraulicComponent {
     const ValueSlope g = unit_clip((w - def_.stall_speed) / range, kCombustionWidth), T = full_load_.at(w);
     return {T.value * g.value, T.slope * g.value + T.value * g.slope / range};
   }
-  // friction of (1), with its slope
+  // friction of (1) and -T_h of (5), with their slope
   [[nodiscard]] ValueSlope loss(double w) const noexcept {
     const double square = w * w + kFrictionSpeed * kFrictionSpeed, length = std::sqrt(square);
-    return {def_.friction_torque * w / length + def_.viscous_friction * w,
-            def_.friction_torque * kFrictionSpeed * kFrictionSpeed / (square * length) + def_.viscous_friction};
+    const ValueSlope back = ramp(-w, kHoldWidth);
+    const double hold = def_.inertia / kHoldTime;
+    return {def_.friction_torque * w / length + def_.viscous_friction * w - hold * back.value,
+            def_.friction_torque * kFrictionSpeed * kFrictionSpeed / (square * length) + def_.viscous_friction +
+                hold * back.slope};
   }
 
   EngineDef def_;
