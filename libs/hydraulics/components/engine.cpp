@@ -161,6 +161,21 @@ class Engine final : public HydraulicComponent {
   CurveFunction full_load_;
 };
 
+// A curve over rev/min, typed as in a data sheet, begins far above the engine's speeds.
+void warn_of_held_torque(const EngineDef& def, const CurveDef* curve, Problems& warnings) {
+  if (curve == nullptr || curve->points.empty()) return;
+  const double first = curve->points.front()[0], last = curve->points.back()[0];
+  const double speed = std::max(def.speed, def.minimum_speed);
+  if (speed >= first && speed <= last) return;
+  warnings.push_back(
+      {def.name + ".torque_curve",
+       fmt::format(
+           "the governed speed {:g} rad/s lies outside of the curve '{}', which goes from {:g} to {:g} rad/s: its "
+           "{} torque holds there",
+           speed, curve->name, first, last, speed < first ? "first" : "last"),
+       "arguments in rad/s, 1 rev/min = 0.1047 rad/s, that enclose the speed", ""});
+}
+
 void validate_engine(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors,
                      Problems& warnings) {
   const EngineDef& def = static_cast<const EngineDef&>(component);
@@ -172,6 +187,7 @@ void validate_engine(const HydraulicsDef& circuit, const ComponentDef& component
                         "torques >= 0 over speeds >= 0, without odd: true; losses are friction_torque", ""});
     }
   }
+  warn_of_held_torque(def, curve, warnings);
   if (def.speed <= def.stall_speed) {
     errors.push_back(
         {def.name + ".stall_speed", "the engine would stand at its governed speed", "a speed below `speed`", ""});
