@@ -7,6 +7,7 @@
 
 #include "core/display.h"
 #include "core/failure.h"
+#include "hydraulics/circuit.h"
 #include "node/identity.h"
 #include "session/recorded.h"
 #include "transport/cdr/codec.h"
@@ -32,7 +33,7 @@ constexpr std::array<Meaning, FlagCounter::kFlags.size()> kMeanings = {{
      "look for load on the machine or the network, or choose session.mode: lockstep"},
     {"the coupling created energy, so the run may be unstable",
      "choose a smaller session.step, or level two for a port that has another"},
-    {"a volume cavitated", "look at the pressures near zero"},
+    {"the oil cavitated", "look at the pressures near zero"},
     {"a pressure was beyond the range of the oil's law (1000 bar)",
      "limit it: a relief valve on the line, a lower load or setting"},
     {"a flexible body was bent by more than a tenth of its length",
@@ -64,7 +65,7 @@ std::vector<std::string> flag_sentences(const FlagCounter& flags, SimDuration st
     for (std::size_t i = 0; i < kMeanings.size(); ++i) {
       const FlagCounter::Seen& entry = counts.seen[i];
       if (entry.steps == 0) continue;
-      const std::vector<std::string>& of_role = role == wire::Role::sensor ? names.sensors : names.volumes;
+      const std::vector<std::string>& of_role = role == wire::Role::sensor ? names.sensors : names.states;
       const bool is_named = entry.offender >= 0 && static_cast<std::size_t>(entry.offender) < of_role.size();
       const std::string name = is_named ? of_role[static_cast<std::size_t>(entry.offender)] + ": " : "";
       const Meaning& meaning = meaning_of(role, i);
@@ -81,7 +82,15 @@ namespace {
 
 OffenderNames names_of(const scene::Scene& scene) {
   OffenderNames names;
-  for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) names.volumes.push_back(volume.name);
+  if (scene.has_hydraulics()) {
+    const hydraulics::Circuit circuit(scene.hydraulics);
+    for (int i = 0; i < circuit.volume_count(); ++i) names.states.push_back(circuit.volume_name(i));
+    for (const hydraulics::Actuator& actuator : circuit.actuators()) names.states.push_back(actuator.name);
+    for (const hydraulics::Actuator& actuator : circuit.actuators()) names.states.push_back(actuator.name);
+    for (int i = circuit.first_component_state(); i < circuit.state_count(); ++i) {
+      names.states.push_back(circuit.state_owner(i - circuit.first_component_state()));
+    }
+  }
   for (const sensors::SensorDef& sensor : scene.sensors) names.sensors.push_back(sensor.name);
   return names;
 }

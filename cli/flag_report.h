@@ -13,16 +13,17 @@
 
 namespace slew::cli {
 
-// Names of what samples name by number, in the order of the scene.
+// Names of what samples name by number: volumes and components of the circuit's states in their order, sensors in the
+// order of the scene.
 struct OffenderNames {
-  std::vector<std::string> volumes, sensors;
+  std::vector<std::string> states, sensors;
 };
 
 // Flags of the samples of mechanics, hydraulics and sensors: not converged, sub-step budget, clamp, energy from the
-// coupling, cavitation and pressures beyond the oil's law with the volume's name, deflections that are not small. Flags
-// that occur in sound runs too, end stops and open relief valves, are left out. For a free-running session the
-// sentences also count steps without a sample. With the names of the recorded scene. Throws Failure when it cannot be
-// read.
+// coupling, cavitation and pressures beyond the oil's law with the volume's or line's name, deflections that are not
+// small. Flags that occur in sound runs too, end stops and open relief valves, are left out. For a free-running session
+// the sentences also count steps without a sample. With the names of the recorded scene. Throws Failure when it cannot
+// be read.
 [[nodiscard]] std::vector<std::string> explain_flags(const node::FlagCounter& flags, const recording::Reader& reader);
 // Counts the flags of every recorded sample. Throws Failure when the recording cannot be read.
 [[nodiscard]] node::FlagCounter recorded_flags(const recording::Reader& reader);

@@ -255,9 +255,13 @@ bool Circuit::bound(double* y) const noexcept {
   return was_moved;
 }
 
-int Circuit::first_cavitating(const double* y) const noexcept {
+int Circuit::first_cavitating(const double* y) noexcept {
   for (std::size_t i = 0; i < volume_name_.size(); ++i) {
     if (!is_fixed_[i] && y[i] < floor_) return static_cast<int>(i);
+  }
+  const CircuitView now = view(y);
+  for (const HydraulicComponent* component : active_) {
+    if (const StateIndex state = component->first_cavitating(now); state >= 0) return state;
   }
   return -1;
 }

@@ -215,9 +215,9 @@ class Circuit {
   bool bound(double* y) const noexcept;
 
   // StepFlag bits that hold at y: cavitating, relief_open, limit_hit (a piston in its stop), clamp_active (a chamber
-  // pressed shut); and the first volume that cavitates (-1: none).
+  // pressed shut); and the first volume that cavitates, or else a state of a line that does (-1: none).
   [[nodiscard]] std::uint32_t flags(const double* y) noexcept;
-  [[nodiscard]] int first_cavitating(const double* y) const noexcept;
+  [[nodiscard]] int first_cavitating(const double* y) noexcept;
   // The volume with the highest pressure beyond the oil's law, else one with a temperature beyond it; -1: none.
   [[nodiscard]] int farthest_beyond_oil_law(const double* y) const noexcept;
 

@@ -142,6 +142,8 @@ class HydraulicComponent {
 
   // Raises outflow_slope[volume] (-dQ/dp) to the steeper side near the switch of a unilateral element.
   virtual void raise_outflow_slopes(const CircuitView&, double* /*outflow_slope*/) const noexcept {}
+  // A state of a component whose own oil is below the pressure floor, apart from the volumes at its ports; -1: none.
+  [[nodiscard]] virtual StateIndex first_cavitating(const CircuitView&) const noexcept { return -1; }
   // StepFlag bits that hold now; load-sensing pressures are those of the last evaluation.
   [[nodiscard]] virtual std::uint32_t flags(const CircuitView&) const noexcept { return 0; }
 

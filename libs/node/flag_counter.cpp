@@ -11,8 +11,8 @@ bool is_up(StepFlag flag, const wire::SampleState& state) {
   return (state.flags & static_cast<std::uint32_t>(flag)) != 0;
 }
 
-// The offender of a sample of sensors is a sensor, that of hydraulics a volume unless a flag that names something else
-// is up.
+// The offender of a sample of sensors is a sensor, that of hydraulics a volume or line unless a flag that names
+// something else is up.
 bool names_offender(wire::Role role, StepFlag flag, const wire::SampleState& state) {
   if (role == wire::Role::sensor) return flag == StepFlag::not_converged;
   if (role != wire::Role::hydraulics) return false;

@@ -9,10 +9,12 @@
 #include <cstdlib>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 
 #include "core/failure.h"
 #include "core/printable.h"
 #include "core/suggestion.h"
+#include "options/whole_number.h"
 
 namespace slew::options {
 namespace {
@@ -268,7 +270,11 @@ Option& Option::excludes(const Option& other) {
 
 template <class Value>
 Option Command::option(const std::string& name, Value& target, const std::string& description) {
-  return Option(app_->add_option(name, target, description));
+  CLI::Option* option = app_->add_option(name, target, description);
+  if constexpr (std::is_same_v<Value, std::int64_t> || std::is_same_v<Value, std::uint64_t>) {
+    option->check({problem_of_whole<Value>, "", "whole number"});
+  }
+  return Option(option);
 }
 
 template Option Command::option(const std::string&, std::string&, const std::string&);

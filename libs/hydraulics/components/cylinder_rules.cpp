@@ -8,6 +8,8 @@
 namespace slew::hydraulics {
 namespace {
 
+constexpr FrictionSpeeds kPistonSpeeds{.greatest = 20, .unit = "m/s"};  // seals end below 15 m/s
+
 constexpr double kStopPressure = 300e5;  // Pa, load pressure that may press the piston into its stop
 
 // Checks the smallest volume of the chamber, with the piston in its stop and `length` of the chamber left.
@@ -27,9 +29,15 @@ void check_chamber(const std::string& name, const CylinderParameters& c, char po
 }  // namespace
 
 void check_friction_curve(const HydraulicsDef& circuit, const std::string& element, const std::string& name,
-                          Problems& errors) {
+                          const FrictionSpeeds& speeds, Problems& errors, Problems& warnings) {
   for (const CurveDef& curve : circuit.curves) {
     if (curve.name != name) continue;
+    if (!curve.points.empty() && curve.points.back()[0] > speeds.greatest) {
+      warnings.push_back({element + ".friction_curve",
+                          fmt::format("the curve '{}' goes to {:g} {}, and an actuator does not exceed {:g} {}",
+                                      curve.name, curve.points.back()[0], speeds.unit, speeds.greatest, speeds.unit),
+                          fmt::format("arguments in {}", speeds.unit), ""});
+    }
     bool is_braking = curve.odd;
     for (const auto& point : curve.points) is_braking = is_braking && point[0] >= 0 && point[1] >= 0;
     if (is_braking) return;
@@ -39,11 +47,11 @@ void check_friction_curve(const HydraulicsDef& circuit, const std::string& eleme
 }
 
 void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& c,
-                    double rod_diameter, Problems& errors) {
+                    double rod_diameter, Problems& errors, Problems& warnings) {
   if (c.port_a == c.port_b) {
     errors.push_back({name + ".port_b", "both ports are connected to '" + c.port_a + "'", "two volumes", ""});
   }
-  check_friction_curve(circuit, name, c.friction_curve, errors);
+  check_friction_curve(circuit, name, c.friction_curve, kPistonSpeeds, errors, warnings);
   if (!(c.piston_travel() > 0)) {
     errors.push_back(
         {name + ".chamber_length", "the chamber is not longer than the piston", "more than piston_length", ""});

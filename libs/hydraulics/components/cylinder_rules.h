@@ -9,13 +9,20 @@
 
 namespace slew::hydraulics {
 
-// The curve only brakes. element: the actuator's name; curve: its friction curve, empty for none.
+// Speeds of a friction curve: one that reaches farther was typed in another unit.
+struct FrictionSpeeds {
+  double greatest;  // that an actuator reaches, in the unit
+  const char* unit;
+};
+
+// The curve only brakes, and a warning where its speeds are beyond any. element: the actuator's name; curve: its
+// friction curve, empty for none.
 void check_friction_curve(const HydraulicsDef& circuit, const std::string& element, const std::string& curve,
-                          Problems& errors);
+                          const FrictionSpeeds& speeds, Problems& errors, Problems& warnings);
 
 // Checks that strokes are in order, chambers are positive over the stroke and the stops' compression, ports differ, and
 // the friction curve only brakes. name: the cylinder's; rod_diameter: 0 without a rod [m].
 void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& cylinder,
-                    double rod_diameter, Problems& errors);
+                    double rod_diameter, Problems& errors, Problems& warnings);
 
 }  // namespace slew::hydraulics

@@ -23,13 +23,14 @@ constexpr auto kDoubleActingCylinderFields = cylinder_fields<DoubleActingCylinde
         {.dimension = Dimension::length, .range = kNotNegative, .doc = "length of the attachment"}),
 });
 
-void validate_cylinder(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
+void validate_cylinder(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors,
+                       Problems& warnings) {
   const DoubleActingCylinderDef& def = static_cast<const DoubleActingCylinderDef&>(component);
   if (!(def.rod_diameter < def.common.piston_diameter)) {
     errors.push_back(
         {def.name + ".rod_diameter", "the rod is not thinner than the piston", "less than piston_diameter", ""});
   }
-  check_cylinder(circuit, def.name, def.common, def.rod_diameter, errors);
+  check_cylinder(circuit, def.name, def.common, def.rod_diameter, errors, warnings);
 }
 
 }  // namespace

@@ -130,6 +130,7 @@ constexpr double kAtmosphere = 1e5;  // Pa, in the room of the brake's springs w
 
 // speed of the shaft from which on its friction is fully there: a gear of 100 turns the joint by 1e-4 rad/s then
 constexpr double kRestSpeed = 1e-2;  // rad/s
+constexpr FrictionSpeeds kShaftSpeeds{.greatest = 2000, .unit = "rad/s"};
 // typical sizes for the error measure: at rtol 1e-4 an error of 1e-5 rad, some 100 Pa of a litre of oil
 constexpr double kAngleScale = 0.1;      // rad
 constexpr double kShaftSpeedScale = 10;  // rad/s
@@ -307,10 +308,10 @@ class HydraulicMotor final : public HydraulicComponent {
   double fluidity_ = 1;        // of the oil, for leaks
 };
 
-void validate_motor(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
+void validate_motor(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems& warnings) {
   const HydraulicMotorDef& def = static_cast<const HydraulicMotorDef&>(component);
   check_distinct(def.name + ".port_b", def.port_a, def.port_b, errors);
-  check_friction_curve(circuit, def.name, def.friction_curve, errors);
+  check_friction_curve(circuit, def.name, def.friction_curve, kShaftSpeeds, errors, warnings);
   if (def.brake_port.empty()) return;
   if (def.brake.torque == 0) {
     errors.push_back({def.name + ".brake_torque", "the brake has no torque", "a torque above 0, or no brake_port", ""});

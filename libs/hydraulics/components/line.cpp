@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
@@ -57,11 +58,15 @@ class Line final : public HydraulicComponent {
         nu_(builder.def().oil_viscosity),
         A_(0.25 * pi * def.diameter * def.diameter),
         modulus_(def.bulk_modulus > 0 ? def.bulk_modulus : builder.def().oil_bulk_modulus),
+        floor_(builder.def().pressure_floor),
         a_(4 * nu_ / (def.diameter * def.diameter)) {
     for (int i = 0; i <= n_; ++i) add_to_first(q_, builder.add_state({.initial = 0, .scale = 1}), i);
     for (int i = 1; i <= n_; ++i) add_to_first(P_, builder.add_state({.initial = 0, .scale = kPressureScale}), i - 1);
     for (int i = 0; i < kWeights * (n_ + 1); ++i) {
       add_to_first(z_, builder.add_state({.initial = 0, .scale = 1}), i);
+    }
+    for (int k = 1; k <= n_; ++k) {
+      for (int i = 1; i <= n_; ++i) sine_.push_back(std::sin(i * pi * k / (n_ + 1)));
     }
     add_rest(builder);
     apply_parameters();
@@ -133,6 +138,7 @@ class Line final : public HydraulicComponent {
     variables.push_back(variable("flow_2", Dimension::volume_flow));
     variables.push_back(variable("mean_flow", Dimension::volume_flow));
     variables.push_back(variable("middle_pressure", Dimension::pressure));
+    variables.push_back(variable("is_cavitating", Dimension::none));
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
     const Ends now = ends(view);
@@ -146,6 +152,7 @@ class Line final : public HydraulicComponent {
       p += (i % 4 == 1 ? 1 : -1) * (view[P_ + i - 1] - straight);
     }
     *values++ = p;
+    *values++ = first_cavitating(view) < 0 ? 0 : 1;
     return values;
   }
   // the oil inside counts half at either end
@@ -158,6 +165,17 @@ class Line final : public HydraulicComponent {
     rho_ = inside.density, nu_ = inside.viscosity;
     a_ = 4 * nu_ / (def_.diameter * def_.diameter);
     apply_parameters();
+  }
+  // at n points between the ends, as many as there are modes
+  [[nodiscard]] StateIndex first_cavitating(const CircuitView& view) const noexcept override {
+    const double* sine = sine_.data();
+    for (int k = 1; k <= n_; ++k) {
+      const double s = static_cast<double>(k) / (n_ + 1);
+      double p = (1 - s) * view[p_1_] + s * view[p_2_];
+      for (int i = 1; i <= n_; ++i) p += (view[P_ + i - 1] - straight(view, i)) * *sine++;
+      if (p < floor_) return P_;
+    }
+    return -1;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
@@ -172,6 +190,10 @@ class Line final : public HydraulicComponent {
     double Q_1, Q_2;  // m3/s
   };
   [[nodiscard]] static double sign(int i) noexcept { return i % 2 == 0 ? 1 : -1; }
+  // P_i of a pressure that is straight from end to end
+  [[nodiscard]] double straight(const CircuitView& view, int i) const noexcept {
+    return 2 / (i * pi) * (view[p_1_] - sign(i) * view[p_2_]);
+  }
   // z_k of mode i
   [[nodiscard]] StateIndex z(int i, int k) const noexcept { return z_ + kWeights * i + k; }
   static void add_to_first(StateIndex& first, StateIndex state, int i) {
@@ -210,10 +232,12 @@ class Line final : public HydraulicComponent {
   int n_;
   StateIndex q_ = 0, P_ = 0, z_ = 0;  // first of q_0..q_n and z in units of unit_, of P_1..P_n in Pa
   double rho_, nu_, A_, modulus_;
-  double rest_ = 1;  // share of the content at the ends
-  double a_;         // 1/s
-  double unit_ = 1;  // m3/s
-  double gain_ = 0;  // units of q_0' per Pa
+  double floor_;              // Pa absolute, below which the oil cavitates
+  std::vector<double> sine_;  // sin(i pi k/(n + 1)), k and i from 1 to n
+  double rest_ = 1;           // share of the content at the ends
+  double a_;                  // 1/s
+  double unit_ = 1;           // m3/s
+  double gain_ = 0;           // units of q_0' per Pa
   double Z_1_ = 0, Z_2_ = 0;
 };
 

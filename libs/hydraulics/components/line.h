@@ -17,8 +17,9 @@
 // volumes, half each.
 //
 // Sources: Makinen, Piche and Ellman 2000, for (1) and (2); Zielke 1968 for the friction, Trikha 1975 for m_k and n_k
-// in (3); Merritt 1967, section 3.3, for (5) and (6). Not covered: air and cavitation inside of the line, unsteady
-// turbulent friction beyond (3), elevation.
+// in (3); Merritt 1967, section 3.3, for (5) and (6). Not covered: air and cavitation inside of the line, where (1)
+// goes on below zero: a pressure below hydraulics.pressure_floor at one of n points between the ends is reported as
+// cavitation; unsteady turbulent friction beyond (3), elevation.
 #pragma once
 
 #include <cstdint>

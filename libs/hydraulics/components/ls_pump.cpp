@@ -102,7 +102,7 @@ class LsPump final : public HydraulicComponent {
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
     rates.set_rate(alpha_, rate_ * (command(view).value - view[alpha_]));
     rates.move(b_, a_, flow(view));
-    drive_.add_load(view[alpha_], view[a_] - view[b_], rates);
+    drive_.add_load(view[alpha_], view[a_] - view[b_], view, rates);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
     const Command u = command(view);
@@ -111,12 +111,12 @@ class LsPump final : public HydraulicComponent {
     jacobian.add(alpha_, a_, -d_rise);
     jacobian.add(alpha_, b_, d_rise);
     if (ls_ >= 0) jacobian.add_ls(alpha_, ls_, d_command * set_point(view).slope);
-    const ValueSlope displaced = drive_.displaced(view[alpha_], view[a_] - view[b_]);
-    const double G = G_leak_ - full_flow(view) * view[alpha_] * displaced.slope;
+    const PumpDrive::Displaced displaced = drive_.displaced(view[alpha_], view[a_] - view[b_], view);
+    const double G = G_leak_ - full_flow(view) * view[alpha_] * displaced.over_rise;
     jacobian.move(b_, a_, alpha_, full_flow(view) * displaced.value);
     jacobian.move(b_, a_, a_, -G);
     jacobian.move(b_, a_, b_, G);
-    drive_.stamp(a_, b_, alpha_, view, per_speed_ * displaced.value, jacobian);
+    drive_.stamp(a_, b_, alpha_, view, per_speed_, jacobian);
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("swash", Dimension::none));
@@ -152,7 +152,7 @@ class LsPump final : public HydraulicComponent {
 
  private:
   [[nodiscard]] double shaft_torque(const CircuitView& view) const noexcept {
-    return drive_.torque(view[alpha_], view[a_] - view[b_]);
+    return drive_.torque(view[alpha_], view[a_] - view[b_], view);
   }
   // set pressure of the controller at the outlet, above tank; slope with respect to the LS pressure
   [[nodiscard]] ValueSlope set_point(const CircuitView& view) const noexcept {
@@ -178,7 +178,7 @@ class LsPump final : public HydraulicComponent {
   }
   [[nodiscard]] double flow(const CircuitView& view) const noexcept {
     const double p = view[a_] - view[b_];
-    return full_flow(view) * view[alpha_] * drive_.displaced(view[alpha_], p).value - G_leak_ * p;
+    return full_flow(view) * view[alpha_] * drive_.displaced(view[alpha_], p, view).value - G_leak_ * p;
   }
   [[nodiscard]] double full_flow(const CircuitView& view) const noexcept {
     return drive_.has_engine() ? per_speed_ * drive_.speed(view, 0) : full_flow_;

@@ -129,7 +129,7 @@ class Pump final : public HydraulicComponent {
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
     rates.set_rate(alpha_, swash_rate(view, limited(command(view), rise(view), speed(view)).value).value);
     rates.move(b_, a_, flow(view));
-    drive_.add_load(view[alpha_], rise(view), rates);
+    drive_.add_load(view[alpha_], rise(view), view, rates);
     if (case_ < 0) return;
     for (const StateIndex port : {a_, b_}) rates.move(port, case_, G_case_ * (view[port] - view[case_]));
   }
@@ -139,12 +139,12 @@ class Pump final : public HydraulicComponent {
     jacobian.add(alpha_, alpha_, -rate);
     jacobian.add(alpha_, a_, d_rise);
     jacobian.add(alpha_, b_, -d_rise);
-    const ValueSlope displaced = drive_.displaced(view[alpha_], rise(view));
-    const double G = G_leak_ - per_speed_ * speed(view) * view[alpha_] * displaced.slope;
+    const PumpDrive::Displaced displaced = drive_.displaced(view[alpha_], rise(view), view);
+    const double G = G_leak_ - per_speed_ * speed(view) * view[alpha_] * displaced.over_rise;
     jacobian.move(b_, a_, alpha_, per_speed_ * speed(view) * displaced.value);
     jacobian.move(b_, a_, a_, -G);
     jacobian.move(b_, a_, b_, G);
-    drive_.stamp(a_, b_, alpha_, view, per_speed_ * displaced.value, jacobian);
+    drive_.stamp(a_, b_, alpha_, view, per_speed_, jacobian);
     drive_.stamp_speed(alpha_, rate * least.over_speed, jacobian);
     if (case_ < 0) return;
     for (const StateIndex port : {a_, b_}) {
@@ -160,7 +160,7 @@ class Pump final : public HydraulicComponent {
     if (case_ >= 0) variables.push_back(variable("case_flow", Dimension::volume_flow));
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
-    const double torque = drive_.torque(view[alpha_], rise(view));
+    const double torque = drive_.torque(view[alpha_], rise(view), view);
     *values++ = view[alpha_];
     *values++ = flow(view);
     *values++ = torque;
@@ -179,7 +179,7 @@ class Pump final : public HydraulicComponent {
     apply_parameters();
   }
   [[nodiscard]] double shaft_power(const CircuitView& view) const noexcept override {
-    return drive_.torque(view[alpha_], rise(view)) * speed(view);
+    return drive_.torque(view[alpha_], rise(view), view) * speed(view);
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
@@ -237,7 +237,7 @@ class Pump final : public HydraulicComponent {
   }
   // (1)
   [[nodiscard]] double flow(const CircuitView& view) const noexcept {
-    const double p = rise(view), displaced = drive_.displaced(view[alpha_], p).value;
+    const double p = rise(view), displaced = drive_.displaced(view[alpha_], p, view).value;
     return per_speed_ * speed(view) * view[alpha_] * displaced - G_leak_ * p;
   }
 

@@ -18,7 +18,8 @@ constexpr auto kSingleActingCylinderFields = cylinder_fields<SingleActingCylinde
         {.dimension = Dimension::length, .range = kNotNegative, .doc = "length of the attachment"}),
 });
 
-void validate_single_acting(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
+void validate_single_acting(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors,
+                            Problems& warnings) {
   const SingleActingCylinderDef& def = static_cast<const SingleActingCylinderDef&>(component);
   for (const VolumeDef& volume : circuit.volumes) {
     if (volume.name != def.common.port_b || volume.fixed) continue;
@@ -26,7 +27,7 @@ void validate_single_acting(const HydraulicsDef& circuit, const ComponentDef& co
                       "the open side is not open: '" + volume.name + "' is not held at a fixed pressure",
                       "a volume with fixed: true, or a double_acting_cylinder", ""});
   }
-  check_cylinder(circuit, def.name, def.common, 0, errors);
+  check_cylinder(circuit, def.name, def.common, 0, errors, warnings);
 }
 
 }  // namespace

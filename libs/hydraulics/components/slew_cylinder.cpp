@@ -19,8 +19,8 @@ constexpr auto kSlewCylinderFields = cylinder_fields<SlewCylinderDef>(std::array
                                                              .doc = "piston position at angle zero"}),
 });
 
-void validate_slew(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
-  check_cylinder(circuit, component.name, static_cast<const SlewCylinderDef&>(component).common, 0, errors);
+void validate_slew(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems& warnings) {
+  check_cylinder(circuit, component.name, static_cast<const SlewCylinderDef&>(component).common, 0, errors, warnings);
 }
 
 }  // namespace

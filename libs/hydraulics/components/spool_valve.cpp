@@ -267,6 +267,13 @@ void check_edge_curve(const HydraulicsDef& circuit, const std::string& path, con
     errors.push_back({path, fmt::format("the curve '{}' has negative openings", name),
                       "values >= 0 over positions from -1 to 1, without odd: true", ""});
   }
+  if (curve->points.empty()) return;
+  const double first = curve->points.front()[0], last = curve->points.back()[0];
+  if (first < -1 || last > 1) {
+    errors.push_back({path, fmt::format("the curve '{}' goes from {:g} to {:g}", name, first, last),
+                      "positions within -1 to 1, shares of the spool's travel: per cent over 100, mm over the stroke",
+                      ""});
+  }
 }
 
 void validate_spool_valve(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {

@@ -47,6 +47,14 @@ TEST(FlagCounter, SamplesThatDidNotArriveAreCountedAndANewEpochIsNoGap) {
   EXPECT_TRUE(flag_sentences(flags, milliseconds(1), {}).empty());
 }
 
+TEST(FlagCounter, NamesTheLineThatCavitates) {
+  FlagCounter flags;
+  for (const StepIndex step : {1, 2}) take(flags, step, StepFlag::cavitating);
+  EXPECT_EQ(flag_sentences(flags, milliseconds(1), kNames),
+            std::vector<std::string>{"hydraulics: Line: the oil cavitated in 2 steps, first at 1 ms; look at the "
+                                     "pressures near zero"});
+}
+
 // sensors publish at every k-th step
 TEST(FlagCounter, NamesTheSensorWhoseSearchFailed) {
   FlagCounter flags;

@@ -135,6 +135,20 @@ TEST(SpoolValve, openings_below_zero_and_a_bypass_without_travel_are_refused) {
   EXPECT_EQ(errors[3].path, "Valve.bypass_closed");
 }
 
+// per cent or millimetres of the stroke, which the position of -1 to 1 never reaches
+TEST(SpoolValve, curves_in_other_units_than_shares_of_the_travel_are_refused) {
+  for (const Table& points : {Table{{0, 0}, {100, 20}}, Table{{-7, 1}, {0, 0}}}) {
+    Rig rig;
+    rig.def.curves.push_back({.name = "Edge", .points = points});
+    rig.valve->pa.curve = "Edge";
+    Problems errors, warnings;
+    validate(rig.def, errors, warnings);
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(errors[0].path, "Valve.curve_pa");
+    EXPECT_NE(errors[0].what.find("the curve 'Edge' goes from"), std::string::npos) << errors[0].what;
+  }
+}
+
 // A flow source that fills 1 l of oil without air at B = 1.5e9 Pa: p' = Q B/V.
 TEST(FlowSource, fills_a_volume_at_its_flow_whatever_the_pressure) {
   HydraulicsDef def;

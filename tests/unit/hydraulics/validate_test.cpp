@@ -216,6 +216,24 @@ TEST(HydraulicsValidation, curves_must_increase_and_friction_must_brake) {
   EXPECT_EQ(what_at(findings(def).errors, "Spline_CylinderFriction.points"), "point 1 is not finite");
 }
 
+// typed over mm/s or rev/min, as in a data sheet
+TEST(HydraulicsValidation, curves_beyond_every_speed_are_warnings) {
+  HydraulicsDef def = crane_circuit();
+  EXPECT_EQ(what_at(findings(def).warnings, "Cyl_Lift.friction_curve"), "");
+  for (auto& point : def.curves[0].points) point[0] *= 1000;
+  EXPECT_NE(what_at(findings(def).warnings, "Cyl_Lift.friction_curve").find("an actuator does not exceed 20 m/s"),
+            std::string::npos);
+  HydraulicsDef bench = bench_circuit();
+  EXPECT_EQ(what_at(findings(bench).warnings, "Engine.torque_curve"), "");
+  for (CurveDef& curve : bench.curves) {
+    if (curve.name != "Full_Load") continue;
+    for (auto& point : curve.points) point[0] *= 30 / 3.14159;
+  }
+  EXPECT_NE(what_at(findings(bench).warnings, "Engine.torque_curve").find("its first torque holds there"),
+            std::string::npos)
+      << listing(findings(bench).warnings);
+}
+
 TEST(HydraulicsValidation, quasi_static_volumes_are_refused_by_solvers_without_algebraic_rows) {
   HydraulicsDef def = crane_circuit();
   def.volumes[0].quasi_static = true;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -27,11 +28,15 @@ class Numbers : public ::testing::Test {
   Numbers() {
     program_.option("--share", share_, "a share").between(0.5, 100.0);
     program_.option("--count", count_, "a count").between(1, 9);
+    program_.option("--seed", seed_, "a seed");
+    program_.option("--number", number_, "a number");
     program_.option("--all", all_, "a list").comma_separated().one_value_each();
   }
   Program program_{"test", "a test"};
   std::optional<double> share_;
   int count_ = 3;
+  std::uint64_t seed_ = 1;
+  std::int64_t number_ = 1;
   std::vector<std::string> all_;
 };
 
@@ -56,6 +61,21 @@ TEST_F(Numbers, AnIntegerHasItsBounds) {
   EXPECT_EQ(problem_of(program_, {"--count", "9"}), "");
   EXPECT_EQ(count_, 9);
   for (const char* text : {"0", "10", "2.5", "nan"}) EXPECT_NE(problem_of(program_, {"--count", text}), "") << text;
+}
+
+TEST_F(Numbers, AWholeNumberThatDoesNotFitIsRefused) {
+  EXPECT_EQ(problem_of(program_, {"--seed", "18446744073709551615", "--number=-9223372036854775808"}), "");
+  EXPECT_EQ(seed_, std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(number_, std::numeric_limits<std::int64_t>::min());
+  for (const char* text : {"-1", "18446744073709551616", "99999999999999999999"}) {
+    EXPECT_NE(
+        problem_of(program_, {std::string("--seed=") + text}).find("is no whole number from 0 to 18446744073709551615"),
+        std::string::npos)
+        << text;
+  }
+  for (const char* text : {"9223372036854775808", "-9223372036854775809", "x"}) {
+    EXPECT_NE(problem_of(program_, {std::string("--number=") + text}), "") << text;
+  }
 }
 
 TEST_F(Numbers, AListTakesCommasAndRepeats) {

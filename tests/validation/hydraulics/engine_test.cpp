@@ -79,6 +79,24 @@ TEST(ValidationEngine, an_overload_lugs_it_down_until_it_stalls) {
   EXPECT_EQ(overload.variable("Engine.is_stalled"), 1);
 }
 
+// A line that stays under pressure does not turn the stalled engine backwards: it creeps at T tau_h/J, T between alpha
+// D p eta_m and alpha D p/eta_m, and its shaft gets less than the oil gives.
+TEST(ValidationEngine, oil_does_not_turn_it_backwards) {
+  Rig rig(200);
+  rig.def.curves.front().points = {{0, 100}, {300, 100}};
+  rig.pump().mechanical_coefficient = 0.8, rig.pump().volumetric_coefficient = 0.9;
+  rig.engine().friction_torque = 10;
+  rig.run(6);
+  EXPECT_EQ(rig.variable("Engine.is_stalled"), 1);
+  const double w = rig.variable("Engine.speed"), T = rig.variable("Pump.torque");
+  EXPECT_LT(w, 0);
+  EXPECT_GT(w, -1.1 * 1e-3 * 250 / kInertia);
+  EXPECT_NEAR(rig.variable("Engine.torque"), T, 1e-6 * T);
+  EXPECT_LE(T, 250);
+  EXPECT_GE(T, 160);
+  EXPECT_LT(-rig.variable("Pump.power"), -rig.variable("Pump.flow") * 200 / kDisplacement);
+}
+
 // A signal sets the speed: J w' = T_full w/o load until the governor takes over at w_s.
 TEST(ValidationEngine, it_runs_up_at_its_full_load_to_the_speed_that_a_signal_demands) {
   Rig rig(0);

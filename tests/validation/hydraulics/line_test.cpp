@@ -109,6 +109,36 @@ TEST(ValidationLine, of_few_modes_has_the_frequency_of_the_quarter_wave) {
   }
 }
 
+// The ends of a line at 10 bar fall to 2 bar at once: the two waves meet in the middle, whose pressure falls by twice 8
+// bar, to -6 bar. The oil would cavitate there, and the step reports it.
+TEST(ValidationLine, reports_that_its_own_oil_would_cavitate) {
+  for (const double fall : {3.0, 8.0}) {
+    HydraulicsDef def;
+    def.start = StartState::table13;
+    add_volume(def, "A", 10 * kBar).rigid_volume = 1e-3, add_volume(def, "B", 10 * kBar).rigid_volume = 1e-3;
+    LineDef& line = add<LineDef>(def, "Line");
+    line.port_1 = "A", line.port_2 = "B", line.length = kLength, line.diameter = kDiameter;
+    for (const char* end : {"A", "B"}) {
+      PressureSourceDef& source = add<PressureSourceDef>(def, std::string("Source_") + end);
+      source.port_1 = end, source.set_pressure = (10 - fall) * kBar, source.nominal_flow = 1;
+      source.nominal_pressure_drop = 0.1 * kBar;
+    }
+    Circuit circuit(def);
+    CircuitIntegrator integrator(circuit, def);
+    integrator.start({}, {}, {});
+    int reported = 0;
+    for (int k = 0; k < 60; ++k) {
+      const StepReport report = integrator.step(5e-4, HeldSpeed(0));
+      if (!report.has(StepFlag::cavitating)) continue;
+      ++reported;
+      EXPECT_EQ(circuit.state_owner(report.offender - circuit.first_component_state()), "Line");
+      EXPECT_EQ(circuit.first_cavitating(integrator.state().data()), report.offender);
+    }
+    // 10 - 2 x 3 bar is above zero, with the ringing of five modes too
+    EXPECT_EQ(reported > 0, fall == 8) << reported;
+  }
+}
+
 // Hagen and Poiseuille, dp = 128 rho nu L Q/(pi D^4); Blasius, dp = 0.3164 Re^(-1/4) L/D rho v^2/2; and the losses of
 // both ends.
 TEST(ValidationLine, loses_the_pressure_of_its_friction_and_of_its_ends) {
