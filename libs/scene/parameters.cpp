@@ -171,13 +171,12 @@ std::string ParameterDirectory::obstacle_of_level(const ParameterInfo& parameter
   return follows ? std::string() : std::string(obstacle_of(session_, level));
 }
 
-// Only for changes that make the mechanism faster than in the scene; costs some hundred evaluations of it.
+// Costs some hundred evaluations of the mechanism.
 std::string ParameterDirectory::obstacle_of_speed(const ParameterInfo& parameter, double value) const {
   if (mechanics_ == nullptr) return {};
   const multibody::Integrator rule = multibody::step_rule(*mechanics_).integrator;
   if (!multibody::is_explicit(rule)) return {};
-  const bool is_mass = parameter.path.ends_with(".mass");
-  if (is_mass ? value >= parameter.value : value <= parameter.value) return {};
+  if (value == parameter.value) return {};
   multibody::Model model = multibody::build_model(*mechanics_);
   const std::optional<multibody::Parameter> found = multibody::find_parameter(model, parameter.path);
   if (!found || !multibody::may_speed_up(found->kind)) return {};
