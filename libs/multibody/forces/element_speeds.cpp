@@ -166,9 +166,11 @@ double growth_of(const std::vector<Complex>& rates, Integrator rule, double h) {
   return growth;
 }
 
-double fastest_of(const std::vector<Complex>& rates) {
-  double fastest = 0;
-  for (const Complex rate : rates) fastest = std::max(fastest, std::abs(rate));
+Complex fastest_of(const std::vector<Complex>& rates) {
+  Complex fastest = 0;
+  for (const Complex rate : rates) {
+    if (std::abs(rate) > std::abs(fastest)) fastest = rate;
+  }
   return fastest;
 }
 
@@ -199,7 +201,9 @@ std::optional<TooFast> find_in(const Model& model, Integrator rule, double h) {
     const std::vector<Complex> rates = fastest_rates(alone, rule, h);
     const double growth = growth_of(rates, rule, h);
     if (growth <= found.growth) continue;
-    found.growth = growth, found.rate = fastest_of(rates), found.element = place.name;
+    const Complex fastest = fastest_of(rates);
+    found.growth = growth, found.rate = std::abs(fastest), found.element = place.name;
+    found.swings = std::fabs(fastest.imag()) > std::fabs(fastest.real());
   }
   return found;
 }
@@ -214,7 +218,8 @@ bool may_speed_up(ParameterKind kind) noexcept {
   bool is_one_sided = false;
   for_each_force_kind([&](auto row) {
     using Kind = decltype(row);
-    if (static_cast<int>(kind) == number++) is_one_sided = std::is_same_v<Kind, RopeRow> || std::is_same_v<Kind, TyreRow>;
+    if (static_cast<int>(kind) == number++)
+      is_one_sided = std::is_same_v<Kind, RopeRow> || std::is_same_v<Kind, TyreRow>;
   });
   return is_one_sided || is_linear_force(kind);
 }
@@ -236,7 +241,7 @@ Problem problem_of(const TooFast& found, Integrator rule, double h) {
                       found.rate, found.growth),
           fmt::format("mechanics.max_substep of at most {:.2g} s, more mass or inertia, less stiffness, damping or "
                       "slope, or an implicit mechanics.integrator such as {}",
-                      0.95 * found.longest_step, found.is_at_end ? "sdirk2" : "trapezoidal"),
+                      0.95 * found.longest_step, found.swings && !found.is_at_end ? "trapezoidal" : "sdirk2"),
           ""};
 }
 

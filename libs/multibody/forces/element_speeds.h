@@ -42,6 +42,7 @@ struct TooFast {
   double growth = 0;        // factor in one sub-step
   double rate = 0;          // |lambda| of its fastest motion [1/s]
   double longest_step = 0;  // s, that does not let it grow
+  bool swings = false;      // that motion is an oscillation
   bool is_at_end = false;   // by its end dampers
 };
 
