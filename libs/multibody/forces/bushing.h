@@ -85,7 +85,7 @@ struct BushingRow : ConnectorRow<Bushing> {
   static Bushing build(const BushingDef& def, ElementBuilder& builder);
   static void check(const BushingDef& def, ElementRules& rules);
   static void check_start(const BushingDef& def, ElementStartRules& rules);
-  static void linearise(Bushing& bushing, std::span<const LinkMotion>) { bushing.curves.clear(); }
+  static void linearise(Bushing& bushing) { bushing.curves.clear(); }
   static void silence(Bushing& bushing);
   static std::span<const std::string_view> value_keys(const Bushing& bushing) noexcept;
   static double* value(Bushing& bushing, std::size_t index) noexcept;

@@ -115,10 +115,10 @@ struct ForceRow {
   static constexpr bool kHasStops = false;
   static int side_of(const T& /*element*/, std::span<const LinkMotion> /*motion*/) noexcept { return 0; }
 
-  // Whether it is linear around the start `motion`, but for tables, which linearise() leaves out; silence() leaves
-  // nothing. For the check of explicit steps (element_speeds.h), which leaves out kinds that saturate.
+  // Whether it is linear around the start, but for tables, which linearise() leaves out; silence() leaves nothing. For
+  // the check of explicit steps (element_speeds.h), which leaves out kinds that push on one side or saturate.
   static constexpr bool kIsLinear = false;
-  static void linearise(T& /*element*/, std::span<const LinkMotion> /*motion*/) {}
+  static void linearise(T& /*element*/) {}
   static void silence(T& /*element*/) {}
 
   // Values that may change while the mechanism runs, by key below the element's name ("stiffness.x").

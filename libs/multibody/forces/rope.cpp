@@ -167,26 +167,6 @@ Rope RopeRow::build(const RopeDef& def, ElementBuilder& builder) {
   return rope;
 }
 
-void RopeRow::linearise(Rope& rope, std::span<const LinkMotion> motion) noexcept {
-  // far more than the check moves it, far less than what turns its direction
-  constexpr double kTaut = 1e-4;
-  const double length = state_of(rope, motion).length;
-  if (!rope.spring_curve.empty() || !(length > 0)) {
-    silence(rope);
-    return;
-  }
-  rope.spring = spring_tension(rope, 1);
-  rope.rigidity = rope.damping = 0;
-  rope.damper_curve = {};
-  rope.free_length = (1 - kTaut) * length;
-}
-
-void RopeRow::silence(Rope& rope) noexcept {
-  rope.spring = rope.rigidity = rope.damping = 0;
-  rope.spring_curve = {};
-  rope.damper_curve = {};
-}
-
 void RopeRow::check(const RopeDef& def, ElementRules& rules) {
   for (const std::string& body : def.bodies) rules.check_body(def.name, "bodies", body);
   if (def.points.size() < 2 || def.bodies.size() != def.points.size()) {

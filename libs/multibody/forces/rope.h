@@ -120,11 +120,6 @@ struct RopeRow : ForceRow<Rope> {
     return state_of(rope, motion).springs;
   }
 
-  // A rope as taut as it is while it holds its load: without the damper, which its spring limits.
-  static constexpr bool kIsLinear = true;
-  static void linearise(Rope& rope, std::span<const LinkMotion> motion) noexcept;
-  static void silence(Rope& rope) noexcept;
-
   static void list_variables(const Rope& rope, VariableNames& names);
   static void read_variables(const Rope& rope, std::span<const LinkMotion> motion, double time,
                              VariableSink& sink) noexcept;
