@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "multibody/build/validate.h"
 #include "multibody/constraints/loops.h"
 #include "multibody/formulations/body_coordinates.h"
 #include "multibody/formulations/dynamics.h"
@@ -177,6 +178,15 @@ TEST(LoopGraph, LeavesOutZerosAlone) {
   });
 }
 
+// Rods may hold two joints in a ratio, which a gear then contradicts.
+void leave_out_gears_in_conflict(MechanicsDef& def) {
+  Problems problems;
+  validate(def, problems);
+  for (const Problem& problem : problems) {
+    std::erase_if(def.gears, [&](const GearDef& gear) { return gear.name == problem.path; });
+  }
+}
+
 // trees of every joint, with gears, flexible bodies, and dummies at their nodes
 TEST(LoopGraph, LeavesOutZerosAloneBesideGearsAndFlexibleBodies) {
   int flexible = 0, geared = 0;
@@ -200,6 +210,7 @@ TEST(LoopGraph, LeavesOutZerosAloneBesideGearsAndFlexibleBodies) {
       before = &joint;
     }
     for (JointDef& joint : tree.def.joints) joint.initial_velocity = kNotGiven;
+    leave_out_gears_in_conflict(tree.def);
     Mechanism mechanism(tree.def, tree.rows);
     flexible += mechanism.model.parts.empty() ? 0 : 1;
     geared += mechanism.model.gears.empty() ? 0 : 1;

@@ -28,13 +28,14 @@ const std::vector<Drawn>& scenes() {
   static const std::vector<Drawn> scenes = [] {
     std::vector<std::string> paths;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(SLEWRING_SOURCE_DIR "/scenes")) {
-      if (entry.path().extension() == ".yaml") paths.push_back(entry.path().string());
+      if (entry.path().extension() != ".yaml" || entry.path().parent_path().filename() == "beams") continue;
+      paths.push_back(entry.path().string());
     }
     std::sort(paths.begin(), paths.end());
     std::vector<Drawn> drawn;
     for (const std::string& path : paths) {
       const std::string name = std::filesystem::path(path).stem().string();
-      if (name.starts_with("truck_crane_") || name.starts_with("jib_boom")) continue;  // the latter: no scenes
+      if (name.starts_with("truck_crane_")) continue;
       scene::Scene scene = scene::load_file(path);
       if (scene.hydraulics.components.empty()) continue;
       CircuitLayout layout = lay_out(scene.hydraulics);
