@@ -5,10 +5,9 @@
 // restrictions, lines, filters, flow dividers, compensated orifices, four-way valves without gain, from the inlets of
 // shuttle valves to their outlet, past a priority valve, and through check valves, those of counterbalance and hose
 // burst valves too, in their free direction; by what has a nominal flow only if it passes the pump's flow below the end
-// of the oil law. It is relieved where a relief valve that is set below that end or a shock valve stands on it, or where
-// it reaches a fixed volume.
-// Leaks do not count: they pass the pump's flow only at pressures far beyond any limit. A pressure controller of the
-// pump does not count either: it acts at its setting and after its delay.
+// of the oil law. It is relieved where a relief valve that is set below that end or a shock valve stands on it, or
+// where it reaches a fixed volume. Leaks do not count: they pass the pump's flow only at pressures far beyond any
+// limit. A pressure controller of the pump does not count either: it acts at its setting and after its delay.
 #pragma once
 
 #include <limits>
