@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Events of a recorded session besides its steps: requests and io's replies, io's own actions (overruns, load
-// shedding), changes of the holder of a controller's channel, events of sensors, and switched outputs that go on or off,
-// which are computed from the recorded variables (docs/decisions/outputs-in-recordings.md). Requests that read a value, and
-// were answered, change nothing and are left out.
+// shedding), changes of the holder of a controller's channel, events of sensors, and switched outputs that go on or
+// off, which are computed from the recorded variables (docs/decisions/outputs-in-recordings.md). Requests that read a
+// value, and were answered, change nothing and are left out.
 #pragma once
 
 #include <cstdint>
