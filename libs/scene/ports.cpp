@@ -172,7 +172,7 @@ void make_ports(Scene& scene, Problems& problems) {
   }
   if (scene.ports.size() > coupling::kMaxPorts) {
     problems.push_back({scene.ports[coupling::kMaxPorts].name,
-                        fmt::format("there are {} cylinders", scene.ports.size()),
+                        fmt::format("there are {} cylinders and motors", scene.ports.size()),
                         fmt::format("at most {}", coupling::kMaxPorts), ""});
   }
 }

@@ -103,6 +103,7 @@ class SceneReader {
            fmt::format("the change of {} at {:g} s has no effect: the run ends at {:g} s", change.set, change.at, end),
            "an earlier time, or a longer session.duration", ""});
     }
+    check_problems([&](Problems&, Problems& warnings) { find_points_behind_the_end(scene_, end, warnings); });
   }
 
   void add_problem(const Problem& problem) {

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "hydraulics/components/four_way_valve.h"
 #include "scene/canonical.h"
 #include "scene/sections.h"
 
@@ -69,12 +69,41 @@ class Search {
     for (const auto& load : scene_.mechanics.point_forces) check_load(load, load.force, load.force_table, "force");
     for (const auto& load : scene_.mechanics.point_torques) check_load(load, load.torque, load.torque_table, "torque");
     for (const auto& component : scene_.hydraulics.components) {
-      const auto* valve = dynamic_cast<const hydraulics::FourWayValveDef*>(component.get());
-      if (valve == nullptr || valve->name != input.primitive || valve->opening_gain != 0) continue;
-      warn(input.name + ".primitive",
-           fmt::format("the input has no effect: the opening_gain of '{}' is 0", valve->name),
-           "an opening_gain other than 0");
+      if (component->name == input.primitive && input.scale != 0) find_in(input, *component);
     }
+  }
+
+  // an input of a component whose signal moves nothing at full stick
+  void find_in(const InputDef& input, hydraulics::ComponentDef& component) {
+    constexpr double kLeastTravel = 0.02;  // share of a spool's travel that counts as a movement
+    double most = 0, overlap = 1;
+    bool has_overlap = false;
+    for (const Field& field : hydraulics::find_component_type(component.type_name())->fields) {
+      if (field.type != FieldType::number) continue;
+      const double value = *static_cast<double*>(field.member(component.address()));
+      const bool is_gain = field.key.ends_with("_per_signal") || field.key == "opening_gain";
+      if (is_gain && value == 0 && !is_changed_live(component.name, field.key)) {
+        warn(input.name + ".primitive",
+             fmt::format("the input has no effect: the {} of '{}' is 0", field.key, component.name),
+             fmt::format("{} other than 0", field.key));
+      }
+      if (field.key == "maximum_control_signal") most = value;
+      if (field.key.starts_with("overlap")) overlap = std::min(overlap, value), has_overlap = true;
+    }
+    if (!(most > 0)) return;
+    const double travel = std::fabs(input.scale) / most, dead = has_overlap ? overlap : 0;
+    if (travel > std::max(dead, kLeastTravel)) return;
+    warn(input.name + ".scale",
+         fmt::format("the input has no effect: at full stick it moves the spool of '{}' by {:.3g} % of its travel{}",
+                     component.name, 100 * travel,
+                     dead > 0 ? fmt::format(", within {:.3g} % of overlap", 100 * dead) : ""),
+         fmt::format("a scale up to the valve's maximum_control_signal, {:g}", most));
+  }
+
+  [[nodiscard]] bool is_changed_live(const std::string& element, std::string_view key) const {
+    const std::string path = fmt::format("{}.{}", element, key);
+    return std::any_of(scene_.script.changes.begin(), scene_.script.changes.end(),
+                       [&](const ScriptChange& change) { return change.set == path; });
   }
 
   template <typename Load>
@@ -135,6 +164,22 @@ class Search {
 
 void find_without_effect(Scene& scene, Problems& warnings) {
   Search(scene, warnings).run();
+}
+
+// points typed in ms; a file may be longer than the run
+void find_points_behind_the_end(const Scene& scene, double end, Problems& warnings) {
+  if (scene.script.file) return;
+  for (const ScriptTrack& track : scene.script.tracks) {
+    for (std::size_t i = 1; i < track.points.size(); ++i) {
+      const auto& [time, value] = track.points[i];
+      if (time <= end || value == track.points[i - 1][1]) continue;
+      warnings.push_back(
+          {"script.inputs." + track.input,
+           fmt::format("the input does not reach its point at {:g} s: the run ends at {:g} s", time, end),
+           "times in s or with a unit, or a longer session.duration", ""});
+      break;
+    }
+  }
 }
 
 }  // namespace slew::scene

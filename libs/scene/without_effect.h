@@ -11,4 +11,7 @@ namespace slew::scene {
 // tables of files read.
 void find_without_effect(Scene& scene, Problems& warnings);
 
+// Warnings about points of the scene's script behind the end of its run [s] that change their input.
+void find_points_behind_the_end(const Scene& scene, double end, Problems& warnings);
+
 }  // namespace slew::scene

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/step_report.h"
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/passages.h"
@@ -49,7 +50,7 @@ constexpr Field kAccumulatorFields[] = {
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of nominal_flow"}),
 };
 
-constexpr double kSmallestGasVolume = 0.02;  // nu, below which (2) goes on along its tangent, so that it stays defined
+constexpr double kSmallestGasVolume = 1e-3;  // nu, below which (2) goes on along its tangent, so that it stays defined
 constexpr double kClosing = 0.01;            // f, below which the oil valve closes
 constexpr double kClosingClipWidth = 0.02;   // share of the closing, smoothing of its limits
 constexpr double kFrictionWidth = 0.1;       // share of the friction pressure, smoothing of its edges
@@ -97,6 +98,9 @@ class Accumulator final : public HydraulicComponent {
   void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept override {
     if (std::fabs(view[p_] - gas(view).p) > transition_ + def_.friction_pressure) return;
     outflow_slope[p_] += std::fmax(0, K_ * root(0, transition_).slope - flow(view).d_p);
+  }
+  [[nodiscard]] std::uint32_t flags(const CircuitView& view) const noexcept override {
+    return 1 - view[f_] < kSmallestGasVolume ? static_cast<std::uint32_t>(StepFlag::clamp_active) : 0;
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("oil_volume", Dimension::volume));

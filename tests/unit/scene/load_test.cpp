@@ -56,6 +56,26 @@ TEST(Load, WarnsOfAScriptedChangeBehindTheEndOfTheRun) {
   EXPECT_TRUE(load_text(script, "test").warnings.empty());
 }
 
+TEST(Load, WarnsOfAPointOfTheScriptBehindTheEndOfTheRun) {
+  const auto warnings = [](const std::string& points) {
+    return load_text(
+               "bodies:\n  Rod: {mass: 1 kg, inertia: [1, 1, 1]}\njoints:\n  Hinge: {type: revolute, body2: Rod}\n"
+               "forces:\n  Push: {type: point_force, body: Rod, force: 1 N}\n"
+               "inputs:\n  Stick: {type: analog, primitive: Push}\nsession: {duration: 2 s}\n"
+               "script: {inputs: {Stick: " +
+                   points + "}}\n",
+               "test")
+        .warnings;
+  };
+  const auto meant_ms = warnings("[[0, 0], [500, 1]]");
+  ASSERT_EQ(meant_ms.size(), 1u);
+  EXPECT_NE(meant_ms[0].find("script.inputs.Stick: the input does not reach its point at 500 s: the run ends at 2 s"),
+            std::string::npos)
+      << meant_ms[0];
+  EXPECT_TRUE(warnings("[[0, 0], [2, 1]]").empty());
+  EXPECT_TRUE(warnings("[[0, 0], [1, 1], [9, 1]]").empty());
+}
+
 TEST(Load, TextsSurviveTheRoundTrip) {
   const std::string title = "the \"hi\" \\ to\tit: # [x] \xC3\xA4, and 'so'";
   std::string scene = kPendulum + "plots:\n  Swing: {title: " + yaml_text(title) + ", variables: [Rod.position.x]}\n";
@@ -323,6 +343,44 @@ TEST(Load, AnInputWithoutEffectIsReportedAsAWarning) {
   EXPECT_NE(warnings(", force: 1 N", ", scale: 0").find("Stick.scale: the input has no effect"), std::string::npos);
   EXPECT_EQ(warnings(", force: 1 N", "").find("no effect"), std::string::npos);
   EXPECT_EQ(warnings(", force_table: [[0, 0], [1, 5]]", "").find("no effect"), std::string::npos);
+}
+
+// Defaults of valves and gains of components leave an input without effect; a change of the script gives it one.
+TEST(Load, AnInputThatMovesNoComponentIsReportedAsAWarning) {
+  const auto warnings = [](const std::string& component, const std::string& input, const std::string& script = "") {
+    return all_of(load_text("volumes:\n  P: {fixed: true, initial_pressure: 150 bar}\n  A: {fixed: true}\n"
+                            "  B: {fixed: true}\n  T: {fixed: true}\ncomponents:\n  C: {" +
+                                component + "}\ninputs:\n  Stick: {type: analog, primitive: C" + input + "}\n" + script,
+                            "test")
+                      .warnings);
+  };
+  const std::string l90 = "type: l90ls_valve, port_p: P, port_a: A, port_b: B, port_t: T";
+  EXPECT_NE(warnings(l90, "").find("Stick.scale: the input has no effect: at full stick it moves the spool of 'C' by "
+                                   "0.2 % of its travel, within 32 % of overlap"),
+            std::string::npos)
+      << warnings(l90, "");
+  EXPECT_NE(warnings(l90, ", scale: -160").find("no effect"), std::string::npos);
+  EXPECT_EQ(warnings(l90, ", scale: -170").find("no effect"), std::string::npos);
+  const std::string spool = "type: spool_valve, port_p: P, port_a: A, port_b: B, port_t: T, area_pa: 1 mm2";
+  EXPECT_EQ(warnings(spool, "").find("no effect"), std::string::npos);
+  EXPECT_NE(warnings(spool + ", maximum_control_signal: 100", "").find("no effect"), std::string::npos);
+  const std::pair<const char*, const char*> gains[] = {
+      {"type: pump, port_a: P, port_b: T, speed: 150 rad/s, displacement: 10 cc/rev", "swash_per_signal: 0.5"},
+      {"type: flow_source, port_1: T, port_2: P, flow: 10 l/min", "flow_per_signal: 1 l/min"},
+      {"type: pressure_source, port_1: P, set_pressure: 10 bar, nominal_flow: 10 l/min, nominal_pressure_drop: 1 bar",
+       "pressure_per_signal: 1 bar"},
+      {"type: four_way_valve, port_p: P, port_a: A, port_b: B, port_t: T, edge_area: 1 mm2, opening_gain: 0", ""}};
+  for (const auto& [component, gain] : gains) {
+    EXPECT_NE(warnings(component, "").find("Stick.primitive: the input has no effect"), std::string::npos) << component;
+    if (*gain == 0) continue;
+    EXPECT_EQ(warnings(component + std::string(", ") + gain, "").find("no effect"), std::string::npos) << component;
+  }
+  EXPECT_EQ(
+      warnings(
+          gains[0].first, "",
+          "session: {duration: 1 s}\nscript:\n  parameters:\n    - {at: 0.5 s, set: C.swash_per_signal, value: 1}\n")
+          .find("no effect"),
+      std::string::npos);
 }
 
 TEST(Load, TheWindowFollowsThePaceWhenItIsNotGiven) {

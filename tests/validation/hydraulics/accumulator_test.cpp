@@ -53,6 +53,22 @@ TEST(ValidationAccumulator, starts_at_rest_at_the_pressure_of_its_volume) {
   }
 }
 
+// nu = p_0/p = 1/120, far below any data sheet's: 2 l hold 1.983 l of oil at most, whatever the pressure
+TEST(ValidationAccumulator, never_holds_more_oil_than_its_volume) {
+  HydraulicsDef def;
+  add_tank(def, "Line", 600e5);
+  AccumulatorDef& accumulator = add_accumulator(def, "Line", 1e-6);
+  accumulator.precharge_pressure = 5e5, accumulator.polytropic_exponent = 1;
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  integrator.start({}, {}, {});
+  for (int k = 0; k < 200; ++k) EXPECT_FALSE(integrator.step(1e-2, HeldSpeed(0)).has(StepFlag::clamp_active));
+  EXPECT_NEAR(variable(circuit, integrator, "Accumulator.oil_volume"), kV0 * (1 - 5.0 / 600), 1e-9 * kV0);
+  // beyond its law: the step reports it
+  integrator.mutable_state()[static_cast<std::size_t>(circuit.first_component_state())] = 1 - 5e-4;
+  EXPECT_NE(circuit.flags(integrator.state().data()) & static_cast<std::uint32_t>(StepFlag::clamp_active), 0u);
+}
+
 // Discharge into p ~ 0 through its connection: V_g' = K sqrt(p_g), p_g = p_0 (V_0/V_g)^n,
 //   V_g^(1 + n/2) = V_g0^(1 + n/2) + (1 + n/2) K sqrt(p_0) V_0^(n/2) t                                            (1)
 // Tolerance 1e-4 of the gas volume: the 1e-4 of p_0 of the outlet, and the solver's.
