@@ -226,7 +226,7 @@ std::string_view typographic_space_in(std::string_view text) {
 ValueProblem unknown_unit(std::string_view text, Dimension dimension, UnitSystem& units) {
   if (const std::string_view space = typographic_space_in(text); !space.empty()) {
     return {fmt::format("unknown unit '{}': it holds a {}, which looks like a plain space", text, space),
-            expected_quantity(dimension) + " with a plain space", ""};
+            expected_quantity(dimension), ""};
   }
   std::vector<std::string_view> fitting, all(std::begin(kCommonUnits), std::end(kCommonUnits));
   for (const std::string_view name : all) {

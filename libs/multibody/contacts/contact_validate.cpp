@@ -199,7 +199,7 @@ void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems
 
 // rk4 takes parts of contact_substep or kReach over the rate: stable, and too long for the rebound of a stiff pair
 void find_coarse_rebounds(const MechanicsDef& mechanics, double substep, Problems& warnings) {
-  constexpr double kCoarse = 0.5;  // rate times part: beyond, the rebound may be off by 0.01 of the speed and more
+  constexpr double kCoarse = 0.75;  // rate times part: below, the rebound is right to half a per cent
   const Model model = build_model(mechanics);
   if (model.contact == nullptr) return;
   const std::span<const contact::ContactPair> pairs = model.contact->model.pairs();

@@ -235,9 +235,9 @@ std::optional<TooFast> find_too_fast_element(const Model& given, Integrator rule
 
 Problem problem_of(const TooFast& found, Integrator rule, double h) {
   return {found.element,
-          fmt::format("it is too fast for {} in sub-steps of {:.4g} s on the masses that it acts on: with {}, its "
-                      "rate is {:.4g} 1/s, and what swings or fades would grow {:.4g} times in each sub-step instead",
-                      key_of(rule), h, found.is_at_end ? "its end dampers touched" : "tables at their steepest",
+          fmt::format("it is too fast for {} in sub-steps of {:.4g} s on the masses that it acts on: {} its rate is "
+                      "{:.4g} 1/s, and what swings or fades would grow {:.4g} times in each sub-step",
+                      key_of(rule), h, found.is_at_end ? "with its end dampers touched" : "at the steepest of its law",
                       found.rate, found.growth),
           fmt::format("mechanics.max_substep of at most {:.2g} s, more mass or inertia, less stiffness, damping or "
                       "slope, or an implicit mechanics.integrator such as {}",
