@@ -127,9 +127,14 @@ double mechanics_substep(const SessionDef& session, const multibody::MechanicsDe
 
 ParameterDirectory::ParameterDirectory(const Scene& scene)
     : session_(scene.session), ports_(scene.ports), parameters_(parameters(scene)) {
-  // without the tables of files no mechanism can be built
+  // without the tables of files, or the files of flexible bodies, no mechanism can be built
+  const multibody::MechanicsDef& parts = scene.mechanics;
   const bool is_whole = std::all_of(scene.table_files.begin(), scene.table_files.end(),
-                                    [](const TableFile& table) { return !table.found.empty(); });
+                                    [](const TableFile& table) { return !table.found.empty(); }) &&
+                        std::all_of(parts.flexible_bodies.begin(), parts.flexible_bodies.end(),
+                                    [](const multibody::FlexibleBodyDef& body) { return body.modes != nullptr; }) &&
+                        std::all_of(parts.segmented_bodies.begin(), parts.segmented_bodies.end(),
+                                    [](const multibody::SegmentedBodyDef& body) { return body.chain != nullptr; });
   if (is_whole && scene.has_mechanics() && session_.solution == Solution::split) {
     mechanics_ = std::make_shared<const multibody::MechanicsDef>(scene.mechanics);
   }
@@ -171,13 +176,15 @@ std::string ParameterDirectory::obstacle_of_level(const ParameterInfo& parameter
   return follows ? std::string() : std::string(obstacle_of(session_, level));
 }
 
-// Only for changes that make the mechanism faster than in the scene; costs some hundred evaluations of it.
+// Only for changes that may make the mechanism faster than in the scene; costs some hundred evaluations of it.
 std::string ParameterDirectory::obstacle_of_speed(const ParameterInfo& parameter, double value) const {
   if (mechanics_ == nullptr) return {};
   const multibody::Integrator rule = multibody::step_rule(*mechanics_).integrator;
   if (!multibody::is_explicit(rule)) return {};
   const bool is_mass = parameter.path.ends_with(".mass");
-  if (is_mass ? value >= parameter.value : value <= parameter.value) return {};
+  // a shorter rope of the same section is stiffer
+  const bool is_length = parameter.path.ends_with(".free_length");
+  if (value == parameter.value || (!is_length && is_mass == (value > parameter.value))) return {};
   multibody::Model model = multibody::build_model(*mechanics_);
   const std::optional<multibody::Parameter> found = multibody::find_parameter(model, parameter.path);
   if (!found || !multibody::may_speed_up(found->kind)) return {};

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <complex>
 #include <limits>
 #include <type_traits>
 #include <vector>
 
+#include "math/eigenvalues.h"
+#include "multibody/forces/steepest_laws.h"
 #include "multibody/formulations/dynamics.h"
 #include "multibody/formulations/passes.h"
 #include "multibody/model/field_tables.h"
@@ -17,182 +19,163 @@
 namespace slew::multibody {
 namespace {
 
-constexpr double kProbe = 1e-8;  // m, rad, and the same by s
-// What starts with a thousandth of the vector and grows by kGrows shows after so many steps.
-constexpr int kMostSteps = 150;
-constexpr int kAveraged = 10;   // steps
-constexpr double kAtOnce = 10;  // growth that needs no more steps to be believed
-// In a sub-step; rk4 comes to it 3 % beyond its limit on the imaginary axis, 6 % on the real one. A mechanism that
-// grows so fast by itself is not followed either.
-constexpr double kGrows = 1.25;
-constexpr int kMostHalvings = 60, kBisections = 6;
+constexpr double kProbe = 1e-7;    // m, rad, and the same by s
+constexpr double kGrows = 1.001;   // in a sub-step: e in a thousand of them
+constexpr double kIsFast = 0.2;    // h |lambda|: what is slower grows by itself, as a load over its support does
+constexpr double kHuge = 1e3;      // h |lambda| beyond which the highest power alone counts
+constexpr double kNoise = 1e-6;    // of the largest rate: error of (1) by differences
+constexpr std::size_t kMost = 60;  // vectors of (3)
+constexpr int kMostHalvings = 60, kBisections = 12;
 
+using Complex = std::complex<double>;
 using Vector = std::vector<double>;
 
-// (1) of a model
+// (1) of a model, z = (x/s, v) with a time s
 class Linearised {
  public:
-  explicit Linearised(const Model& model)
+  Linearised(const Model& model, double s)
       : model_(model),
+        s_(s),
         ws_(model),
         start_(start_state(model)),
         n_(start_.u.size()),
         q_(start_.q.size()),
         rate_(q_.size()),
-        u_(n_),
-        way_(n_) {
-    std::fill(u_.begin(), u_.end(), 0.0);
-    forward_dynamics(model_, start_.q, u_, {}, ws_);
+        u_(n_) {
+    std::fill(start_.u.begin(), start_.u.end(), 0.0);
+    forward_dynamics(model_, start_.q, start_.u, {}, ws_);
     held_ = ws_.udot;
   }
   [[nodiscard]] std::size_t size() const noexcept { return n_; }
 
-  // z' = A z, z and its rate of 2 n numbers
-  void apply(const Vector& z, Vector& dz) {
-    double scale = 0;
-    for (const double value : z) scale = std::max(scale, std::fabs(value));
+  // The rate A z of the motion [1/s], or that of the map (2) of semi_implicit_euler over h, (z_1 - z_0)/h.
+  void apply(Integrator rule, double h, const Vector& z, Vector& dz) {
     dz.assign(2 * n_, 0);
-    if (!(scale > 0) || !std::isfinite(scale)) return;
-    for (std::size_t k = 0; k < n_; ++k) way_[k] = z[k] / scale;
-    update_motion(model_, start_.q, way_, ws_);
-    coordinate_rates(model_, ws_, start_.q, way_, rate_);
-    for (std::size_t k = 0; k < q_.size(); ++k) q_[k] = start_.q[k] + kProbe * rate_[k];
-    normalize_quaternions(model_, q_);
-    for (std::size_t k = 0; k < n_; ++k) u_[k] = kProbe * z[n_ + k] / scale;
-    forward_dynamics(model_, q_, u_, {}, ws_);
-    for (std::size_t k = 0; k < n_; ++k) {
-      dz[k] = z[n_ + k];
-      dz[n_ + k] = scale * (ws_.udot[k] - held_[k]) / kProbe;
-    }
+    add_acceleration(z, Part::displacement, dz);
+    add_acceleration(z, Part::speed, dz);
+    const double ahead = rule == Integrator::semi_implicit_euler ? h : 0;
+    for (std::size_t k = 0; k < n_; ++k) dz[k] = (z[n_ + k] + ahead * dz[n_ + k]) / s_;
   }
 
  private:
+  enum class Part { displacement, speed };
+
+  // A_x x or A_v v, in displacements or speeds of kProbe
+  void add_acceleration(const Vector& z, Part part, Vector& dz) {
+    const std::size_t first = part == Part::displacement ? 0 : n_;
+    double scale = 0;
+    for (std::size_t k = 0; k < n_; ++k) scale = std::max(scale, std::fabs(z[first + k]));
+    if (!(scale > 0)) return;
+    for (std::size_t k = 0; k < n_; ++k) u_[k] = z[first + k] / scale;
+    q_ = start_.q;
+    if (part == Part::displacement) {
+      update_motion(model_, start_.q, u_, ws_);
+      coordinate_rates(model_, ws_, start_.q, u_, rate_);
+      for (std::size_t k = 0; k < q_.size(); ++k) q_[k] += kProbe * rate_[k];
+      normalize_quaternions(model_, q_);
+      std::fill(u_.begin(), u_.end(), 0.0);
+    } else {
+      for (double& speed : u_) speed *= kProbe;
+    }
+    forward_dynamics(model_, q_, u_, {}, ws_);
+    const double weight = scale / kProbe * (part == Part::displacement ? s_ : 1.0);
+    for (std::size_t k = 0; k < n_; ++k) dz[n_ + k] += weight * (ws_.udot[k] - held_[k]);
+  }
+
   const Model& model_;
+  double s_;
   Workspace ws_;
   State start_;
   std::size_t n_;
-  Vector q_, rate_, u_, way_, held_;
+  Vector q_, rate_, u_, held_;
 };
 
-// (2)
-void step(Linearised& of, Integrator rule, double h, Vector& z) {
-  Vector term = z, rate;
-  const std::size_t n = of.size();
-  if (rule == Integrator::semi_implicit_euler) {
-    of.apply(z, rate);
-    for (std::size_t k = 0; k < n; ++k) z[n + k] += h * rate[n + k];
-    for (std::size_t k = 0; k < n; ++k) z[k] += h * z[n + k];
-    return;
-  }
-  for (int order = 1; order <= 4; ++order) {
-    of.apply(term, rate);
-    for (std::size_t k = 0; k < z.size(); ++k) {
-      term[k] = h / order * rate[k];
-      z[k] += term[k];
-    }
-  }
+double product(const Vector& a, const Vector& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
 }
 
-// Factor of growth in one sub-step, at least 1.
-double growth_of(const Model& model, Integrator rule, double h) {
-  Linearised of(model);
-  const std::size_t n = of.size();
-  Vector z(2 * n);
-  for (std::size_t k = 0; k < n; ++k) {
-    z[n + k] = (k % 2 == 0 ? 1 : -0.7) + 0.01 * static_cast<double>(k % 7);
-    z[k] = h * z[n + k];
+// z of length 1; false: it has none
+bool normalize(Vector& z) {
+  const double size = std::sqrt(product(z, z));
+  if (!(size > 0) || !std::isfinite(size)) return false;
+  for (double& value : z) value /= size;
+  return true;
+}
+
+// numbers between -1 and 1 in which every motion has a part
+Vector mixed_start(std::size_t n) {
+  constexpr double kTurn = 0.6180339887498949;  // golden section: never comes back
+  Vector z(n);
+  for (std::size_t k = 0; k < n; ++k) z[k] = 2 * std::fmod(kTurn * static_cast<double>(k + 1), 1.0) - 1;
+  return z;
+}
+
+// (3): all eigenvalues of a small mechanism, the fastest of a large one [1/s].
+std::vector<Complex> fastest_rates(const Model& model, Integrator rule, double h) {
+  Linearised of(model, h);
+  const std::size_t n = 2 * of.size(), most = std::min(n, kMost);
+  std::vector<Vector> basis = {mixed_start(n)};
+  if (n == 0 || !normalize(basis.front())) return {};
+  Vector H(most * most), next;
+  std::size_t size = 0;
+  double largest = 0;
+  while (size < most) {
+    of.apply(rule, h, basis[size], next);
+    if (!std::isfinite(product(next, next))) return {Complex(-std::numeric_limits<double>::max())};
+    const std::size_t column = size++;
+    for (int pass = 0; pass < 2; ++pass) {
+      for (std::size_t i = 0; i < size; ++i) {
+        const double part = product(basis[i], next);
+        H[i * most + column] += part;
+        for (std::size_t k = 0; k < n; ++k) next[k] -= part * basis[i][k];
+      }
+    }
+    const double rest = std::sqrt(product(next, next));
+    for (std::size_t i = 0; i < size; ++i) largest = std::max(largest, std::fabs(H[i * most + column]));
+    if (size == most || !(rest > kNoise * largest) || !normalize(next)) break;
+    H[size * most + column] = rest;
+    basis.push_back(next);
   }
-  std::vector<double> logs;
-  double before = 0;
-  for (int i = 0; i < kMostSteps; ++i) {
-    double size = 0;
-    for (std::size_t k = 0; k < n; ++k) size = std::max({size, std::fabs(z[k]) / h, std::fabs(z[n + k])});
-    if (!(size > 0)) return 1;
-    if (!std::isfinite(size)) return std::numeric_limits<double>::infinity();
-    if (i > 0) logs.push_back(std::log(size / before));
-    for (double& value : z) value /= size;
-    before = 1;
-    const bool is_clear = logs.size() >= 3 && std::min({logs[logs.size() - 1], logs[logs.size() - 2],
-                                                        logs[logs.size() - 3]}) > std::log(kAtOnce);
-    if (is_clear) return std::exp(logs.back());
-    step(of, rule, h, z);
+  Vector square(size * size);
+  for (std::size_t i = 0; i < size; ++i) {
+    std::copy_n(H.begin() + static_cast<std::ptrdiff_t>(i * most), size,
+                square.begin() + static_cast<std::ptrdiff_t>(i * size));
   }
-  double sum = 0;
-  for (std::size_t i = logs.size() - kAveraged; i < logs.size(); ++i) sum += logs[i];
-  return std::max(1.0, std::exp(sum / kAveraged));
+  return math::eigenvalues(square, size);
+}
+
+// |R(z)| of (2); of semi_implicit_euler z is the rate of the map
+double amplification(Integrator rule, Complex z) {
+  if (rule == Integrator::semi_implicit_euler) return std::abs(1.0 + z);
+  const double size = std::abs(z);
+  if (size > kHuge) return size * size * size * size / 24;
+  return std::abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0))));
+}
+
+// Factor of growth in one sub-step beyond that of the motion itself, at least 1.
+double growth_of(const std::vector<Complex>& rates, Integrator rule, double h) {
+  double growth = 1;
+  for (const Complex rate : rates) {
+    const Complex z = h * rate;
+    if (std::abs(z) < kIsFast) continue;
+    const double right = std::max(1.0, std::exp(std::min(z.real(), kHuge / 2)));
+    growth = std::max(growth, amplification(rule, z) / right);
+  }
+  return growth;
+}
+
+Complex fastest_of(const std::vector<Complex>& rates) {
+  Complex fastest = 0;
+  for (const Complex rate : rates) {
+    if (std::abs(rate) > std::abs(fastest)) fastest = rate;
+  }
+  return fastest;
 }
 
 bool is_too_long(const Model& model, Integrator rule, double h) {
-  return growth_of(model, rule, h) > kGrows;
-}
-
-bool has_curve(const ElementLaw& law) {
-  return !law.spring_curve.empty() || !law.damper_curve.empty();
-}
-
-// What pushes on one side or saturates is left out.
-Model constant_laws_of(const Model& given) {
-  Model model = given;
-  model.gravity = {};
-  for_each_force_kind([&](auto row) {
-    auto& elements = elements_of(row, model.elements);
-    if (!row.kIsLinear) elements.clear();
-    for (auto& element : elements) row.linearise(element);
-  });
-  model.contact = nullptr;
-  const auto keep = [](ElementLaw& law) {
-    if (has_curve(law)) law = {};
-    law.end_spring = law.end_damping = 0;
-  };
-  for (LineElement& line : model.lines) keep(line.law);
-  for (AngleElement& angle : model.angles) keep(angle.law);
-  mark_used_elements(model);
-  return model;
-}
-
-// How many elements of a kind are the scene's; the beams behind them are those between segments.
-template <typename Row>
-std::size_t own_count(const Model& model) {
-  if (std::is_same_v<Row, BeamRow> && !model.segmented.empty()) return model.segmented.front().first_beam;
-  return elements_of(Row(), model.elements).size();
-}
-
-// The model with one of its elements alone, or with none of them.
-struct Element {
-  std::string name;
-  std::function<void(Model& alone, const Model& from)> put;
-};
-
-Model without_elements(const Model& given) {
-  Model model = given;
-  for (LineElement& line : model.lines) line.law = {};
-  for (AngleElement& angle : model.angles) angle.law = {};
-  for_each_force_kind([&](auto row) {
-    auto& elements = elements_of(row, model.elements);
-    for (std::size_t i = 0; i < own_count<decltype(row)>(given); ++i) row.silence(elements[i]);
-  });
-  mark_used_elements(model);
-  return model;
-}
-
-std::vector<Element> active_elements(const Model& model) {
-  std::vector<Element> all;
-  for (std::size_t i = 0; i < model.lines.size(); ++i) {
-    if (!model.lines[i].law.is_active) continue;
-    all.push_back({model.lines[i].name, [i](Model& to, const Model& from) { to.lines[i].law = from.lines[i].law; }});
-  }
-  for (std::size_t i = 0; i < model.angles.size(); ++i) {
-    if (!model.angles[i].law.is_active) continue;
-    all.push_back({model.angles[i].name, [i](Model& to, const Model& from) { to.angles[i].law = from.angles[i].law; }});
-  }
-  for_each_force_kind([&](auto row) {
-    for (std::size_t i = 0; i < own_count<decltype(row)>(model); ++i) {
-      all.push_back({elements_of(row, model.elements)[i].name, [row, i](Model& to, const Model& from) {
-                       elements_of(row, to.elements)[i] = elements_of(row, from.elements)[i];
-                     }});
-    }
-  });
-  return all;
+  return growth_of(fastest_rates(model, rule, h), rule, h) > kGrows;
 }
 
 double longest_step_of(const Model& model, Integrator rule, double h) {
@@ -205,34 +188,60 @@ double longest_step_of(const Model& model, Integrator rule, double h) {
   return good;
 }
 
+std::optional<TooFast> find_in(const Model& model, Integrator rule, double h) {
+  const std::vector<ElementPlace> places = element_places(model);
+  if (places.empty() || start_state(model).u.empty() || !is_too_long(model, rule, h)) return std::nullopt;
+  const Model bare = without_elements(model);
+  if (is_too_long(bare, rule, h)) return std::nullopt;
+  TooFast found{.element = places.front().name, .longest_step = longest_step_of(model, rule, h)};
+  for (const ElementPlace& place : places) {
+    Model alone = bare;
+    place.put(alone, model);
+    mark_used_elements(alone);
+    const std::vector<Complex> rates = fastest_rates(alone, rule, h);
+    const double growth = growth_of(rates, rule, h);
+    if (growth <= found.growth) continue;
+    const Complex fastest = fastest_of(rates);
+    found.growth = growth, found.rate = std::abs(fastest), found.element = place.name;
+    found.swings = std::fabs(fastest.imag()) > std::fabs(fastest.real());
+  }
+  return found;
+}
+
 }  // namespace
+
+bool may_speed_up(ParameterKind kind) noexcept {
+  if (kind == ParameterKind::body_mass || kind == ParameterKind::line_law || kind == ParameterKind::angle_law) {
+    return true;
+  }
+  auto number = static_cast<int>(ParameterKind::force);
+  bool is_one_sided = false;
+  for_each_force_kind([&](auto row) {
+    using Kind = decltype(row);
+    if (static_cast<int>(kind) == number++)
+      is_one_sided = std::is_same_v<Kind, RopeRow> || std::is_same_v<Kind, TyreRow>;
+  });
+  return is_one_sided || is_linear_force(kind);
+}
 
 std::optional<TooFast> find_too_fast_element(const Model& given, Integrator rule, double h) {
   if (!is_explicit(rule)) return std::nullopt;
-  const Model model = constant_laws_of(given);
-  const std::vector<Element> elements = active_elements(model);
-  if (elements.empty() || start_state(model).u.empty() || !is_too_long(model, rule, h)) return std::nullopt;
-  const Model bare = without_elements(model);
-  if (is_too_long(bare, rule, h)) return std::nullopt;
-  TooFast found{elements.front().name, 0, longest_step_of(model, rule, h)};
-  for (const Element& element : elements) {
-    Model alone = bare;
-    element.put(alone, model);
-    mark_used_elements(alone);
-    const double growth = growth_of(alone, rule, h);
-    if (growth > found.growth) found.growth = growth, found.element = element.name;
-  }
+  std::optional<TooFast> found = find_in(with_steepest_laws(given, Ends::free), rule, h);
+  if (found || !has_ends(given)) return found;
+  found = find_in(with_steepest_laws(given, Ends::touched), rule, h);
+  if (found) found->is_at_end = true;
   return found;
 }
 
 Problem problem_of(const TooFast& found, Integrator rule, double h) {
   return {found.element,
-          fmt::format("it is too fast for {} in sub-steps of {:.4g} s on the masses that it acts on: what swings or "
-                      "fades would grow {:.2g} times in each",
-                      key_of(rule), h, found.growth),
-          fmt::format("mechanics.max_substep of at most {:.2g} s, more mass or inertia, less stiffness or damping, or "
-                      "an implicit mechanics.integrator such as trapezoidal",
-                      0.95 * found.longest_step),
+          fmt::format("it is too fast for {} in sub-steps of {:.4g} s on the masses that it acts on: {} its rate is "
+                      "{:.4g} 1/s, and what swings or fades would grow {:.4g} times in each sub-step",
+                      key_of(rule), h, found.is_at_end ? "with its end dampers touched" : "at the steepest of its law",
+                      found.rate, found.growth),
+          fmt::format("mechanics.max_substep of at most {:.2g} s, more mass or inertia, less stiffness, damping or "
+                      "slope, or an implicit mechanics.integrator such as {}",
+                      0.95 * found.longest_step, found.swings && !found.is_at_end ? "trapezoidal" : "sdirk2"),
           ""};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether an explicit integrator follows what springs, dampers and linear force kinds do to the masses they act on.
+// Whether an explicit integrator follows what force elements do to the masses they act on.
 //
 // The equations about the start, at rest and linear in displacement x and speed v of the joint coordinates,
 //   x' = v,   v' = A_x x + A_v v                                                                                (1)
@@ -7,11 +7,17 @@
 // integrator's own map of one sub-step h,
 //   rk4                  z_1 = sum_{k=0..4} (h A)^k / k! z_0,   z = (x, v)
 //   semi_implicit_euler  v_1 = v_0 + h a(x_0, v_0),  x_1 = x_0 + h v_1                                          (2)
-// whose largest factor of growth a power iteration finds.
+// A rate lambda of (1), or of (z_1 - z_0)/h of (2), is too fast where the map grows by more than 1.001 in a sub-step
+// and more than exp(h lambda). The rates are the eigenvalues of the operator on the space of
+//   z, A z, A^2 z, ...                                                                                          (3)
+// of 60 vectors at most (Arnoldi: Golub and Van Loan 2013, section 10.5): all of a small mechanism, the fastest of a
+// large one.
 //
-// Constant laws only. Left out: tables, ends, kinds that are not linear (ForceRow::kIsLinear) and contacts, which push
-// on one side or saturate, so that too long a step chatters but stays bounded; gravity; rows, whose owner solves them
-// implicitly; the modes and segments alone (flexible/validate_flexible.h). An instant, not a bound for all poses.
+// Laws have their steepest slopes (steepest_laws.h): tables, end dampers, taut ropes, tyres on the ground with their
+// slip. A law with a bound, such as a table for friction, does not grow for ever, but a sub-step beyond the limit
+// leaves it at the bound, at rest as well. Left out: contacts, which find their own parts of a sub-step; gravity; rows,
+// whose owner solves them implicitly; the modes and segments alone (flexible/validate_flexible.h). An instant, not a
+// bound for all poses.
 #pragma once
 
 #include <optional>
@@ -29,15 +35,15 @@ namespace slew::multibody {
 }
 
 // Whether a parameter of this kind is a mass or a law that the check sees.
-[[nodiscard]] inline bool may_speed_up(ParameterKind kind) noexcept {
-  return kind == ParameterKind::body_mass || kind == ParameterKind::line_law || kind == ParameterKind::angle_law ||
-         is_linear_force(kind);
-}
+[[nodiscard]] bool may_speed_up(ParameterKind kind) noexcept;
 
 struct TooFast {
-  std::string element;      // that grows most when it is alone
+  std::string element{};    // that grows most when it is alone
   double growth = 0;        // factor in one sub-step
+  double rate = 0;          // |lambda| of its fastest motion [1/s]
   double longest_step = 0;  // s, that does not let it grow
+  bool swings = false;      // that motion is an oscillation
+  bool is_at_end = false;   // by its end dampers
 };
 
 // In sub-steps of h [s]. None: the rule is implicit or follows.

@@ -116,7 +116,7 @@ struct ForceRow {
   static int side_of(const T& /*element*/, std::span<const LinkMotion> /*motion*/) noexcept { return 0; }
 
   // Whether it is linear around the start, but for tables, which linearise() leaves out; silence() leaves nothing. For
-  // the check of explicit steps (element_speeds.h), which leaves out kinds that push on one side or saturate.
+  // the check of explicit steps (steepest_laws.h, which has the laws of kinds that push on one side or saturate).
   static constexpr bool kIsLinear = false;
   static void linearise(T& /*element*/) {}
   static void silence(T& /*element*/) {}

@@ -122,6 +122,25 @@ forces:
 
 constexpr const char* kCylinder = SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml";
 
+// rk4 at 1 ms follows a damper of 2785 Ns/m on 1 kg and a spring of 8e6 N/m, not one with 1.187 times in each step
+TEST(ParametersOfAForce, ThatWouldGrowInASubStepAreRefused) {
+  const Scene scene = load_text(R"(session: {step: 1 ms}
+bodies:
+  B: {position: [1 m, 0, 0], mass: 1 kg, inertia: [0.1, 0.1, 0.1]}
+joints:
+  J: {type: prismatic, orientation1: [0, 90 deg, 0], body2: B, orientation2: [0, 90 deg, 0]}
+forces:
+  Damper: {type: translational, body1: Ground, body2: B, free_length: 1 m, damping_constant: 1 Ns/m}
+  Rope: {type: rope, bodies: [Ground, B], points: [[0, 0, 0], [0, 0, 0]], free_length: 4 m, axial_rigidity: 16 MN}
+)",
+                                "live.yaml");
+  const ParameterDirectory directory(scene);
+  EXPECT_TRUE(directory.check("Damper.damping_constant", 500).status.is_ok());
+  EXPECT_NE(directory.check("Damper.damping_constant", 2900).status.text.find("too fast for rk4"), std::string::npos);
+  EXPECT_TRUE(directory.check("Rope.free_length", 3).status.is_ok());
+  EXPECT_NE(directory.check("Rope.free_length", 1.5).status.text.find("too fast for rk4"), std::string::npos);
+}
+
 TEST(ParameterOfChoices, IsListedWithItsNamesAndTakesOneOfThem) {
   const Scene scene = load_file(kCylinder);
   ParameterDirectory directory(scene);
