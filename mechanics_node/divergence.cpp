@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "core/index.h"
 #include "multibody/flexible/deflection.h"
@@ -14,7 +15,7 @@
 namespace slew::mechanics_node {
 namespace {
 
-constexpr double kHalfTurn = std::numbers::pi;  // rad a sub-step: beyond, the direction of the turn is unknown
+constexpr double kHalfTurn = std::numbers::pi;  // rad; in a sub-step: beyond, the direction of the turn is unknown
 constexpr double kFar = 1;                      // m a sub-step: no body of a machine moves so far
 constexpr double kOpen = 1e-6;                  // m or rad: a sound joint stays below, except in `penalty`
 constexpr const char* kRemedy =
@@ -77,17 +78,39 @@ bool DivergenceWatch::name_bent_body(const multibody::Model& model, const multib
   return true;
 }
 
-bool DivergenceWatch::name_turned_bushing(const multibody::Model& model, const multibody::Workspace& ws) noexcept {
-  for (const multibody::Bushing& bushing : model.elements.bushings) {
-    if (!multibody::holds_rotation(bushing)) continue;
-    const multibody::FramePair& pair = bushing.frames;
+bool DivergenceWatch::name_turned_frames(const multibody::Model& model, const multibody::Workspace& ws) noexcept {
+  const auto name_if_turned = [&](const std::string& name, const multibody::FramePair& pair, const char* kind) {
     const double turn =
         norm(multibody::deflection_of(pair, ws.motion[at(pair.link1)], ws.motion[at(pair.link2)]).theta);
-    if (!(turn > multibody::kMostBushingRotation)) continue;
+    if (!(turn > multibody::kMostBushingRotation)) return false;
     write(
-        "{}: its frames are turned by {:.4g} deg against each other, and at 180 deg a bushing's moment jumps. Use a "
-        "joint's rotational spring, or limits that keep the frames below 170 deg",
-        bushing.name, turn * 180 / std::numbers::pi);
+        "{}: its frames are turned by {:.4g} deg against each other, and at 180 deg a {}'s moment jumps. Use a "
+        "rotational force about the axis of a revolute joint, or limits that keep the frames below 170 deg",
+        name, turn * 180 / std::numbers::pi, kind);
+    return true;
+  };
+  for (const multibody::Bushing& bushing : model.elements.bushings) {
+    if (multibody::holds_rotation(bushing) && name_if_turned(bushing.name, bushing.frames, "bushing")) return true;
+  }
+  return std::any_of(model.elements.beams.begin(), model.elements.beams.end(),
+                     [&](const multibody::Beam& beam) { return name_if_turned(beam.name, beam.frames, "beam"); });
+}
+
+bool DivergenceWatch::name_turned_angle(const multibody::Model& model, const multibody::Workspace& ws,
+                                        double H) noexcept {
+  for (std::size_t i = 0; i < model.angles.size(); ++i) {
+    const multibody::AngleElement& element = model.angles[i];
+    const multibody::ElementLaw& law = element.law;
+    const bool has_coordinate = element.has_row || law.spring != 0 || law.end_spring > 0 || !law.spring_curve.empty();
+    if (element.is_coaxial || !has_coordinate) continue;
+    const multibody::AngleMotion& motion = ws.angles[i];
+    const double ahead = motion.angle * motion.rate > 0 ? std::fabs(motion.rate) * H : 0;
+    if (!(std::fabs(motion.angle) + ahead > kHalfTurn)) continue;
+    write(
+        "{}: its angle is {:.4g} deg, and at 180 deg it jumps by a whole turn: revolute joints about its axis, which "
+        "would count turns, do not connect its bodies. Use a revolute joint, or limits of the joint that keep the "
+        "angle within 180 deg",
+        element.name, motion.angle * 180 / std::numbers::pi);
     return true;
   }
   return false;
@@ -121,8 +144,8 @@ bool DivergenceWatch::name_suspect(const multibody::Model& model, const multibod
 }
 
 bool DivergenceWatch::ends_run(const multibody::Model& model, const multibody::State& state,
-                               const multibody::Workspace& ws, double h) noexcept {
-  if (name_bent_body(model, state, ws) || name_turned_bushing(model, ws)) return true;
+                               const multibody::Workspace& ws, double h, double H) noexcept {
+  if (name_bent_body(model, state, ws) || name_turned_frames(model, ws) || name_turned_angle(model, ws, H)) return true;
   if (unconverged_ < kMostUnconverged) return false;
   return name_suspect(model, state, ws, h);
 }

@@ -8,7 +8,10 @@
 //     that single steps never add up to an end. Without such an error (a wheel of 6000 rpm on its axis, a load that is
 //     pressed onto a stiff stop) the steps are only flagged.
 //   - A flexible body is bent by more than kLostDeflection of its length (multibody/flexible/deflection.h).
-//   - A bushing that holds rotation is turned by more than kMostBushingRotation, short of the jump of its moment.
+//   - A bushing that holds rotation, or a beam, is turned by more than kMostBushingRotation, short of the jump of its
+//     moment.
+//   - The angle of a rotational force with a spring, an end damper or an actuator comes within one step of half a turn,
+//     unless revolute joints about its axis count its turns: there the angle jumps by a whole turn.
 // Not covered: motion that is finite, small and converged, and wrong.
 #pragma once
 
@@ -36,10 +39,10 @@ class DivergenceWatch {
   void reset() noexcept { unconverged_ = 0, text_length_ = 0; }
   void count_step(bool has_converged) noexcept;
 
-  // For the motion in ws, as Dynamics::observe() leaves it, and sub-steps of h [s]. True: the run ends; text() names
-  // the body and the reason. Neither allocates.
+  // For the motion in ws, as Dynamics::observe() leaves it, and sub-steps of h [s] in steps of H [s]. True: the run
+  // ends; text() names the body or the force and the reason. Neither allocates.
   [[nodiscard]] bool ends_run(const multibody::Model& model, const multibody::State& state,
-                              const multibody::Workspace& ws, double h) noexcept;
+                              const multibody::Workspace& ws, double h, double H) noexcept;
   [[nodiscard]] std::string_view text() const noexcept { return {text_.data(), text_length_}; }
 
   // Adds nothing while all recent steps have converged: the hash of a sound run is that of its motion.
@@ -56,7 +59,9 @@ class DivergenceWatch {
  private:
   [[nodiscard]] bool name_bent_body(const multibody::Model& model, const multibody::State& state,
                                     const multibody::Workspace& ws) noexcept;
-  [[nodiscard]] bool name_turned_bushing(const multibody::Model& model, const multibody::Workspace& ws) noexcept;
+  [[nodiscard]] bool name_turned_frames(const multibody::Model& model, const multibody::Workspace& ws) noexcept;
+  [[nodiscard]] bool name_turned_angle(const multibody::Model& model, const multibody::Workspace& ws,
+                                       double H) noexcept;
   [[nodiscard]] bool name_suspect(const multibody::Model& model, const multibody::State& state,
                                   const multibody::Workspace& ws, double h) noexcept;
   template <typename... Values>

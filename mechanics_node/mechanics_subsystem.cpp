@@ -216,7 +216,7 @@ StepReport MechanicsSubsystem::follow(StepIndex n, const FollowedStep& step, std
 StepReport MechanicsSubsystem::finish_step(const coupling::PortArray& strokes_before, double h,
                                            const StepReport& report, coupling::OwnSample& sample) noexcept {
   StepReport finished = report;
-  if (divergence_.ends_run(model(), state(), mechanism_.workspace(), h)) {
+  if (divergence_.ends_run(model(), state(), mechanism_.workspace(), h, H_.seconds())) {
     finished.raise(StepFlag::ended);
     return end_with(finished, sample);
   }

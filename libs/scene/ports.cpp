@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -86,12 +88,32 @@ std::vector<double> start_strokes(const Scene& scene, const multibody::Model& mo
   return strokes;
 }
 
-// A port whose coordinate is an angle turns on and on: its angle must count full turns.
+// stroke = offset + ratio angle, with an angle between -180 and 180 deg
+void check_half_turn(const PortDef& port, Problems& problems) {
+  constexpr double kHalfTurn = std::numbers::pi;
+  for (const bool is_max : {false, true}) {
+    const double stroke = is_max ? port.line_force.stroke_max : port.line_force.stroke_min;
+    const double angle = (stroke - port.offset) / port.ratio;
+    if (!std::isfinite(angle) || std::fabs(angle) <= kHalfTurn) continue;
+    problems.push_back(
+        {port.name + (is_max ? ".maximum_stroke" : ".minimum_stroke"),
+         fmt::format("{:.4g} m is {:.4g} deg of '{}', whose angle cannot count turns: revolute joints about its axis "
+                     "do not connect its bodies",
+                     stroke, angle * 180 / kHalfTurn, port.force),
+         "a stroke within 180 deg, or a rotational force about the axis of the revolute joint between its bodies", ""});
+  }
+}
+
+// A port whose coordinate is an angle turns on and on: its angle must count full turns. So must the angle of a rack and
+// pinion whose stroke goes beyond half a turn.
 void check_turns(const Scene& scene, const multibody::Model& model, Problems& problems) {
   for (const PortDef& port : scene.ports) {
-    if (port.unit != coupling::PortUnit::radian) continue;
     for (const multibody::AngleElement& angle : model.angles) {
       if (angle.name != port.force || angle.is_coaxial) continue;
+      if (port.unit != coupling::PortUnit::radian) {
+        check_half_turn(port, problems);
+        continue;
+      }
       problems.push_back(
           {port.name + ".force",
            fmt::format("the angle of '{}' cannot count full turns: revolute joints about its axis do not "

@@ -410,11 +410,27 @@ class Validator {
                       row.violation),
           "poses, points and lengths that let all joints of the loop close");
     }
+    check_turns(model);
     for (const AssemblyReport::Speed& speed : report.speeds) {
       add(speed.joint + ".initial_velocity",
           fmt::format("the loops do not allow {:.6g}; with the other speeds given it is {:.6g}", speed.wanted,
                       speed.found),
           "speeds that fit each other: those that are not given follow from the others");
+    }
+  }
+
+  // an end damper that lies where the angle has jumped by a whole turn is never touched
+  void check_turns(const Model& model) {
+    for (const AngleElement& element : model.angles) {
+      const ElementLaw& law = element.law;
+      if (element.is_coaxial || !(law.end_spring > 0)) continue;
+      const bool is_above = std::isfinite(law.max) && law.max > M_PI;
+      if (!is_above && !(std::isfinite(law.min) && law.min < -M_PI)) continue;
+      add(element.name + (is_above ? ".max_angle" : ".min_angle"),
+          fmt::format("the end damper is at {:.4g} deg, where the angle never is: revolute joints about the force's "
+                      "axis do not connect its bodies, and without them the angle is between -180 and 180 deg",
+                      (is_above ? law.max : law.min) * 180 / M_PI),
+          "a range within 180 deg, or a revolute joint about the axis between the bodies");
     }
   }
 

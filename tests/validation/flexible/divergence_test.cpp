@@ -237,6 +237,52 @@ TEST(Divergence, NamesABushingThatTurnsTooFar) {
   EXPECT_NEAR(free.value("Pin.position"), 15, 1e-9);
 }
 
+// G J/l = 2 Nm/rad on 1 kg m2: x = 10/w sin(w t), w2 = 2
+TEST(Divergence, NamesABeamThatTurnsTooFar) {
+  MechanicsDef def = turning_bushing(0);
+  def.bushings.clear();
+  def.bodies[0].position = {1, 0, 0};
+  def.joints[0].point1 = {1, 0, 0}, def.joints[0].initial_velocity = 10;
+  def.joints[0].orientation1 = def.joints[0].orientation2 = {0, M_PI / 2, 0};
+  BeamDef beam;
+  beam.name = "Shaft", beam.frames.body1 = "Ground", beam.frames.body2 = "Arm", beam.length = 1;
+  beam.youngs_modulus = 2e6, beam.shear_modulus = 1e6, beam.area = 1e-4, beam.torsion_constant = 2e-6;
+  beam.second_moment_y = beam.second_moment_z = 1e-6;
+  def.beams.push_back(beam);
+  MechanicsAlone alone(scene_of(def));
+  const StepIndex end = run_until_end(alone, 2000);
+  const double w = std::sqrt(2.0);
+  EXPECT_NEAR(end * 1e-3, std::asin(170 * M_PI / 180 * w / 10) / w, 2e-3);
+  EXPECT_NE(std::string(alone.subsystem.failure_text()).find("Shaft: its frames are turned by 170"), std::string::npos)
+      << alone.subsystem.failure_text();
+}
+
+// a torsion spring of 2 Nm/rad between bodies whose joint does not count turns; a revolute joint does: 7.07 rad
+TEST(Divergence, NamesARotationalForceThatCannotCountTurns) {
+  MechanicsDef def = turning_bushing(0);
+  def.bushings.clear();
+  RotationalForceDef spring{.name = "Spring", .body1 = "Ground", .f1 = {1, 0, 0}, .g1 = {0, 1, 0}, .body2 = "Arm"};
+  spring.f2 = {1, 0, 0};
+  spring.spring_constant = 2;
+  def.rotational_forces.push_back(spring);
+  def.joints[0].initial_velocity = 10;
+  MechanicsAlone counted(scene_of(def));
+  EXPECT_EQ(run_until_end(counted, 2000), 2000) << counted.subsystem.failure_text();
+  const double w = std::sqrt(2.0);
+  EXPECT_NEAR(counted.value("Pin.position"), 10 / w * std::sin(w * 2), 1e-6);
+
+  def.joints[0].type = JointType::cylindrical;
+  MechanicsAlone lost(scene_of(def));
+  const StepIndex end = run_until_end(lost, 2000);
+  EXPECT_NEAR(end * 1e-3, std::asin(M_PI * w / 10) / w, 2e-3);
+  EXPECT_NE(std::string(lost.subsystem.failure_text()).find("Spring: its angle is 1"), std::string::npos)
+      << lost.subsystem.failure_text();
+  // a damper alone needs no angle
+  def.rotational_forces[0].spring_constant = 0, def.rotational_forces[0].damping_constant = 0.1;
+  MechanicsAlone damped(scene_of(def));
+  EXPECT_EQ(run_until_end(damped, 2000), 2000) << damped.subsystem.failure_text();
+}
+
 // the count is part of the state: saved on the way, the run ends at the same step with the same words
 TEST(Divergence, ContinuesFromASavedState) {
   const MechanicsDef def = rotor(Formulation::lagrange);
@@ -270,7 +316,7 @@ TEST(Divergence, NeedsMoreThanHalfOfTheStepsUnconverged) {
     for (int i = 0; i < rounds; ++i) {
       for (int k = 0; k < unconverged + converged; ++k) {
         watch.count_step(k >= unconverged);
-        if (watch.ends_run(model, state, ws, 1e-3)) return i * (unconverged + converged) + k + 1;
+        if (watch.ends_run(model, state, ws, 1e-3, 1e-3)) return i * (unconverged + converged) + k + 1;
       }
     }
     return -1;
