@@ -214,8 +214,9 @@ class SceneReader {
         multibody::find_start_changes(scene_.mechanics, warnings);
         multibody::find_unlikely_contacts(scene_.mechanics, warnings);
         if (scene_.session.solution == Solution::split) {
-          multibody::find_lost_rebounds(scene_.mechanics, mechanics_substep(scene_.session, scene_.mechanics),
-                                        warnings);
+          const double substep = mechanics_substep(scene_.session, scene_.mechanics);
+          multibody::find_lost_rebounds(scene_.mechanics, substep, warnings);
+          multibody::find_short_pulses(scene_.mechanics, substep, warnings);
         }
       }
     });

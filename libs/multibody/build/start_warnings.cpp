@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -95,7 +96,36 @@ void find_start_bends(const Model& model, Problems& warnings) {
   }
 }
 
+// Shortest time in which a table goes one way and then back [s]; infinite: it does not.
+double shortest_pulse(const Table& table) {
+  double shortest = std::numeric_limits<double>::infinity(), begin = 0, last = 0;
+  for (std::size_t k = 0; k + 1 < table.size(); ++k) {
+    const double change = table[k + 1][1] - table[k][1];
+    if (change == 0) continue;
+    if (change * last < 0) shortest = std::min(shortest, table[k + 1][0] - begin);
+    begin = table[k][0], last = change;
+  }
+  return shortest;
+}
+
 }  // namespace
+
+void find_short_pulses(const MechanicsDef& mechanics, double substep, Problems& warnings) {
+  constexpr double kRounding = 1e-9;
+  const auto look = [&](const std::string& path, const Table& table) {
+    const double pulse = shortest_pulse(table);
+    if (!(pulse < 2 * substep * (1 - kRounding))) return;
+    warnings.push_back(
+        {path,
+         fmt::format("it rises and falls within {:.3g} s, and sub-steps of {:.3g} s look at it at their "
+                     "ends and middles only: the impulse may be wrong by its whole size",
+                     pulse, substep),
+         fmt::format("mechanics.max_substep of at most {:.2g} s, or a longer pulse of the same impulse", pulse / 2),
+         ""});
+  };
+  for (const PointForceDef& def : mechanics.point_forces) look(def.name + ".force_table", def.force_table);
+  for (const PointTorqueDef& def : mechanics.point_torques) look(def.name + ".torque_table", def.torque_table);
+}
 
 void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
   const Model model = build_model(mechanics);

@@ -197,8 +197,32 @@ void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems
   }
 }
 
+// rk4 takes parts of contact_substep or kReach over the rate: stable, and too long for the rebound of a stiff pair
+void find_coarse_rebounds(const MechanicsDef& mechanics, double substep, Problems& warnings) {
+  constexpr double kCoarse = 0.75;  // rate times part: below, the rebound is right to half a per cent
+  const Model model = build_model(mechanics);
+  if (model.contact == nullptr) return;
+  const std::span<const contact::ContactPair> pairs = model.contact->model.pairs();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const ImpactRate rate = rate_of_impact(model, pairs[i]);
+    if (rate.fastest() > kMostStiffParts * kReach / substep) continue;  // refused
+    const double part = std::min({substep, mechanics.contact_substep, kReach / rate.fastest()});
+    if (!(rate.spring * part > kCoarse) || !rebounds(pairs[i].normal)) continue;
+    const int tested = model.contact->pair_of_tested[i];
+    warnings.push_back(
+        {model.contact->pairs[static_cast<std::size_t>(tested)].name + ".spring_constant",
+         fmt::format("an impact lasts some {:.2g} s and is resolved in parts of {:.2g} s: its rebound may be off by a "
+                     "tenth of the speed of the impact, to either side",
+                     M_PI / rate.spring, part),
+         fmt::format("mechanics.contact_substep of at most {:.2g} s where the rebound matters", 0.2 / rate.spring),
+         ""});
+  }
+}
+
 void find_lost_rebounds(const MechanicsDef& mechanics, double substep, Problems& warnings) {
-  if (mechanics.contacts.empty() || !is_implicit(step_rule(mechanics).integrator)) return;
+  if (mechanics.contacts.empty()) return;
+  if (step_rule(mechanics).integrator == Integrator::rk4) return find_coarse_rebounds(mechanics, substep, warnings);
+  if (!is_implicit(step_rule(mechanics).integrator)) return;
   const double fastest = kMostStiffParts * kLostBlow / substep;
   const Model model = build_model(mechanics);
   if (model.contact == nullptr) return;

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "multibody/formulations/integrators.h"
 #include "multibody/model/field_tables.h"
@@ -201,6 +202,27 @@ TEST(Validate, WarnsOfTheInertiaPrintedForTheJibBoom) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].path, "Truck_JibBoom.inertia");
   EXPECT_NE(warnings[0].what.find("the radius of gyration is 13 m"), std::string::npos) << warnings[0].what;
+}
+
+// rk4 looks at a table at the ends and the middle of a sub-step only
+TEST(ShortPulse, IsNamedWithTheSubStepThatSuits) {
+  MechanicsDef def = sound();
+  const auto warnings_of = [&def](Table table) {
+    def.point_forces = {{.name = "Blow", .body = def.bodies[0].name, .force_table = std::move(table)}};
+    Problems warnings;
+    find_short_pulses(def, 1e-3, warnings);
+    return warnings;
+  };
+  const Problems found = warnings_of({{0, 0}, {0.1, 0}, {0.1002, 5000}, {0.1003, 5000}, {0.1004, 0}, {1, 0}});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].path, "Blow.force_table");
+  EXPECT_NE(found[0].expected.find("mechanics.max_substep of at most 0.0002 s"), std::string::npos)
+      << found[0].expected;
+  EXPECT_EQ(warnings_of({{0, 0}, {0.1, 0}, {0.1004, -5000}, {0.1008, 0}}).size(), 1u);
+  // a pulse of two sub-steps is right, and so is a jump: its error is a part of a sub-step
+  EXPECT_TRUE(warnings_of({{0, 0}, {0.1, 0}, {0.101, 5000}, {0.102, 0}}).empty());
+  EXPECT_TRUE(warnings_of({{0, 0}, {0.1, 0}, {0.1001, 5000}, {1, 5000}}).empty());
+  EXPECT_TRUE(warnings_of({{0, 0}, {0.1, 0}, {0.1001, 5000}, {1, 5000}, {1.0001, 0}}).empty());
 }
 
 TEST(Validate, NamesPartsThatNothingKeepsFromSpinning) {
