@@ -377,6 +377,13 @@ void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
   if (session.step < kMinUsualStep || session.step > kMaxUsualStep) {
     warnings.push_back({"session.step", fmt::format("{} ms is outside 0.1 to 10 ms", session.step * 1e3), "", ""});
   }
+  // the run takes the nearest whole number of steps
+  if (session.duration > 0 && session.duration < session.step / 2) {
+    errors.push_back({"session.duration",
+                      fmt::format("{} ms are less than half a step of {} ms: the run would have no step",
+                                  session.duration * 1e3, session.step * 1e3),
+                      "at least one session.step, or 0 for a run without end", ""});
+  }
   if (session.overrun_after > 0 && session.overrun == OverrunPolicy::slip) {
     warnings.push_back({"session.overrun_after", "it has no effect with session.overrun: slip", "hold or stop", ""});
   }

@@ -210,7 +210,24 @@ bool has_dimension(const Unit& unit, Dimension dimension) {
          (unit.offset == 0 || dimension == Dimension::temperature);
 }
 
+// Spaces that a printed text holds and that look like a plain one: U+00A0, U+2007, U+2009, U+202F; empty: none.
+std::string_view typographic_space_in(std::string_view text) {
+  constexpr std::pair<std::string_view, std::string_view> kSpaces[] = {
+      {"\xC2\xA0", "no-break space (U+00A0)"},
+      {"\xE2\x80\x87", "figure space (U+2007)"},
+      {"\xE2\x80\x89", "thin space (U+2009)"},
+      {"\xE2\x80\xAF", "narrow no-break space (U+202F)"}};
+  for (const auto& [bytes, name] : kSpaces) {
+    if (text.find(bytes) != std::string_view::npos) return name;
+  }
+  return {};
+}
+
 ValueProblem unknown_unit(std::string_view text, Dimension dimension, UnitSystem& units) {
+  if (const std::string_view space = typographic_space_in(text); !space.empty()) {
+    return {fmt::format("unknown unit '{}': it holds a {}, which looks like a plain space", text, space),
+            expected_quantity(dimension), ""};
+  }
   std::vector<std::string_view> fitting, all(std::begin(kCommonUnits), std::end(kCommonUnits));
   for (const std::string_view name : all) {
     const Unit* unit = units.find(name);
