@@ -2,7 +2,7 @@
 """Node 5 on a CAN interface, by the library canopen:  canopen_peer.py INTERFACE
 
 Boots, waits for NMT start, sends TPDO 1 for a while, is silent for a while, and does the same again as a restarted node.
-Ends after the second time. Exit code 77: python3 has no canopen.
+Ends after the second time. The library needs the kernel module can_bcm. Exit code 77: python3 has no canopen.
 """
 import sys
 import time
