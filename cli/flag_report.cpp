@@ -43,9 +43,15 @@ constexpr std::array<Meaning, FlagCounter::kFlags.size()> kMeanings = {{
 constexpr Meaning kSearchFailed = {"no distance was found, or a body turned by half a turn or more between two samples",
                                    "lower recording.every, or look for a body that leaves the machine"};
 
+constexpr Meaning kCircuitFailed = {
+    "the solver's sub-steps reached their limit and their error was accepted",
+    "choose a smaller session.step or hydraulics.max_substep; with rk4 its steps are too long for the circuit: choose "
+    "another hydraulics.solver"};
+
 const Meaning& meaning_of(wire::Role role, std::size_t flag) {
-  const bool is_search = role == wire::Role::sensor && FlagCounter::kFlags[flag] == StepFlag::not_converged;
-  return is_search ? kSearchFailed : kMeanings[flag];
+  if (FlagCounter::kFlags[flag] != StepFlag::not_converged) return kMeanings[flag];
+  if (role == wire::Role::sensor) return kSearchFailed;
+  return role == wire::Role::hydraulics ? kCircuitFailed : kMeanings[flag];
 }
 
 }  // namespace

@@ -24,12 +24,12 @@ ProgressLine::ProgressLine(bool is_quiet)
 void ProgressLine::show(std::string_view doing, double share) {
   if (is_quiet_) return;
   const std::int64_t now_ns = monotonic_ns();
+  const std::string done = share < 0 ? "" : fmt::format("{:3.0f} %  ", 100 * share);
   if (!is_terminal_) {
-    if (doing != last_) std::fprintf(stderr, "%3.0f %%  %s\n", 100 * share, printable(doing).c_str());
+    if (doing != last_) std::fprintf(stderr, "%s%s\n", done.c_str(), printable(doing).c_str());
   } else if (doing != last_ || now_ns >= next_ns_) {
     next_ns_ = now_ns + kTerminalPeriodNs;
-    std::fprintf(stderr, "\r%3.0f %%  %s%s\x1b[K", 100 * share, printable(doing).c_str(),
-                 left_text(share, now_ns).c_str());
+    std::fprintf(stderr, "\r%s%s%s\x1b[K", done.c_str(), printable(doing).c_str(), left_text(share, now_ns).c_str());
     is_shown_ = true;
   }
   last_ = doing;

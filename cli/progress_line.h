@@ -16,7 +16,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // share of the whole work that is done, 0 to 1.
+  // share of the whole work that is done, 0 to 1; below 0: unknown, and none is shown.
   void show(std::string_view doing, double share);
   void clear();
 

@@ -149,6 +149,11 @@ class Fitter {
         refuse_fit("--free " + text + ": a range has no count here; nothing was run; write PATH=LOW..HIGH");
       }
       FreeValue value{.variation = parse_variation(text, Sampling::random, "--free")};
+      for (const FreeValue& other : free_) {
+        if (other.variation.path == value.variation.path) {
+          refuse_fit("--free " + value.variation.path + " is given twice; nothing was run; give it once");
+        }
+      }
       if (!value.variation.range) {
         refuse_fit("--free " + text + ": is no range; nothing was run; write PATH=LOW..HIGH");
       }
@@ -219,7 +224,7 @@ class Fitter {
     engine.folder = rows_folder_;
     engine.is_fresh = false;
     const std::vector<SweepResult> results = run_sweep(tasks, engine, [this](const SweepState& state) {
-      return progress_(fmt::format("run {}  {}", fit_.runs + state.done, state.doing), 0);
+      return progress_(fmt::format("run {}  {}", fit_.runs + state.done, state.doing), kUnknownShare);
     });
     std::vector<SignalOutcome> outcomes;
     for (const SweepResult& result : results) {

@@ -81,7 +81,9 @@ struct Fit {
   }
 };
 
+// share: kUnknownShare, since the number of runs is not known before the end. False ends the fit.
 using FitProgress = std::function<bool(std::string_view doing, double share)>;
+inline constexpr double kUnknownShare = -1;
 
 // Throws LoadError for a wrong scene or data file, Failure for options that cannot be met or a scene that fails at its
 // own values.

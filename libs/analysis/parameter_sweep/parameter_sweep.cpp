@@ -66,6 +66,10 @@ class ParameterSweeper {
                         "--vary " + variation.path + " is given twice; nothing was run; give it once");
         }
       }
+      if (variation.path == "session.duration" && !options_.job.scene.duration.empty()) {
+        throw Failure(ExitCode::bad_input,
+                      "--vary session.duration and --until both set the duration; nothing was run; give one of them");
+      }
       check_values(text, variation);
       result_.variations.push_back(std::move(variation));
     }
@@ -178,6 +182,13 @@ std::optional<double> value_of(const SweptRow& row, std::size_t measure) {
 }
 
 }  // namespace
+
+std::string ParameterSweep::duration_text() const {
+  for (const Variation& variation : variations) {
+    if (variation.path == "session.duration") return "the varied duration";
+  }
+  return fmt::format("{} s", until);
+}
 
 std::size_t ParameterSweep::done() const noexcept {
   return count_rows(rows, [](const SweptRow& row) { return row.is_done; });

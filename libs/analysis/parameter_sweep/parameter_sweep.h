@@ -56,6 +56,8 @@ struct ParameterSweep {
   std::vector<SweptRow> rows;
   std::size_t kept = 0;  // rows of an earlier sweep
 
+  // Simulated time of each row, for a heading.
+  [[nodiscard]] std::string duration_text() const;
   [[nodiscard]] std::size_t done() const noexcept;
   [[nodiscard]] std::size_t failed() const noexcept;
   [[nodiscard]] std::size_t foreign() const noexcept;

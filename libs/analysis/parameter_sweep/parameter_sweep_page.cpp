@@ -104,7 +104,7 @@ for(const id of['x','y','shade'])$(id).onchange=draw;draw();
 
 std::string report_html(const ParameterSweep& sweep) {
   const std::string name = escaped(sweep.scene);
-  std::string about = fmt::format("{} of {} rows, {} s each, {}", sweep.done(), sweep.rows.size(), sweep.until,
+  std::string about = fmt::format("{} of {} rows of {}, {}", sweep.done(), sweep.rows.size(), sweep.duration_text(),
                                   to_text(sweep.sampling));
   if (sweep.sampling != Sampling::grid) about += fmt::format(" with seed {}", sweep.seed);
   if (sweep.failed() > 0) about += fmt::format(", {} failed", sweep.failed());

@@ -106,7 +106,8 @@ std::string statistics_text(const ParameterSweep& sweep, std::size_t width) {
     if (statistics.count == 0) continue;
     const SweptMeasure& measure = sweep.measures[m];
     table.add({measure.text, std::to_string(statistics.count), text_in(measure, statistics.mean),
-               text_in(measure, statistics.deviation), interval_text(statistics.interval, measure)});
+               statistics.count > 1 ? text_in(measure, statistics.deviation) : "-",
+               interval_text(statistics.interval, measure)});
   }
   return '\n' + table.text("", width);
 }
@@ -174,7 +175,7 @@ Json json_of_measure(const ParameterSweep& sweep, std::size_t m) {
   json["rows"] = statistics.count;
   if (sweep.sampling != Sampling::grid && statistics.count > 0) {
     json["mean"] = statistics.mean;
-    json["deviation"] = statistics.deviation;
+    json["deviation"] = statistics.count > 1 ? Json(statistics.deviation) : Json();
     json["interval"] = json_of(statistics.interval);
   }
   for (std::size_t v = 0; v < sweep.variations.size(); ++v) {
@@ -205,8 +206,8 @@ Json json_of_row(const ParameterSweep& sweep, const SweptRow& row) {
 }  // namespace
 
 std::string report_text(const ParameterSweep& sweep, std::size_t width) {
-  std::string text = fmt::format("{}: {} of {} s, {}", sweep.scene, counted(sweep.rows.size(), "row", "rows"),
-                                 sweep.until, to_text(sweep.sampling));
+  std::string text = fmt::format("{}: {} of {}, {}", sweep.scene, counted(sweep.rows.size(), "row", "rows"),
+                                 sweep.duration_text(), to_text(sweep.sampling));
   if (sweep.sampling != Sampling::grid) text += fmt::format(" with seed {}", sweep.seed);
   text += "\n\n";
   const std::vector<std::size_t> shown = shown_rows(sweep);

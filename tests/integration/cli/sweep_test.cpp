@@ -258,6 +258,28 @@ TEST_F(Sweep, RefusesBeforeAnyRowRuns) {
   EXPECT_NE(
       refusal({"rail.yaml", "--vary", "a=1..2:3", "--vary", "a=1,2", "--measure", measure}).find("is given twice"),
       std::string::npos);
+  EXPECT_NE(refusal({"rail.yaml", "--until", "0.5s", "--vary", "session.duration=0.3s,0.6s", "--measure", measure})
+                .find("--vary session.duration and --until both set the duration"),
+            std::string::npos);
+  for (const char* seed : {"-1", "99999999999999999999"}) {
+    EXPECT_NE(refusal({"rail.yaml", "--vary", "a=1..2", "--sample", "lhs", "--samples", "2", "--seed", seed,
+                       "--measure", measure})
+                  .find("is no whole number from 0 to 18446744073709551615"),
+              std::string::npos);
+  }
+}
+
+// x = a t^2/2 at the end; the heading has no duration of its own, and one row no deviation
+TEST_F(Sweep, VariesTheDurationAndHasNoDeviationOfOneRow) {
+  const CommandResult varied = sweep(
+      {"rail.yaml", "--vary", "session.duration=0.3s,0.6s", "--measure", "final(Block.position.x)", "-o", "durations"});
+  ASSERT_EQ(varied.code, 0) << varied.err;
+  EXPECT_NE(varied.out.find("2 rows of the varied duration"), std::string::npos) << varied.out;
+  EXPECT_NEAR(rows("durations")["rows"][1]["values"][0], 0.36, 1e-3);
+  const CommandResult one = sweep({"rail.yaml", "--vary", "a=1m/s2..2m/s2", "--sample", "lhs", "--samples", "1",
+                                   "--measure", "final(Block.position.x)", "-o", "one"});
+  ASSERT_EQ(one.code, 0) << one.err;
+  EXPECT_TRUE(rows("one")["measures"][0]["deviation"].is_null());
 }
 
 }  // namespace sweep_test
