@@ -226,7 +226,8 @@ bool may_speed_up(ParameterKind kind) noexcept {
 
 std::optional<TooFast> find_too_fast_element(const Model& given, Integrator rule, double h) {
   if (!is_explicit(rule)) return std::nullopt;
-  std::optional<TooFast> found = find_in(with_steepest_laws(given, Ends::free), rule, h);
+  std::optional<TooFast> found = find_in(with_steepest_laws(given, Ends::slack), rule, h);
+  if (!found) found = find_in(with_steepest_laws(given, Ends::free), rule, h);
   if (found || !has_ends(given)) return found;
   found = find_in(with_steepest_laws(given, Ends::touched), rule, h);
   if (found) found->is_at_end = true;

@@ -37,11 +37,11 @@ bool is_reachable(const ElementLaw& law, double least) {
 }
 
 // x: coordinate at the start
-void make_steepest(ElementLaw& law, double x, bool is_touched) {
+void make_steepest(ElementLaw& law, double x, Ends ends, bool is_touched) {
   const bool has_curve = !law.spring_curve.empty() || !law.damper_curve.empty();
   if (has_curve || is_touched) {
     const double force = force_of(law, x, 0, 0);
-    law.spring += steepest_slope(law.spring_curve) + (is_touched ? law.end_spring : 0);
+    law.spring += (ends == Ends::slack ? 0 : steepest_slope(law.spring_curve)) + (is_touched ? law.end_spring : 0);
     law.damping += steepest_slope(law.damper_curve) + (is_touched ? law.end_damping : 0);
     if (law.spring > 0) law.free = x + force / law.spring;
     law.spring_curve = law.damper_curve = {};
@@ -49,9 +49,10 @@ void make_steepest(ElementLaw& law, double x, bool is_touched) {
   law.end_spring = law.end_damping = 0;
 }
 
-void make_steepest(Bushing& bushing, std::span<const LinkMotion> motion) {
+void make_steepest(Bushing& bushing, Ends ends, std::span<const LinkMotion> motion) {
   const Six x = deflection_of(bushing.frames, motion[at(bushing.frames.link1)], motion[at(bushing.frames.link2)]).x;
   for (const DirectionCurve& own : bushing.curves) {
+    if (ends == Ends::slack && !own.is_damper) continue;
     const std::size_t i = at(own.direction);
     const double slope = steepest_slope(own.curve);
     (own.is_damper ? bushing.damping : bushing.spring)[i] += slope;
@@ -108,15 +109,21 @@ Model with_steepest_laws(const Model& given, Ends ends) {
   observe(model, start, ws);
   for (std::size_t i = 0; i < model.lines.size(); ++i) {
     ElementLaw& law = model.lines[i].law;
-    make_steepest(law, ws.lines[i].length, ends == Ends::touched && is_reachable(law, 0));
+    make_steepest(law, ws.lines[i].length, ends, ends == Ends::touched && is_reachable(law, 0));
   }
   for (std::size_t i = 0; i < model.angles.size(); ++i) {
     ElementLaw& law = model.angles[i].law;
-    make_steepest(law, ws.angles[i].angle, ends == Ends::touched && is_reachable(law, -kUnlimited));
+    make_steepest(law, ws.angles[i].angle, ends, ends == Ends::touched && is_reachable(law, -kUnlimited));
   }
-  for (Bushing& bushing : model.elements.bushings) make_steepest(bushing, ws.motion);
-  for (Rope& rope : model.elements.ropes) make_steepest(rope, ws.motion);
-  for (Tyre& tyre : model.elements.tyres) make_steepest(tyre, ws.motion);
+  for (Bushing& bushing : model.elements.bushings) make_steepest(bushing, ends, ws.motion);
+  for (Rope& rope : model.elements.ropes) {
+    if (ends == Ends::slack) silence(RopeRow(), rope);
+    make_steepest(rope, ws.motion);
+  }
+  for (Tyre& tyre : model.elements.tyres) {
+    if (ends == Ends::slack) silence(TyreRow(), tyre);
+    make_steepest(tyre, ws.motion);
+  }
   model.elements.loads.clear();
   model.gravity = {};
   model.contact = nullptr;

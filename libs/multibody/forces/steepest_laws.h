@@ -18,7 +18,9 @@
 
 namespace slew::multibody {
 
-enum class Ends { free, touched };
+// slack: springs of tables, ropes and tyres do not act, since a damper that is too fast alone may be followed beside
+// them
+enum class Ends { slack, free, touched };
 
 [[nodiscard]] Model with_steepest_laws(const Model& given, Ends ends);
 // Whether an end damper can be touched.
