@@ -148,7 +148,7 @@ TEST_F(TruckCrane, RefusesABagThatItsDampersWouldThrow) {
   const ParameterDirectory directory(*scene_);
   const Status status = directory.check("Bag.mass", 1e-3).status;
   EXPECT_EQ(status.code, ExitCode::bad_input);
-  for (const char* part : {"Bag.mass", "ForceR_Friction", "rk4", "mechanics.max_substep of at most", "trapezoidal"}) {
+  for (const char* part : {"Bag.mass", "ForceR_Friction", "rk4", "mechanics.max_substep of at most", "sdirk2"}) {
     EXPECT_NE(status.text.find(part), std::string::npos) << part << " in " << status.text;
   }
   EXPECT_TRUE(directory.check("Bag.mass", 50).status.is_ok());

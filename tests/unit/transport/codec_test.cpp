@@ -100,7 +100,7 @@ TEST(OfARecordingOfVersion6, ASampleLacksTheStiffnessBetweenPorts) {
   message.sample.K_cross = {0, -3, -3, 0};
   // encapsulation, header, state, the lengths of 14 empty lists, flags
   expect_may_be_missing(
-      message, [](wire::ActuatorMessage & m) -> auto& { return m.sample.K_cross; }, 4 + 40 + 40 + 14 * 4 + 4);
+      message, [](wire::ActuatorMessage & m) -> auto& { return m.sample.K_cross; }, 4 + 40 + 44 + 14 * 4 + 4);
 }
 
 TEST(OfARecordingOfVersion4, ADescriptionGivesANodeUpAfter2Seconds) {
