@@ -5,31 +5,16 @@
 Usage: excavator_test.py PROJECT SLEWRING digging|cycle|chart|levers
 The lever arms are computed here from the pins of the scene, by plane geometry alone.
 """
-import csv
 import json
 import math
-import pathlib
-import subprocess
 import sys
 import tempfile
 
-PROJECT, SLEWRING, WHAT = sys.argv[1:]
+sys.dont_write_bytecode = True
+from machine_runs import PROJECT, WHAT, expect, output, record  # noqa: E402
+
 STICK, TEETH, BOOM = 2.92, 1.47, 5.70  # lengths between the pins [m]
 FOOT = (0.05, 1.75)
-
-
-def output(*arguments):
-    return subprocess.run([SLEWRING, *arguments], check=True, stdout=subprocess.PIPE, text=True).stdout
-
-
-def record(scene, folder, *options):
-    """Columns of a run by name, SI units; its output is printed."""
-    text = output("run", f"{PROJECT}/scenes/{scene}.yaml", "--in-process", "--pace", "free", "--out", folder, *options)
-    print(text)
-    recording = next(path.parent for path in pathlib.Path(folder).rglob("session.mcap"))
-    header, *rows = csv.reader(output("export", recording, "--csv").splitlines())
-    columns = zip(*[[float(cell or "nan") for cell in row] for row in rows])
-    return text, {name.split(" ")[0]: column for name, column in zip(header, columns)}
 
 
 def polar(length, angle):
@@ -74,16 +59,11 @@ def pins(boom, stick, bucket):
     return tip, pin, plus(pin, polar(TEETH, boom + stick + bucket))
 
 
-def expect(statement, holds):
-    print(("ok: " if holds else "FAILED: ") + statement)
-    return holds
-
-
 def digging(folder):
     tip, pin, teeth = pins(*map(math.radians, (10, -71.3, -26)))
     good = True
     for stick_digs, name, rod in (0, "Bucket_Cylinder", 0.085), (1, "Stick_Cylinder", 0.100):
-        _, run = record("excavator_20t_digging", f"{folder}/{stick_digs}", "--set", f"stick_digs={stick_digs}")
+        _, _, run = record("excavator_20t_digging", f"{folder}/{stick_digs}", "--in-process", "--set", f"stick_digs={stick_digs}")
         last = {key: values[-1] for key, values in run.items()}
         angles = [last[joint + ".position"] for joint in ("Boom_Foot", "Stick_Pin", "Bucket_Pin")]
         # the spring from the teeth to its point in Ground, 3 m behind the teeth as they stood at the start
@@ -106,7 +86,7 @@ def digging(folder):
 
 
 def cycle(folder):
-    text, run = record("excavator_20t", folder)
+    text, _, run = record("excavator_20t", folder, "--in-process")
     lamps = [line.split()[2] for line in text.splitlines() if line.startswith("coupling ")]
     good = expect("all lamps are green", lamps == ["green:"] * 5)
     for joint in "Ring", "Boom_Foot", "Stick_Pin", "Bucket_Pin":
@@ -157,7 +137,7 @@ def levers(folder):
                      (("Lift", 1), ("Crowd", -1), ("Curl", -1), ("Slew", 1)))
     good = True
     for limit in 0, 560:
-        _, run = record("excavator_20t", f"{folder}/{limit}", "--duration", "4", "--set", f"Pump.maximum_torque={limit}Nm",
+        _, _, run = record("excavator_20t", f"{folder}/{limit}", "--in-process", "--duration", "4", "--set", f"Pump.maximum_torque={limit}Nm",
                         "--set", f"script.inputs={{{full}, Input_Brake: [[0 s, 0], [0.5 s, 1]]}}")
         stalls = max(run["Engine.is_stalled"]) > 0
         good &= expect(f"with a limit of {limit} Nm the engine {'stalls' if stalls else 'keeps running'}", stalls == (limit == 0))

@@ -5,43 +5,18 @@
 Usage: forwarder_test.py PROJECT SLEWRING rest|chart|slewing|holding|cycle
 The statics are computed here from the pins and masses of the published crane, by plane geometry alone.
 """
-import csv
 import json
 import math
-import pathlib
-import subprocess
 import sys
 import tempfile
 
-PROJECT, SLEWRING, WHAT = sys.argv[1:]
+sys.dont_write_bytecode = True
+from machine_runs import PROJECT, WHAT, expect, near, output, record  # noqa: E402
+
 K, GRAVITY, BASE = 1.25, 9.81, 1.7
 BORE, ROD = K * 0.100, K * 0.056
 AREA_A = math.pi / 4 * BORE**2
 AREA_B = math.pi / 4 * (BORE**2 - ROD**2)
-
-
-def output(*arguments):
-    return subprocess.run([SLEWRING, *arguments], check=True, stdout=subprocess.PIPE, text=True).stdout
-
-
-def record(scene, folder, *options):
-    """Columns of a run by name, SI units; its output is printed."""
-    text = output("run", f"{PROJECT}/scenes/{scene}.yaml", "--in-process", "--pace", "free", "--out", folder, *options)
-    print(text)
-    recording = next(path.parent for path in pathlib.Path(folder).rglob("session.mcap"))
-    header, *rows = csv.reader(output("export", recording, "--csv").splitlines())
-    columns = zip(*[[float(cell or "nan") for cell in row] for row in rows])
-    return text, {name.split(" ")[0]: column for name, column in zip(header, columns)}
-
-
-def expect(statement, holds):
-    print(("ok: " if holds else "FAILED: ") + statement)
-    return holds
-
-
-def near(what, value, by_hand, share, unit=""):
-    return expect(f"{what} {value:.6g} {unit}, by hand {by_hand:.6g} {unit} ({100 * (value / by_hand - 1):+.3f} %)",
-                  abs(value - by_hand) <= share * abs(by_hand))
 
 
 def at(origin, angle, point):
@@ -114,7 +89,7 @@ def static_force(line, coordinate, lift, fold, stage, load=600):
 def rest(folder):
     good = True
     for number, (lift, fold, stage) in enumerate(((10, -2, 0), (-5, -30, 1.95), (45, -100, 0.8))):
-        _, run = record("forwarder_crane", f"{folder}/{number}", "--duration", "0.01", "--set", f"lift_start={lift}deg",
+        _, _, run = record("forwarder_crane", f"{folder}/{number}", "--in-process", "--duration", "0.01", "--set", f"lift_start={lift}deg",
                         "--set", f"fold_start={fold}deg", "--set", f"stage_start={stage}m")
         angles = math.radians(lift), math.radians(fold)
         first = {name: column[0] for name, column in run.items()}
@@ -149,7 +124,7 @@ def chart(_):
 
 def slewing(folder):
     """With an empty grapple and slowly rising flow: a load that swings overtakes the valve."""
-    _, run = record("forwarder_crane", folder, "--duration", "7", "--set", "log_mass=5kg", "--set",
+    _, _, run = record("forwarder_crane", folder, "--in-process", "--duration", "7", "--set", "log_mass=5kg", "--set",
                     "script.inputs={Input_Slew: [[0 s, 0], [4 s, 1]]}")
     area, radius = math.pi / 4 * 0.125**2, 0.12
     rates = [rate for time, rate in zip(run["time"], run["Slew.velocity"]) if 5 <= time <= 7]
@@ -159,8 +134,8 @@ def slewing(folder):
 def holding(folder):
     """A burst hose between the directional valve and the counterbalance valve, with and without that valve."""
     burst = ("--duration", "4", "--set", "Lift_Bleed_A.nominal_flow=300 l/min")
-    _, held = record("forwarder_crane", f"{folder}/held", *burst)
-    _, open_ = record("forwarder_crane", f"{folder}/open", *burst, "--set",
+    _, _, held = record("forwarder_crane", f"{folder}/held", "--in-process", *burst)
+    _, _, open_ = record("forwarder_crane", f"{folder}/open", "--in-process", *burst, "--set",
                       "script.parameters=[{at: 0.1 s, set: Lift_Holding_A.setting_pressure, value: 5 bar}]")
     sunk, fallen = (math.degrees(run["Lift_Pin.position"][0] - run["Lift_Pin.position"][-1]) for run in (held, open_))
     good = expect(f"behind the counterbalance valve the boom sinks by {sunk:.4f} deg in 4 s", abs(sunk) < 0.05)
@@ -168,7 +143,7 @@ def holding(folder):
 
 
 def cycle(folder):
-    text, run = record("forwarder_crane_loading", folder)
+    text, _, run = record("forwarder_crane_loading", folder, "--in-process")
     lamps = [line.split()[2] for line in text.splitlines() if line.startswith("coupling ")]
     good = expect("no lamp is red", len(lamps) == 6 and "red:" not in lamps)
     good &= expect("every iteration converges", "residual was accepted" not in text)

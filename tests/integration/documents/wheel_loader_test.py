@@ -5,43 +5,18 @@
 Usage: wheel_loader_test.py PROJECT SLEWRING travel|pushing|distributed
 The closed forms are computed here from the numbers of the scene; of the run they take the state of the machine alone.
 """
-import csv
 import math
-import pathlib
-import subprocess
 import sys
 import tempfile
 
-PROJECT, SLEWRING, WHAT = sys.argv[1:]
+sys.dont_write_bytecode = True
+from machine_runs import WHAT, expect, near, record  # noqa: E402
+
 BAR, LITRE_PER_MINUTE, RPM = 1e5, 1e-3 / 60, math.pi / 30
 PUMP, MOTOR, CHARGE = (cubic * 1e-6 / (2 * math.pi) for cubic in (56, 107, 11.6))  # m3/rad
 RATIO, RADIUS, WEIGHT, ROLLING = 48.6, 0.588, 6400 * 9.81, 0.025
 LEAK = 1 * LITRE_PER_MINUTE / (400 * BAR)  # of every leak: port to port and port to case, pump and motor
 TANK = 1 * BAR
-
-
-def output(*arguments):
-    return subprocess.run([SLEWRING, *arguments], check=True, stdout=subprocess.PIPE, text=True).stdout
-
-
-def record(scene, folder, *options):
-    """Columns of a run by name, SI units; its output is printed."""
-    text = output("run", f"{PROJECT}/scenes/{scene}.yaml", "--pace", "free", "--out", folder, *options)
-    print(text)
-    recording = next(path.parent for path in pathlib.Path(folder).rglob("session.mcap"))
-    header, *rows = csv.reader(output("export", recording, "--csv").splitlines())
-    columns = zip(*[[float(cell or "nan") for cell in row] for row in rows])
-    return text, recording, {name.split(" ")[0]: column for name, column in zip(header, columns)}
-
-
-def expect(statement, holds):
-    print(("ok: " if holds else "FAILED: ") + statement)
-    return holds
-
-
-def near(what, value, by_hand, share, unit=""):
-    return expect(f"{what} {value:.5g} {unit}, by hand {by_hand:.5g} {unit} ({100 * (value / by_hand - 1):+.2f} %)",
-                  abs(value - by_hand) <= share * abs(by_hand))
 
 
 def lamps(text):
