@@ -9,7 +9,6 @@
 // step: each k_c times a(l_c H) / a(lambda_i H).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -23,8 +22,8 @@ class SharedVolumes {
  public:
   explicit SharedVolumes(const hydraulics::Circuit& circuit);
   [[nodiscard]] bool any() const noexcept { return !pairs_.empty(); }
-  // (1) at the state of a circuit like the one of the construction. springs, lambda: of all ports; H: time between two
-  // exchanges [s].
+  // (1) at the integrator's state. circuit: the integrator's, like the one of the construction; lambda: of all ports;
+  // H: time between two exchanges [s].
   void write(const hydraulics::CircuitIntegrator& integrator, const hydraulics::Circuit& circuit, double H,
              const coupling::PortArray& lambda, coupling::PortMatrix& K_cross) const noexcept;
 

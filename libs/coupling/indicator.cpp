@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "math/range_projector.h"
+
 namespace slew::coupling {
 namespace {
 
@@ -238,24 +240,12 @@ double largest_eigenvalue(const Square& S, std::size_t m) noexcept {
   return numerator / denominator;
 }
 
-// of a pivot over its mobility, below which it is round-off
-constexpr double kNoPivot = 1e-12;
-
 // L' K L with W = L L', which has the eigenvalues of W K; K is made symmetric.
 Square by_factor_of_W(const PortMatrix& W, const PortArray& K, const PortMatrix& K_cross) noexcept {
   const std::size_t m = K.size();
   Square L{}, S{};
-  for (std::size_t j = 0; j < m; ++j) {
-    double pivot = W[j * m + j];
-    for (std::size_t k = 0; k < j; ++k) pivot -= L[j * m + k] * L[j * m + k];
-    if (!(pivot > kNoPivot * W[j * m + j])) continue;  // the port moves with those before it
-    const double root = std::sqrt(pivot);
-    for (std::size_t i = j; i < m; ++i) {
-      double rest = W[i * m + j];
-      for (std::size_t k = 0; k < j; ++k) rest -= L[i * m + k] * L[j * m + k];
-      L[i * m + j] = rest / root;
-    }
-  }
+  std::array<double, kMaxPorts> left;
+  (void)math::pivoted_cholesky(W.span(), {L.data(), m * m}, {left.data(), m});
   for (std::size_t a = 0; a < m; ++a) {
     for (std::size_t i = 0; i < m; ++i) {
       double image = K[i] * L[i * m + a];
