@@ -167,6 +167,16 @@ function(slewring_library name)
   target_link_libraries(slewring_${name} PUBLIC ${ARG_LINK})
 endfunction()
 
+# A shared library that shows nothing of what it links statically, and has all that it needs; under the sanitizers
+# their functions are in the program.
+function(slewring_closed_library target)
+  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL LINKER:--as-needed)
+  if(NOT SLEWRING_SANITIZE)
+    target_link_options(${target} PRIVATE LINKER:--no-undefined)
+  endif()
+endfunction()
+
 # slewring_program(NAME SOURCES ... DEPENDS lib ... LINK target ...)
 function(slewring_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LINK" ${ARGN})
