@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "monolith/eigenmodes.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/check.h"
+#include "math/eigenvalues.h"
 
 namespace slew::monolith {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXcd;
-using Eigen::MatrixXd;
-using Eigen::VectorXcd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // relative difference below which eigenvalues are equal: differences of the equations are accurate to 1e-8
 constexpr double kEqual = 1e-6;
@@ -24,7 +24,7 @@ constexpr int kBalancingPasses = 20;
 constexpr double kNoGrowth = 1e-9;
 
 // rows and columns of like size by powers of two (Osborne 1960)
-void balance(MatrixXd& A) {
+void balance(RowMajor& A) {
   for (int pass = 0; pass < kBalancingPasses; ++pass) {
     bool has_changed = false;
     for (Index i = 0; i < A.rows(); ++i) {
@@ -50,13 +50,16 @@ bool are_equal(std::complex<double> a, std::complex<double> b) {
 }
 
 // columns of the vectors with the values nearest to one value
-MatrixXcd nearest(const VectorXcd& values, const MatrixXcd& vectors, std::complex<double> value, std::size_t count) {
-  std::vector<Index> order(static_cast<std::size_t>(values.size()));
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return std::abs(values(a) - value) < std::abs(values(b) - value); });
-  MatrixXcd chosen(vectors.rows(), static_cast<Index>(count));
-  for (std::size_t k = 0; k < count; ++k) chosen.col(static_cast<Index>(k)) = vectors.col(order[k]);
+MatrixXcd nearest(const math::Eigenpairs& pairs, std::complex<double> value, std::size_t count) {
+  const auto n = static_cast<Index>(pairs.values.size());
+  std::vector<std::size_t> order(pairs.values.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(pairs.values[a] - value) < std::abs(pairs.values[b] - value);
+  });
+  const Eigen::Map<const MatrixXcd> vectors(pairs.vectors.data(), n, n);
+  MatrixXcd chosen(n, static_cast<Index>(count));
+  for (std::size_t k = 0; k < count; ++k) chosen.col(static_cast<Index>(k)) = vectors.col(static_cast<Index>(order[k]));
   return chosen;
 }
 
@@ -82,22 +85,19 @@ Eigenmodes eigenmodes(std::span<const double> A, std::size_t n) {
   SLEW_CHECK(A.size() == n * n);
   Eigenmodes result;
   if (n == 0) return result;
-  MatrixXd matrix(static_cast<Index>(n), static_cast<Index>(n));
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) matrix(static_cast<Index>(i), static_cast<Index>(j)) = A[i * n + j];
-  }
+  RowMajor matrix = Eigen::Map<const RowMajor>(A.data(), static_cast<Index>(n), static_cast<Index>(n));
   balance(matrix);
-  const Eigen::EigenSolver<MatrixXd> right(matrix);
-  const Eigen::EigenSolver<MatrixXd> left(MatrixXd(matrix.transpose()));
-  if (right.info() != Eigen::Success || left.info() != Eigen::Success) return result;
-  const VectorXcd values = right.eigenvalues();
-  const MatrixXcd right_vectors = right.eigenvectors(), left_vectors = left.eigenvectors();
+  const std::span<const double> rows(matrix.data(), n * n);
+  const math::Eigenpairs right = math::eigenpairs(rows, n);
+  matrix.transposeInPlace();
+  const math::Eigenpairs left = math::eigenpairs(rows, n);
+  if (right.values.empty() || left.values.empty()) return result;
   std::vector<std::complex<double>> sorted;
-  for (Index i = 0; i < values.size(); ++i) {
-    if (std::abs(values(i)) < kSlowestRate) {
+  for (const std::complex<double> value : right.values) {
+    if (std::abs(value) < kSlowestRate) {
       ++result.at_rest;
-    } else if (values(i).imag() >= 0) {
-      sorted.push_back(values(i));
+    } else if (value.imag() >= 0) {
+      sorted.push_back(value);
     }
   }
   std::stable_sort(sorted.begin(), sorted.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
@@ -111,8 +111,7 @@ Eigenmodes eigenmodes(std::span<const double> A, std::size_t n) {
       ++count;
     }
     result.modes.push_back({sorted[i], static_cast<int>(count),
-                            participation(nearest(values, right_vectors, sorted[i], count),
-                                          nearest(left.eigenvalues(), left_vectors, sorted[i], count))});
+                            participation(nearest(right, sorted[i], count), nearest(left, sorted[i], count))});
   }
   return result;
 }
