@@ -9,11 +9,14 @@
 #include "transport/cdr/codec.h"
 
 namespace slew::session {
+namespace {
 
 using wire::Phase;
 using wire::Role;
 using wire::Topic;
 using Visit = recording::Reader::Visit;
+
+}  // namespace
 
 RecordedEpochs::RecordedEpochs(const recording::Reader& reader) : reader_(reader) {
   read_states();
