@@ -57,7 +57,7 @@ target_compile_options(slewring_flags INTERFACE
 target_include_directories(slewring_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/libs)
 # as fmt::fmt does: with the same definitions everywhere all targets can share the precompiled headers
 target_compile_definitions(slewring_flags INTERFACE FMT_SHARED)
-# fmt asks for some optimisation of its own where there is none; after it in a precompiled header g++ 12 takes everything
+# fmt sets some optimisation of its own where there is none; after it in a precompiled header g++ 12 takes everything
 # for optimised, and its vector instructions do not compile
 target_compile_options(slewring_flags INTERFACE "-DFMT_GCC_PRAGMA(text)=")
 # what a damaged stack, a wrong length or an overwritten table of functions must not become; docs/security.md. The

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hardening_test.sh C_COMPILER FORTIFIED BINARY...   what the build says of hardened code is in each of our programs and
-# libraries: position-independent, relocations resolved at the start and read-only from then on, no executable stack,
+# hardening_test.sh C_COMPILER FORTIFIED BINARY...   what the build states about hardened code holds for each of our
+# programs and libraries:
+# position-independent, relocations resolved at the start and read-only from then on, no executable stack,
 # guarded stacks; FORTIFIED yes: checked lengths too. A program without all that is refused.
 set -euo pipefail
 compiler=$1 is_fortified=$2

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Finds words of people's talk where programs are meant: in comments and texts of C++ and in documents.
+"""Finds words of people's talk where programs are meant: in comments, texts of C++ and TypeScript, and documents.
 
 words_test.py ROOT [PATH ...]: files or folders below ROOT; all tracked kinds of file without paths. Prints file:line: word.
 The glossary in docs/notation.md has the words to use: publish, report, receive, request, resend, acknowledge, reject.
@@ -43,11 +43,21 @@ def texts_of_markdown(source):
             yield number, re.sub(r"`[^`]*`|\]\([^)]*\)", "", line)
 
 
+def comments_after_hash(source):
+    for number, line in enumerate(source.split("\n"), 1):
+        if comment := re.search(r"(?:^|\s)#(.*)", line):
+            yield number, comment[1]
+
+
+READERS = {".cpp": texts_of_cpp, ".h": texts_of_cpp, ".idl": texts_of_cpp, ".ts": texts_of_cpp, ".mjs": texts_of_cpp,
+           ".md": texts_of_markdown, ".yaml": comments_after_hash, ".cmake": comments_after_hash, ".py": comments_after_hash,
+           ".sh": comments_after_hash, ".txt": comments_after_hash}
+
+
 def findings(path):
     with open(path, encoding="utf-8") as file:
         source = file.read()
-    texts = texts_of_markdown(source) if path.endswith(".md") else texts_of_cpp(source)
-    for number, text in texts:
+    for number, text in READERS[os.path.splitext(path)[1]](source):
         for match in WORDS.finditer(PEOPLE.sub("", text)):
             yield number + text.count("\n", 0, match.start()), match[0]
 
@@ -59,7 +69,7 @@ def files_below(root, path):
     for folder, folders, names in os.walk(full):
         folders[:] = [f for f in folders if not os.path.relpath(os.path.join(folder, f), root).startswith(SKIPPED)]
         for name in names:
-            if name.endswith((".h", ".cpp", ".md")):
+            if os.path.splitext(name)[1] in READERS:
                 yield os.path.join(folder, name)
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page knows of the session or recording, and what it asks of it.
+// What the page has of the session or recording, and its requests to it.
 import { Emitter } from "./dom";
 import type { ChannelInfo, Message, Parameter, PlaybackState, ServerInfo, ServiceAnswer, Status } from "./protocol";
 import { Protocol } from "./protocol";

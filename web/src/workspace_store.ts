@@ -9,7 +9,7 @@ const keyOf = (scene: string) => `slewring.workspace.${scene}`;
 
 export class WorkspaceStore {
   #session: Session;
-  #tag: string | null = null; // of the file as this page knows it
+  #tag: string | null = null; // of the file as this page has it
   #isShared = true; // until the window refuses
 
   constructor(session: Session) {

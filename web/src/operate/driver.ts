@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The values that this page sends to the inputs, and the holders of the inputs.
 //
-// Each source (pointer, keyboard, gamepad, a table of recorded values) has a wish for an input; the one farthest from
+// Each source (pointer, keyboard, gamepad, a table of recorded values) has a demand for an input; the one farthest from
 // neutral counts. An input is leased when it first leaves neutral. While it is away from neutral, and for kTailMs after,
 // its value is sent every kSendEveryMs. A page that is hidden or suspended sends nothing more: the window then puts the
 // input to neutral.
@@ -15,7 +15,7 @@ export type Source = "pointer" | "keyboard" | "gamepad" | "table";
 export type Lease = "free" | "requested" | "mine" | "other";
 
 interface Driven {
-  wishes: Map<Source, number>;
+  demands: Map<Source, number>;
   lease: Lease;
   sendUntil: number; // ms, monotonic
   isConfirmed: boolean; // the session's state has shown this page as the holder
@@ -24,7 +24,7 @@ interface Driven {
 
 export class Driver {
   readonly changed = new Emitter(); // leases or values
-  readonly beforeSending = new Emitter(); // sources renew their wishes
+  readonly beforeSending = new Emitter(); // sources renew their demands
   #session: Session;
   #inputs = new Map<string, Driven>();
   #ownName?: string; // of this page in leases
@@ -49,21 +49,21 @@ export class Driver {
     return this.#session.state?.holders[input] ?? "";
   }
   value(input: string): number {
-    const wishes = this.#inputs.get(input)?.wishes.values() ?? [];
-    return [...wishes].reduce((best, wish) => (Math.abs(wish) > Math.abs(best) ? wish : best), 0);
+    const demands = this.#inputs.get(input)?.demands.values() ?? [];
+    return [...demands].reduce((best, demand) => (Math.abs(demand) > Math.abs(best) ? demand : best), 0);
   }
 
   // value: -1 to 1; 0 is neutral.
-  wish(source: Source, input: string, value: number): void {
+  demand(source: Source, input: string, value: number): void {
     const driven = this.#inputs.get(input);
     const limited = Math.min(1, Math.max(-1, value));
-    if (!driven || driven.wishes.get(source) === limited) return;
-    driven.wishes.set(source, limited);
+    if (!driven || driven.demands.get(source) === limited) return;
+    driven.demands.set(source, limited);
     this.changed.emit();
   }
 
   neutralize(): void {
-    for (const driven of this.#inputs.values()) driven.wishes.clear();
+    for (const driven of this.#inputs.values()) driven.demands.clear();
     this.changed.emit();
   }
 
@@ -82,7 +82,7 @@ export class Driver {
   async release(input: string): Promise<void> {
     const driven = this.#inputs.get(input);
     if (!driven) return;
-    driven.wishes.clear();
+    driven.demands.clear();
     driven.sendUntil = 0;
     await this.#session.call("release", { input });
     driven.lease = "free";
@@ -97,7 +97,7 @@ export class Driver {
     for (const { name, is_lockstep } of this.#session.description?.inputs ?? []) {
       if (!is_lockstep && !this.#inputs.has(name))
         this.#inputs.set(name, {
-          wishes: new Map(),
+          demands: new Map(),
           lease: "free",
           sendUntil: 0,
           isConfirmed: false,

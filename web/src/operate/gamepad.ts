@@ -79,7 +79,7 @@ export class Gamepad {
     const axes = this.axes;
     for (const input of this.#inputs) {
       const map = this.mapOf(input);
-      this.#driver.wish("gamepad", input, valueOf(axes[map.axis] ?? 0, map));
+      this.#driver.demand("gamepad", input, valueOf(axes[map.axis] ?? 0, map));
     }
   }
 }

@@ -111,7 +111,7 @@ export class InputRecord {
 
   stopPlaying(): void {
     if (!this.#played) return;
-    for (const name of this.#played.names) this.#driver.wish("table", name, 0);
+    for (const name of this.#played.names) this.#driver.demand("table", name, 0);
     this.#played = undefined;
     this.changed.emit();
   }
@@ -134,6 +134,6 @@ export class InputRecord {
     if (!this.#played) return;
     const time = this.#session.time - this.#begin;
     if (time > this.end) return this.stopPlaying();
-    valuesAt(this.#played, time).forEach((value, i) => this.#driver.wish("table", this.#played!.names[i]!, value));
+    valuesAt(this.#played, time).forEach((value, i) => this.#driver.demand("table", this.#played!.names[i]!, value));
   }
 }

@@ -73,7 +73,7 @@ export class Keyboard {
 
   #apply(at: number): void {
     const [more, less] = pairs[at]!;
-    this.#driver.wish("keyboard", this.#inputs[at]!, Number(this.#down.has(more)) - Number(this.#down.has(less)));
+    this.#driver.demand("keyboard", this.#inputs[at]!, Number(this.#down.has(more)) - Number(this.#down.has(less)));
   }
 
   #releaseAll(): void {

@@ -20,9 +20,9 @@ export function neutralSlider(driver: Driver, input: string): HTMLElement {
       onpointerdown: (event: PointerEvent) => {
         const move = ({ clientX }: PointerEvent) => {
           const box = track.getBoundingClientRect();
-          driver.wish("pointer", input, ((clientX - box.left) / box.width) * 2 - 1);
+          driver.demand("pointer", input, ((clientX - box.left) / box.width) * 2 - 1);
         };
-        followPointer(event, move, () => driver.wish("pointer", input, 0));
+        followPointer(event, move, () => driver.demand("pointer", input, 0));
         move(event);
       },
       // away from neutral only while the key is down
@@ -30,10 +30,10 @@ export function neutralSlider(driver: Driver, input: string): HTMLElement {
         const direction = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
         if (direction === undefined) return;
         event.preventDefault();
-        driver.wish("pointer", input, driver.value(input) + direction * kKeyStep);
+        driver.demand("pointer", input, driver.value(input) + direction * kKeyStep);
       },
-      onkeyup: () => driver.wish("pointer", input, 0),
-      onblur: () => driver.wish("pointer", input, 0),
+      onkeyup: () => driver.demand("pointer", input, 0),
+      onblur: () => driver.demand("pointer", input, 0),
     },
     present,
     knob,
@@ -54,17 +54,17 @@ export function showPresent(track: HTMLElement, value: number): void {
 }
 
 export function digitalButton(driver: Driver, input: string): HTMLElement {
-  const release = () => driver.wish("pointer", input, 0);
+  const release = () => driver.demand("pointer", input, 0);
   const button = h(
     "button",
     {
       class: "digital",
       type: "button",
       onpointerdown: (event: PointerEvent) => {
-        driver.wish("pointer", input, 1);
+        driver.demand("pointer", input, 1);
         followPointer(event, () => {}, release);
       },
-      onkeydown: (event: KeyboardEvent) => [" ", "Enter"].includes(event.key) && driver.wish("pointer", input, 1),
+      onkeydown: (event: KeyboardEvent) => [" ", "Enter"].includes(event.key) && driver.demand("pointer", input, 1),
       onkeyup: release,
       onblur: release,
     },
@@ -77,9 +77,9 @@ export function digitalButton(driver: Driver, input: string): HTMLElement {
 // across, along: inputs, along counts upwards; undefined: the axis does nothing.
 export function stick(driver: Driver, across: string | undefined, along: string | undefined): HTMLElement {
   const knob = h("i", { class: "knob" });
-  const wish = (x: number, y: number) => {
-    if (across !== undefined) driver.wish("pointer", across, x);
-    if (along !== undefined) driver.wish("pointer", along, y);
+  const demand = (x: number, y: number) => {
+    if (across !== undefined) driver.demand("pointer", across, x);
+    if (along !== undefined) driver.demand("pointer", along, y);
   };
   const pad = h(
     "div",
@@ -89,9 +89,9 @@ export function stick(driver: Driver, across: string | undefined, along: string 
       onpointerdown: (event: PointerEvent) => {
         const move = ({ clientX, clientY }: PointerEvent) => {
           const box = pad.getBoundingClientRect();
-          wish(((clientX - box.left) / box.width) * 2 - 1, 1 - ((clientY - box.top) / box.height) * 2);
+          demand(((clientX - box.left) / box.width) * 2 - 1, 1 - ((clientY - box.top) / box.height) * 2);
         };
-        followPointer(event, move, () => wish(0, 0));
+        followPointer(event, move, () => demand(0, 0));
         move(event);
       },
     },

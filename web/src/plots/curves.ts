@@ -138,7 +138,7 @@ export class CurveStore {
     try {
       for (const [recording, names] of wanted) await this.#readParts(recording, [...names], from, to, whole);
     } catch {
-      this.#notBefore = performance.now() + kRetryAfterMs; // there was a notice; what is drawn next asks again
+      this.#notBefore = performance.now() + kRetryAfterMs; // there was a notice; what is drawn next requests again
     }
     this.#isReading = false;
     if (this.#wanted.size > 0) this.#timer ??= setTimeout(() => void this.#readWanted(), kRequestAfterMs);
