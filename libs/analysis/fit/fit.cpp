@@ -72,6 +72,11 @@ class Fitter {
                                              "; nothing was fitted; change them by --set");
     }
     split(before.front().values, &FittedSignal::before);
+    // a signal that hardly changes does not outweigh the others by an offset that no value can mend
+    for (FittedSignal& signal : fit_.signals) {
+      const double scale = std::max(statistics_of(signal.measured).deviation, signal.rms(signal.before));
+      if (scale > 0) signal.scale = scale;
+    }
     fit_.search = minimise_squares(start_, before.front().values.size(), options_.most_iterations,
                                    [this](std::span<const std::vector<double>> points) { return residuals(points); });
     if (fit_.search.was_ended) return interrupted();
@@ -133,8 +138,6 @@ class Fitter {
                               .measured = measured[i].value,
                               .before = {},
                               .after = {}});
-      const double deviation = statistics_of(measured[i].value).deviation;
-      if (deviation > 0) fit_.signals.back().scale = deviation;
       job_.times.push_back(measured[i].time);
       end = std::max(end, measured[i].time.back());
     }
@@ -284,6 +287,7 @@ class Fitter {
         const double half =
             student_quantile(static_cast<double>(m - n)) * std::sqrt(C[k * n + k]) * std::fabs(value.high - value.low);
         value.interval = Interval{value.after - half, value.after + half};
+        value.is_beyond_range = half > std::fabs(value.high - value.low);
       }
       fit_.values.push_back(std::move(value));
     }

@@ -4,16 +4,21 @@
 //
 // Least squares (least_squares.h) over runs of the scene, each a process of its own (sweep/sweep.h). Residual of signal
 // k at its instant t_i:  r = (x_k(t_i) - m_ki) / s_k  with the simulated x_k, linear between steps, the measured m_ki,
-// and s_k, the standard deviation of the measured signal over time: every sample of every signal has the same weight.
+// and s_k, the standard deviation of the measured signal over time, or the RMS of its difference from the first run
+// where that is larger (an offset that no value can mend): every sample of every signal has the same weight.
+//
 // 95 % interval of value j with m residuals and n values: t sqrt(C_jj), t: 0.975 quantile of Student's distribution
 // with m - n degrees of freedom. It holds for independent normal errors of the samples, a scene that is right but for
 // the free values, and a minimum within the bounds. Errors that follow each other, or a wrong model, make it too small.
+//
 // Values that the data cannot separate have no interval: column k of the Jacobian J is, up to kMostCorrelation, a
 // combination of the others' columns, so that values may change together and change no signal. The measure is the
 // variance inflation |J_k|^2 (J' J)^-1_kk, which does not depend on units or ranges.
+//
 // Not covered: several minima (the search begins at the scene's own values), delays between the channels.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -46,7 +51,8 @@ struct FittedValue {
   double after = 0;
   std::optional<Interval> interval{};  // 95 %; none: the data do not determine it alone
   bool is_at_bound = false;
-  std::string setting{};  // "Boom.mass=612.3 kg"
+  bool is_beyond_range = false;  // the interval reaches farther to each side than the bounds are apart
+  std::string setting{};         // "Boom.mass=612.3 kg"
 };
 
 struct FittedSignal {
@@ -77,7 +83,8 @@ struct Fit {
   std::vector<Undetermined> undetermined;
   // The search converged and the data determine every value.
   [[nodiscard]] bool is_determined() const {
-    return search.has_converged && !search.covariance.empty() && undetermined.empty();
+    return search.has_converged && !search.covariance.empty() && undetermined.empty() &&
+           std::none_of(values.begin(), values.end(), [](const FittedValue& value) { return value.is_beyond_range; });
   }
 };
 

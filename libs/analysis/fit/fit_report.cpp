@@ -16,6 +16,7 @@ std::string in_unit(double value, const std::string& unit) {
 std::string interval_of(const FittedValue& value) {
   if (!value.interval) return "not determined";
   std::string text = fmt::format("{:.6g} .. {:.6g}", value.interval->low, value.interval->high);
+  if (value.is_beyond_range) text += ", wider than its bounds: the data do not determine it";
   if (value.is_at_bound) text += ", at its bound: the interval does not hold";
   return text;
 }
@@ -105,6 +106,7 @@ Json report_json(const Fit& fit) {
          {"after", value.after},
          {"interval", value.interval ? Json::array({value.interval->low, value.interval->high}) : Json()},
          {"is_at_bound", value.is_at_bound},
+         {"is_beyond_range", value.is_beyond_range},
          {"setting", value.setting}});
   }
   for (const Undetermined& one : fit.undetermined) {

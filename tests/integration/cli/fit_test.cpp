@@ -109,6 +109,27 @@ TEST_F(Fit, FindsTheTruthBehindNoiseWithinItsIntervals) {
   EXPECT_EQ(result("out")["values"], found["values"]);
 }
 
+// a transducer with an offset and hardly any noise: of all free values none changes its signal
+TEST_F(Fit, AnOffsetThatNoValueMendsDoesNotEndTheSearch) {
+  std::ifstream in(work_.path() / "measured.csv");
+  std::ofstream out(work_.path() / "two.csv");
+  std::string line;
+  for (int row = 0; std::getline(in, line); ++row) {
+    out << line << (row == 0 ? ",side [mm]" : row % 2 == 0 ? ",5.0001" : ",4.9999") << '\n';
+  }
+  out.close();
+  const CommandResult command =
+      run("slewring",
+          {"fit", "rail.yaml", "--data", "two.csv", "--quiet", "--map", "way=Block.position.x", "--map",
+           "side=Block.position.y", "--set", "Rail.viscous_friction=8Ns/m", "--free", "a=1m/s2..5m/s2", "-o", "out"},
+          work_.path());
+  ASSERT_EQ(command.code, 0) << command.err << command.out;
+  const Json found = result("out");
+  EXPECT_NEAR(found["values"][0]["after"].get<double>(), kA, 0.002);
+  EXPECT_NEAR(found["signals"][0]["rms"][1].get<double>(), kNoise, 0.2 * kNoise);
+  EXPECT_NEAR(found["signals"][1]["rms"][1].get<double>(), 5e-3, 1e-6);
+}
+
 TEST_F(Fit, StopsAtABoundAndReportsIt) {
   const CommandResult command = fit({"--map", "way=Block.position.x", "--set", "Rail.viscous_friction=8Ns/m", "--free",
                                      "a=1m/s2..2.2m/s2", "-o", "out"});

@@ -93,6 +93,9 @@ extern "C" __attribute__((visibility("default"))) void slewring_minimise_squares
   options.logging_type = ceres::SILENT;
   options.max_num_iterations = squares.most_iterations;
   options.num_threads = 1;
+  // a part of the sum that no unknown changes must not end the search: the unknowns at rest do
+  options.function_tolerance = 1e-12;
+  options.parameter_tolerance = 1e-6;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   squares.has_converged = summary.termination_type == ceres::CONVERGENCE;
