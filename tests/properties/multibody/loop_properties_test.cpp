@@ -162,7 +162,7 @@ TEST(JointRows, OfRandomMechanismsHaveTheirRatesAsDerivatives) {
     std::mt19937 random(seed);
     const auto vector = [&](double size) {
       std::uniform_real_distribution<double> number(-size, size);
-      return Vec3(number(random), number(random), number(random));
+      return Vec3{number(random), number(random), number(random)};
     };
     // Ground falls upwards in the place of gravity
     mechanism.ws.motion[0].a = Vec3();

@@ -32,7 +32,8 @@ ModalBody modal_body(const std::vector<MassPoint>& points) {
 
 ModalBody random_modes(std::mt19937& random, Vec3 root, std::vector<MassPoint>& points) {
   const auto number = [&random](double size) { return std::uniform_real_distribution<double>(-size, size)(random); };
-  const auto vector = [&number](double size) { return Vec3(number(size), number(size), number(size)); };
+  // braces: g++ evaluates arguments in parentheses from the right, clang from the left
+  const auto vector = [&number](double size) { return Vec3{number(size), number(size), number(size)}; };
   const std::size_t n = 1 + random() % 3;
   const auto vectors = [&](double size) {
     std::vector<Vec3> list(n);
@@ -65,14 +66,14 @@ void shorten(std::mt19937& random, const std::vector<MassPoint>& points, ModalBo
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t l = 0; l <= k; ++l) {
       for (const MassPoint& point : points) {
-        const Vec3 g = Vec3(number(), number(), number()) * point.mass;
+        const Vec3 g = Vec3{number(), number(), number()} * point.mass;
         body.G[k * n + l] += g;
         body.H[k * n + l] += outer(point.x, g);
       }
       body.G[l * n + k] = body.G[k * n + l];
       body.H[l * n + k] = body.H[k * n + l];
       for (std::size_t i = 1; i < body.nodes.size(); ++i) {
-        body.nodes[i].shortening[k * n + l] = body.nodes[i].shortening[l * n + k] = Vec3(number(), number(), number());
+        body.nodes[i].shortening[k * n + l] = body.nodes[i].shortening[l * n + k] = Vec3{number(), number(), number()};
       }
     }
   }
