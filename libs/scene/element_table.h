@@ -12,6 +12,7 @@
 namespace slew::scene {
 
 inline constexpr std::string_view kIncludeKey = "include";
+inline constexpr std::string_view kWithoutKey = "without";  // elements of included files that are left out
 inline constexpr std::string_view kParametersKey = "parameters";
 inline constexpr std::string_view kTemplatesKey = "templates";
 inline constexpr std::string_view kGroupsKey = "groups";

@@ -31,6 +31,16 @@ std::optional<Node> read_tree(const std::string& path, const std::string* given,
   return text ? parse_yaml(*text, report) : std::nullopt;
 }
 
+std::vector<std::string_view> element_names(const Node& root) {
+  std::vector<std::string_view> names;
+  for (const std::string_view section : element_sections()) {
+    const Node::Entry* entry = root.find(section);
+    if (entry == nullptr) continue;
+    for (const Node::Entry& element : entry->value.entries) names.push_back(element.key);
+  }
+  return names;
+}
+
 // ---- includes
 
 // Reads the files of a scene: each file is laid over those that it includes. A file with a prefix stays apart, as
@@ -52,12 +62,18 @@ class IncludeReader {
     std::optional<Node> tree = read_tree(path, text, source, report_);
     if (!tree) return std::nullopt;
     const auto include = take(*tree, kIncludeKey);
-    if (include && !add_included(include->value, *tree)) return std::nullopt;
+    const auto without = take(*tree, kWithoutKey);
+    if (without && !include) {
+      report_.add(without->mark, "without", {"nothing is included", "a file under `include` with the elements", ""});
+      return std::nullopt;
+    }
+    if (include && !add_included(include->value, without ? &without->value : nullptr, *tree)) return std::nullopt;
     report_.put_on_top(source);
     return tree;
   }
 
-  bool add_included(const Node& include, Node& tree) {
+  // without: names of elements that are left out; null: none.
+  bool add_included(const Node& include, const Node* without, Node& tree) {
     Node base, apart;
     base.kind = apart.kind = Node::Kind::map;
     bool is_complete = true;
@@ -67,12 +83,35 @@ class IncludeReader {
     } else {
       add(include);
     }
-    if (!is_complete) return false;
+    if (!is_complete || (without != nullptr && !leave_out(*without, base))) return false;
     if (base.entries.empty() && apart.entries.empty()) return true;
     merge(base, std::move(tree));
     tree = std::move(base);
     add_apart(tree, std::move(apart));
     return true;
+  }
+
+  bool leave_out(const Node& without, Node& base) {
+    const std::size_t problems = report_.size();
+    const auto leave_out_one = [&](const Node& name) {
+      if (name.kind != Node::Kind::scalar) {
+        report_.add(name.mark, "without", {"is " + describe(name), "the name of an element, or a list of names", ""});
+        return;
+      }
+      for (const std::string_view section : element_sections()) {
+        Node::Entry* present = base.find(section);
+        if (present != nullptr && take(present->value, name.text)) return;
+      }
+      report_.add(name.mark, "without",
+                  {"the included files have no element '" + name.text + "'",
+                   "an element of a file that is included without a prefix", closest(name.text, element_names(base))});
+    };
+    if (without.kind == Node::Kind::sequence) {
+      for (const Node& name : without.items) leave_out_one(name);
+    } else {
+      leave_out_one(without);
+    }
+    return report_.size() == problems;
   }
 
   // files with a prefix, of this file and of those under it
@@ -191,13 +230,9 @@ Node* owner_of(Node& root, const std::string& name, const Mark& mark) {
 }
 
 std::string closest_owner(const Node& root, const std::string& name) {
-  std::vector<std::string_view> names = {"script"};
+  std::vector<std::string_view> names = element_names(root);
+  names.emplace_back("script");
   for (const SingleTable& table : single_tables()) names.push_back(table.section);
-  for (const std::string_view section : element_sections()) {
-    const Node::Entry* entry = root.find(section);
-    if (entry == nullptr) continue;
-    for (const Node::Entry& element : entry->value.entries) names.push_back(element.key);
-  }
   return closest(name, names);
 }
 

@@ -307,6 +307,8 @@ void add_language_sections(Json& properties) {
   const Json entry = {{"anyOf", Json::array({text, std::move(file)})}};
   properties["include"] = {{"anyOf", Json::array({text, list_of(entry, 0)})},
                            {"description", "files that this one is merged over; with a prefix: groups of elements"}};
+  properties["without"] = {{"anyOf", Json::array({text, list_of(text, 0)})},
+                           {"description", "elements of the included files that are left out"}};
   const auto put = [&properties](std::string_view key, Json schema, const char* description) {
     properties[key] = std::move(schema);
     properties[key]["description"] = description;

@@ -144,16 +144,19 @@ class SceneReader {
     report_duplicates(root_, "", report_);
     const auto& keys = top_level_keys();
     for (const Node::Entry& entry : root_.entries) {
-      const bool is_known = entry.key == kStartKey || entry.key == kPayloadKey;
+      const bool is_known = entry.key == kStartKey || entry.key == kPayloadKey || entry.key == kWithoutKey;
       if (!is_known && std::find(keys.begin(), keys.end(), entry.key) == keys.end()) {
         std::vector<std::string_view> known = keys;
         known.insert(known.end(), language_keys().begin(), language_keys().end());
+        known.push_back(kWithoutKey);
         report_.add(entry.mark, entry.key, {"unknown section", "", closest(entry.key, known)});
       }
       places_.add(entry.key, entry.mark);
     }
-    if (const Node::Entry* include = root_.find("include")) {
-      report_.add(include->mark, "include", {"a scene without a folder cannot include a file", "", ""});
+    for (const std::string_view key : {kIncludeKey, kWithoutKey}) {
+      const Node::Entry* entry = root_.find(key);
+      if (entry == nullptr) continue;
+      report_.add(entry->mark, std::string(key), {"a scene without a folder cannot include a file", "", ""});
     }
   }
 

@@ -24,7 +24,7 @@ class ReferenceSearch {
     in_keys_of(root.find(kStartKey));
     if (const Node::Entry* payload = root.find(kPayloadKey)) in_texts(payload->value, payload->key);
     in_templates(root.find(kTemplatesKey));
-    for (const std::string_view key : {kIncludeKey, kParametersKey, kInstancesKey}) {
+    for (const std::string_view key : {kIncludeKey, kWithoutKey, kParametersKey, kInstancesKey}) {
       if (const Node::Entry* found = root.find(key)) in_texts(found->value, found->key);
     }
     if (const Node::Entry* groups = root.find(kGroupsKey)) {

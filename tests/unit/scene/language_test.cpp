@@ -380,6 +380,31 @@ TEST(Includes, CirclesAndUnknownKeysAreRefused) {
   EXPECT_NE(refusal.find("include.whole.yaml: a group has no section 'session'"), std::string::npos) << refusal;
 }
 
+TEST(Includes, ElementsCanBeLeftOut) {
+  const TemporaryFolder folder;
+  folder.write("base.yaml", kPendulum +
+                                "forces:\n  Push: {type: translational, body1: Ground, body2: Rod, point2: [1 m, 0, "
+                                "0], point1: [0, 3 m, 0]}\n");
+  const std::string path = folder.write("scene.yaml", "include: base.yaml\nwithout: Push\n");
+  const Scene scene = load_file(path);
+  EXPECT_TRUE(scene.mechanics.translational_forces.empty());
+  EXPECT_EQ(scene.mechanics.bodies.size(), 1U);
+  EXPECT_EQ(scene.expanded_text.find("without"), std::string::npos);
+  // what is left out below can stand there again, otherwise
+  const std::string again = folder.write("again.yaml", "include: base.yaml\nwithout: [Push, Rod, Hinge]\n" + kPendulum);
+  EXPECT_EQ(load_file(again).mechanics.bodies.size(), 1U);
+  const std::string typo = folder.write("typo.yaml", "include: base.yaml\nwithout: [Pusch]\n");
+  EXPECT_EQ(refusal_of(typo),
+            typo +
+                ":2:11: without: the included files have no element 'Pusch'; expected an element of a "
+                "file that is included without a prefix; did you mean 'Push'?");
+  const std::string used = folder.write("used.yaml", "include: base.yaml\nwithout: Rod\n");
+  EXPECT_NE(refusal_of(used).find("Rod"), std::string::npos);
+  const std::string alone = folder.write("alone.yaml", "without: Push\n" + kPendulum);
+  EXPECT_EQ(refusal_of(alone),
+            alone + ":1:1: without: nothing is included; expected a file under `include` with the elements");
+}
+
 // the choice of an overlay left the key of a file two levels below unread: a warning, as over one level
 TEST(Includes, LayersFollowTheOrderOfLayingOver) {
   const TemporaryFolder folder;
