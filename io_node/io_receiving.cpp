@@ -69,12 +69,7 @@ void IoNode::receive_session(std::span<const std::byte> bytes) {
 
 void IoNode::receive_sample(const transport::Received& message, std::int64_t now_ns) {
   wire::Header header;
-  if (!transport::header_of(message, header)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
-  if (!member_.fits(header, message.topic)) return;
-  member_.acknowledge(header, message.topic, now_ns);
+  if (!member_.receive_header(message, header, now_ns)) return;
   if (header.phase != Phase::running) return;
   const SampleProgress::Receipt receipt = samples_.receive(header.role, header.step, n_);
   if (receipt == SampleProgress::Receipt::too_far_ahead) {
@@ -88,10 +83,7 @@ void IoNode::receive_sample(const transport::Received& message, std::int64_t now
 
 void IoNode::receive_resend(std::span<const std::byte> bytes, std::int64_t now_ns) {
   wire::ResendRequest request;
-  if (!transport::decode(bytes, request)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.decode(bytes, request)) return;
   if (request.topic == static_cast<std::uint8_t>(Topic::state)) return receive_state_request(request, now_ns);
   if (request.role != Role::io || !member_.is_of_session(request.header, Topic::resend)) return;
   if (request.topic != static_cast<std::uint8_t>(Topic::tick)) return;
@@ -114,10 +106,7 @@ void IoNode::receive_state_request(const wire::ResendRequest& request, std::int6
 
 void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_ns) {
   wire::ControlRequest request;
-  if (!transport::decode(bytes, request)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.decode(bytes, request)) return;
   if (request.session != config_.session_name) return;
   if (request.action == wire::ControlAction::get_parameter) {
     return requests_.answer(requests_.get_parameter(request, n_));

@@ -18,10 +18,7 @@ using wire::Topic;
 
 void Requests::receive_controller(const transport::Received& message, StepIndex n, std::int64_t now_ns,
                                   TickTimes& times) {
-  if (!transport::decode(message.bytes, input_)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.decode(message.bytes, input_)) return;
   if (input_.session != config_.session_name) {
     ++member_.refusals().other_session;
     return;

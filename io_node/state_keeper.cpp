@@ -48,10 +48,7 @@ Status StateKeeper::resume(const ResumeState& resume) {
 
 std::optional<ControlAnswer> StateKeeper::receive_checkpoint(std::span<const std::byte> bytes, StepIndex n) {
   wire::Header header;
-  if (!transport::decode_header(bytes, header)) {
-    ++member_.refusals().undecodable;
-    return std::nullopt;
-  }
+  if (!member_.decode_header(bytes, header)) return std::nullopt;
   if (!member_.fits(header, Topic::checkpoint)) return std::nullopt;
   if (!transport::decode(bytes, part_) || part_.role != header.role) {
     ++member_.refusals().undecodable;
@@ -136,7 +133,7 @@ StateKeeper::Progress StateKeeper::advance_saving(StepIndex n, std::int64_t now_
     const std::string missed = member_.describe_peer(missing.value_or(Role::io)) + " has not given its state of step " +
                                std::to_string(saving_->step) + " within " + seconds_text(kSaveTimeout);
     if (!saving_->is_published) {
-      member_.warn(missed + ", or one above " + std::to_string(node::kMaxStateBytes >> 20) +
+      member_.warn(missed + ", or one above " + std::to_string(wire::kMaxStateBytes >> 20) +
                    " MiB; the session goes on, but until a state of it has come no other process can take its place");
     }
     return end(false, missed + "; nothing was saved, the session goes on", n);
@@ -170,10 +167,7 @@ void StateKeeper::publish_saved() {
 // ---- loading --------------------------------------------------------------------------------------------------
 
 void StateKeeper::receive_upload(std::span<const std::byte> bytes) {
-  if (!transport::decode(bytes, part_)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.decode(bytes, part_)) return;
   const bool is_for_this = part_.header.session == member_.session().header.session && part_.request != 0;
   const bool has_state = part_.role == Role::io || (is_physics(part_.role) && member_.requires_role(part_.role));
   if (!is_for_this || part_.header.role != Role::observer || !has_state) return;

@@ -103,10 +103,7 @@ void RecorderNode::receive_state(const transport::Received& message, std::int64_
   const bool is_wanted = !missing_states_.empty() || begin_ == Begin::late || wants_states_;
   if (!is_wanted || writer_ == nullptr || !transport::decode_header(message.bytes, header)) return;
   if (header.role != Role::io || !member_.fits(header, Topic::state)) return;
-  if (!transport::decode(message.bytes, part_)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.decode(message.bytes, part_)) return;
   // io sends its own state only together with those of all other nodes
   if (begin_ == Begin::late && part_.role == Role::io) begin_late(header.step, now_ns);
   if (wants_states_ && part_.role == Role::io && header.step > gap_end_) expect_states(header.step);

@@ -85,10 +85,7 @@ void RecorderNode::withdraw() {
 
 void RecorderNode::receive_session(const transport::Received& message, std::int64_t now_ns) {
   wire::SessionDescription session;
-  if (!transport::decode(message.bytes, session)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.decode(message.bytes, session)) return;
   const node::SessionChange change = member_.change_of(session);
   if (change == node::SessionChange::withdrawn) return withdraw();
   if (change == node::SessionChange::renewed) {
@@ -122,10 +119,7 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
 
 void RecorderNode::receive_stepped(const transport::Received& message, std::int64_t now_ns) {
   wire::Header header;
-  if (!transport::decode_header(message.bytes, header)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.decode_header(message.bytes, header)) return;
   if (message.topic == Topic::tick && member_.begins_next_epoch(header)) {
     start_epoch(header);
     receive_stepped(message, now_ns);
@@ -202,10 +196,7 @@ void RecorderNode::begin_streams(StepIndex from) {
 void RecorderNode::record_variables(const transport::Received& message, const wire::Header& header,
                                     EpochStreams& streams) {
   wire::VariableBlock block;
-  if (!transport::decode(message.bytes, block)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.decode(message.bytes, block)) return;
   record_block(message, header, {message.topic, header.role, block.first}, streams);
 }
 

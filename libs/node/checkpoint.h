@@ -34,9 +34,6 @@ inline constexpr StepIndex kCheckpointEvery = 128;
 // included), within the kSentDepth steps that every node can resend.
 inline constexpr std::size_t kKeptCheckpoints = 4;
 
-// Longest state. A part that names a longer one is dropped.
-inline constexpr std::size_t kMaxStateBytes = std::size_t{4} << 20;
-
 struct Checkpoint {
   StepIndex step = kJoinStep;
   std::uint64_t state_hash = 0;

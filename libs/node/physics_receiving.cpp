@@ -47,10 +47,7 @@ void PhysicsNode::refuse(const Status& refusal) {
 
 void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t now_ns) {
   wire::SessionDescription session;
-  if (!transport::decode(bytes, session)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.decode(bytes, session)) return;
   const SessionChange change = member_.change_of(session);
   if (change == SessionChange::withdrawn) {
     member_.withdraw();
@@ -108,20 +105,14 @@ void PhysicsNode::renew(const wire::SessionDescription& session, std::int64_t no
 
 void PhysicsNode::receive_state(std::span<const std::byte> bytes) {
   wire::Header header;
-  if (!transport::decode_header(bytes, header)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.decode_header(bytes, header)) return;
   if (stage_ != Stage::loading || !member_.fits(header, Topic::state)) return;
   states_.receive_part(bytes, member_);
 }
 
 void PhysicsNode::receive_tick(const transport::Received& message, std::int64_t now_ns) {
   wire::Header header;
-  if (!transport::header_of(message, header)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.header_of(message, header)) return;
   // a new epoch starts with an INIT tick
   if (member_.begins_next_epoch(header)) return restart(header);
   if (!member_.fits(header, Topic::tick)) return;
@@ -132,12 +123,7 @@ void PhysicsNode::receive_tick(const transport::Received& message, std::int64_t 
 
 void PhysicsNode::receive_sample(const transport::Received& message, std::int64_t now_ns) {
   wire::Header header;
-  if (!transport::header_of(message, header)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
-  if (!member_.fits(header, message.topic)) return;
-  member_.acknowledge(header, message.topic, now_ns);
+  if (!member_.receive_header(message, header, now_ns)) return;
   samples_.for_each_missing(n_, [&](Role role, Topic missing, StepIndex) {
     if (missing == message.topic) step_timing_.came(role, now_ns);
   });
@@ -155,10 +141,7 @@ void PhysicsNode::measure_release(StepIndex step, std::int64_t source_ns) noexce
 
 void PhysicsNode::receive_resend(std::span<const std::byte> bytes) {
   wire::ResendRequest request;
-  if (!transport::decode(bytes, request)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
+  if (!member_.decode(bytes, request)) return;
   if (request.role != member_.role() || !member_.fits(request.header, Topic::resend)) return;
   if (request.topic == static_cast<std::uint8_t>(Topic::state)) return;
   if (request.topic == static_cast<std::uint8_t>(Topic::checkpoint)) {

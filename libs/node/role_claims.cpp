@@ -48,10 +48,7 @@ Status SessionMember::given_to_another() const {
 }
 
 Status SessionMember::on_node_status(std::span<const std::byte> bytes, std::int64_t now_ns) {
-  if (!transport::decode(bytes, received_status_)) {
-    ++refusals_.undecodable;
-    return Status::ok();
-  }
+  if (!decode(bytes, received_status_)) return Status::ok();
   if (!has_session_) {
     if (pending_statuses_.size() < kMaxPendingStatuses) pending_statuses_.push_back(received_status_);
     return Status::ok();

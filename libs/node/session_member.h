@@ -143,6 +143,19 @@ class SessionMember {
   [[nodiscard]] bool begins_next_epoch(const wire::Header& header) const noexcept;
   [[nodiscard]] Refusals& refusals() noexcept { return refusals_; }
 
+  // ---- bytes
+  // transport::decode() and its relations; counts what cannot be decoded.
+  template <typename M>
+  [[nodiscard]] bool decode(transport::Bytes bytes, M& message) {
+    return is_decoded(transport::decode(bytes, message));
+  }
+  [[nodiscard]] bool decode_header(transport::Bytes bytes, wire::Header& header) {
+    return is_decoded(transport::decode_header(bytes, header));
+  }
+  [[nodiscard]] bool header_of(const transport::Received& message, wire::Header& header) {
+    return is_decoded(transport::header_of(message, header));
+  }
+
   // ---- state and status
   void set_state(wire::NodeState state) noexcept;
   [[nodiscard]] wire::NodeState state() const noexcept { return status_.state; }
@@ -195,6 +208,12 @@ class SessionMember {
   [[nodiscard]] bool all_required(wire::NodeState at_least) const noexcept;
 
   // ---- join
+  // The header of a sample that fits(), which is then acknowledged.
+  [[nodiscard]] bool receive_header(const transport::Received& message, wire::Header& header, std::int64_t now_ns) {
+    if (!header_of(message, header) || !fits(header, message.topic)) return false;
+    acknowledge(header, message.topic, now_ns);
+    return true;
+  }
   // Takes a message as received: it proves that its writer is alive and, in this node's status, that it arrives here.
   void acknowledge(const wire::Header& from, wire::Topic topic, std::int64_t now_ns);
   [[nodiscard]] bool is_acknowledged_by_all() const noexcept;
@@ -241,6 +260,10 @@ class SessionMember {
   [[nodiscard]] Status given_to_another() const;
   void compare_builds(const wire::NodeStatus& status);
   [[nodiscard]] bool must_read(wire::Role reader, wire::Topic topic) const noexcept;
+  bool is_decoded(bool is_it) noexcept {
+    if (!is_it) ++refusals_.undecodable;
+    return is_it;
+  }
   [[nodiscard]] bool has_acknowledged(wire::Role reader, wire::Topic topic) const noexcept;
 
   wire::Role role_;

@@ -32,11 +32,8 @@ void StateTransfer::publish_state(SessionMember& member, StepIndex n, const wire
 }
 
 void StateTransfer::receive_part(std::span<const std::byte> bytes, SessionMember& member) {
-  if (!transport::decode(bytes, part_)) {
-    ++member.refusals().undecodable;
-  } else if (part_.role == member.role() && !taken_over_.is_whole()) {
-    taken_over_.take(part_);
-  }
+  if (!member.decode(bytes, part_) || part_.role != member.role() || taken_over_.is_whole()) return;
+  taken_over_.take(part_);
 }
 
 Status StateTransfer::load(const SessionMember& member, StepIndex& n, wire::SampleState& published,

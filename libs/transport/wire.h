@@ -37,9 +37,9 @@ inline constexpr std::size_t kMaxSceneBytes = 8 * 1024 * 1024;
 inline constexpr std::int64_t kGiveUpNs = 2'000'000'000;
 inline constexpr std::int64_t kLeastGiveUpNs = 500'000'000;
 inline constexpr std::int64_t kMostGiveUpNs = 60'000'000'000;
-inline constexpr std::size_t kMaxGivenUp = 64;                   // processes of one session
-inline constexpr std::size_t kMaxStatePart = 8192;               // bytes
-inline constexpr std::size_t kMaxStateBytes = 64 * 1024 * 1024;  // per node
+inline constexpr std::size_t kMaxGivenUp = 64;                  // processes of one session
+inline constexpr std::size_t kMaxStatePart = 8192;              // bytes
+inline constexpr std::size_t kMaxStateBytes = 4 * 1024 * 1024;  // per node
 
 using SessionId = std::array<std::uint8_t, 16>;
 

@@ -17,7 +17,7 @@ using namespace slew;
 constexpr std::size_t kPart = wire::kMaxStatePart;
 constexpr StepIndex kSteps[] = {128, 256, 0, 384, 512, 640, kJoinStep, wire::kMaxStep};
 constexpr std::uint32_t kTotals[] = {3 * kPart, 1, kPart,           kPart + 1,   2 * kPart + 5,
-                                     kPart - 1, 0, 4 * kPart - 100, 0xffffffffu, node::kMaxStateBytes + 1};
+                                     kPart - 1, 0, 4 * kPart - 100, 0xffffffffu, wire::kMaxStateBytes + 1};
 
 // Every place of every state has a byte of its own, all through.
 std::uint8_t byte_of(StepIndex step, std::uint64_t hash, std::size_t total, std::size_t place) {
@@ -30,7 +30,7 @@ wire::StatePart some_part(fuzz::Choices& choices) {
   part.state_hash = choices.below(2);
   // the longest is seldom: it takes long
   const std::uint8_t total = choices.byte();
-  part.total = total == 255 ? node::kMaxStateBytes : kTotals[total % std::size(kTotals)];
+  part.total = total == 255 ? wire::kMaxStateBytes : kTotals[total % std::size(kTotals)];
   const std::size_t place = choices.below(8);
   part.first = place == 7 ? 0xffffffffu - choices.byte() : static_cast<std::uint32_t>(place * kPart);
   std::size_t size = part.first < part.total ? std::min<std::size_t>(kPart, part.total - part.first) : kPart;
@@ -60,7 +60,7 @@ class Expected {
   [[nodiscard]] static bool has_place(const wire::StatePart& part) {
     const std::uint64_t end = std::uint64_t{part.first} + part.bytes.size();
     const bool is_full_or_last = part.bytes.size() == kPart || end == part.total;
-    return part.header.step >= 0 && part.total > 0 && part.total <= node::kMaxStateBytes && part.first % kPart == 0 &&
+    return part.header.step >= 0 && part.total > 0 && part.total <= wire::kMaxStateBytes && part.first % kPart == 0 &&
            !part.bytes.empty() && end <= part.total && is_full_or_last;
   }
   bool take(const wire::StatePart& part) {
@@ -89,7 +89,7 @@ class Expected {
 };
 
 void require_own_bytes(const node::Checkpoint& checkpoint) {
-  fuzz::require(checkpoint.step >= 0 && checkpoint.bytes.size() <= node::kMaxStateBytes);
+  fuzz::require(checkpoint.step >= 0 && checkpoint.bytes.size() <= wire::kMaxStateBytes);
   static std::array<std::uint8_t, kPart> expected;
   const std::size_t total = checkpoint.bytes.size();
   for (std::size_t first = 0; first < total; first += kPart) {

@@ -34,7 +34,7 @@ void give_in_parts(const io_node::SavedState& of_role) {
   node::CheckpointParts taken;
   for (const wire::StatePart& part : node::parts_of(of_role.state, header, of_role.role, 1)) taken.take(part);
   const std::size_t size = of_role.state.bytes.size();
-  fuzz::require(taken.is_whole() == (size > 0 && size <= node::kMaxStateBytes));
+  fuzz::require(taken.is_whole() == (size > 0 && size <= wire::kMaxStateBytes));
   if (taken.is_whole()) fuzz::require(are_same(taken.checkpoint(), of_role.state));
 }
 
