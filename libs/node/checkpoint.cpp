@@ -100,7 +100,8 @@ void fill(wire::StatePart& part, const Checkpoint& checkpoint, std::size_t first
 
 // The part lies at a place of the state that it names, and has the length of that place.
 bool has_place(const wire::StatePart& part) noexcept {
-  return part.header.step >= 0 && part.first < part.total && part.first % wire::kMaxStatePart == 0 &&
+  return part.header.step >= 0 && part.total <= wire::kMaxStateBytes && part.first < part.total &&
+         part.first % wire::kMaxStatePart == 0 &&
          part.bytes.size() == std::min<std::size_t>(wire::kMaxStatePart, part.total - part.first);
 }
 
