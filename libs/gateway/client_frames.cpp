@@ -99,7 +99,7 @@ std::optional<Frame> Gateway::next_state(Client& client) {
     if (*state == kTimeState) return binary_frame(time_bytes(time_ns_));
     const std::size_t channel = *state - state_of(0);
     if (const std::optional<std::uint32_t> subscription = client.subscription_to(channel))
-      return binary_frame(message_head(*subscription, time_ns_), body_of(channels_[channel]));
+      return binary_frame(message_head(*subscription, values_ns_), body_of(channels_[channel]));
   }
 }
 
@@ -112,7 +112,7 @@ std::shared_ptr<const std::string> Gateway::body_of(Channel& channel) {
   if (channel.revision == revision_ && channel.body != nullptr) return channel.body;
   std::string body;
   if (channel.kind == Kind::transforms) {
-    frames_.encode_transforms(snapshot_, time_ns_, body);
+    frames_.encode_transforms(snapshot_, values_ns_, body);
   } else if (channel.kind == Kind::session) {
     body = session_body();
   } else {
@@ -164,7 +164,7 @@ void Gateway::take_wire(wire::Topic topic, std::span<const std::byte> bytes, dou
       std::ranges::find_if(channels_, [&](const Channel& one) { return one.kind == Kind::wire && one.topic == topic; });
   if (channel == channels_.end()) return;
   const auto index = static_cast<std::size_t>(channel - channels_.begin());
-  WireMessage message{static_cast<std::uint64_t>(std::llround(std::max(0.0, time) * 1e9))};
+  WireMessage message{time_ns_of(time)};
   const auto body = [&] {
     if (message.body == nullptr) {
       message.body = std::make_shared<const std::string>(reinterpret_cast<const char*>(bytes.data()), bytes.size());

@@ -77,12 +77,13 @@ std::span<const Call> Gateway::calls() const noexcept {
 
 // ---- the session
 
-void Gateway::take_block(const wire::VariableBlock& block, std::span<const std::byte>, double) {
+void Gateway::take_block(const wire::VariableBlock& block, std::span<const std::byte>, double time) {
+  newest_block_ns_ = time_ns_of(time);
   if (block.header.epoch != epoch_) begin_epoch(block.header.epoch);
   newest_step_ = std::max(newest_step_, block.header.step);
   const bool is_whole = snapshot_.take(block);
   if (!is_whole || def_.playback != nullptr || view_ == nullptr || built_places_ == 0) return;
-  publish(static_cast<std::uint64_t>(start_of(snapshot_.step(), {view_->session().step_ns}).ns));
+  publish_step(*view_);
 }
 
 void Gateway::begin_epoch(std::uint32_t epoch) {
@@ -167,8 +168,9 @@ void Gateway::build_channels(const observer::SessionView& view) {
   publish_graph();
 }
 
-void Gateway::publish(std::uint64_t time_ns) {
+void Gateway::publish(std::uint64_t time_ns, std::uint64_t values_ns) {
   time_ns_ = time_ns;
+  values_ns_ = values_ns;
   const bool is_first = revision_ == 0;
   ++revision_;
   for (auto& [id, client] : clients_) {
@@ -177,9 +179,13 @@ void Gateway::publish(std::uint64_t time_ns) {
   }
 }
 
+void Gateway::publish_step(const observer::SessionView& view) {
+  const auto time_ns = static_cast<std::uint64_t>(start_of(snapshot_.step(), {view.session().step_ns}).ns);
+  publish(time_ns, time_ns);
+}
+
 void Gateway::show(const observer::SessionView& view, std::uint64_t time_ns) {
-  static_cast<void>(snapshot_.take(view));
-  publish(time_ns);
+  publish(time_ns, snapshot_.take(view) ? newest_block_ns_ : time_ns);
 }
 
 void Gateway::publish_playback(std::int64_t now_ns) {
@@ -231,11 +237,10 @@ void Gateway::poll(const observer::SessionView& view, std::int64_t now_ns) {
     }
     const StepIndex shown = snapshot_.step();
     const bool stands = snapshot_.is_requested() && now_ns - times_.requested_ns > kStandstillNs;
-    if (stands && built_places_ > 0 && snapshot_.take(view) && snapshot_.step() != shown)
-      publish(static_cast<std::uint64_t>(start_of(snapshot_.step(), {view.session().step_ns}).ns));
+    if (stands && built_places_ > 0 && snapshot_.take(view) && snapshot_.step() != shown) publish_step(view);
   }
   // a session that stands publishes no step that would bring them
-  if (std::exchange(seen_.has_changed, false) && revision_ > 0) publish(time_ns_);
+  if (std::exchange(seen_.has_changed, false) && revision_ > 0) publish(time_ns_, values_ns_);
   if (is_steering()) {
     requests_.poll(now_ns);
     parameters_.poll(now_ns);

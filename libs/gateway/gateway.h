@@ -18,6 +18,7 @@
 // that reads slowly receives newer values less often (outbox.h), and a status that states how many were left out.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -30,6 +31,7 @@
 #include <vector>
 
 #include "core/json.h"
+#include "core/time.h"
 #include "gateway/client_inputs.h"
 #include "gateway/client_messages.h"
 #include "gateway/event_log.h"
@@ -235,7 +237,12 @@ class Gateway final : public observer::Receiver {
   // gateway.cpp
   void begin_epoch(std::uint32_t epoch);
   void build_channels(const observer::SessionView& view);
-  void publish(std::uint64_t time_ns);
+  // Of a message in the session or recording.
+  [[nodiscard]] static std::uint64_t time_ns_of(double seconds) noexcept {
+    return static_cast<std::uint64_t>(duration_of_seconds(std::max(0.0, seconds)).ns);
+  }
+  void publish(std::uint64_t time_ns, std::uint64_t values_ns);
+  void publish_step(const observer::SessionView& view);
   void watch_nodes(const observer::SessionView& view);
 
   // client_requests.cpp
@@ -286,8 +293,10 @@ class Gateway final : public observer::Receiver {
 
   KeptWireMessages kept_wire_;
   StepSnapshot snapshot_;
-  std::uint64_t time_ns_ = 0;   // of the snapshot in the session
-  std::uint64_t revision_ = 0;  // of the snapshot; 0: none
+  std::uint64_t time_ns_ = 0;          // of the session, or of the playback
+  std::uint64_t values_ns_ = 0;        // of the snapshot; in a playback at or before its time
+  std::uint64_t newest_block_ns_ = 0;  // in the recording
+  std::uint64_t revision_ = 0;         // of the snapshot; 0: none
   struct {
     std::int64_t first_poll_ns = 0, next_request_ns = 0, requested_ns = 0, next_second_ns = 0;
   } times_;

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
 
+#include "core/json.h"
 #include "node/identity.h"
 #include "recording/writer.h"
 #include "tests/support/temporary_folder.h"
@@ -112,6 +114,34 @@ TEST_F(RecordedSourceTest, IsPlayedToItsEnd) {
   EXPECT_EQ(source.view().find("Bag.mass")->value, kSteps - 1);
   EXPECT_EQ(source.state(kBeginNs + 4 * kSecondNs).status, gateway::PlaybackStatus::ended);
   EXPECT_EQ(events_of(gateway).find("at byte"), std::string::npos);
+}
+
+// not that of the playback, which lies between two samples
+TEST_F(RecordedSourceTest, ValuesHaveTheTimeOfTheirSample) {
+  const auto reader = recorded();
+  RecordedSource source(*reader);
+  gateway::Gateway gateway = gateway_of(source);
+  ASSERT_TRUE(source.control({.is_paused = false, .speed = 0.5}, kBeginNs).is_ok());
+  gateway.poll(source.view(), kBeginNs);
+  const gateway::ClientId client = gateway.connect().value();
+  // behind the gateway's own four
+  gateway.take_message(client, gateway::FrameType::text,
+                       R"({"op":"subscribe","subscriptions":[{"id":7,"channelId":5}]})", kBeginNs);
+  int messages = 0;
+  for (std::int64_t i = 0; i < 60; ++i) {
+    const std::int64_t now_ns = kBeginNs + i * 17'300'000;
+    gateway.poll(source.view(), now_ns);
+    source.poll(gateway, now_ns);
+    while (const auto frame = gateway.next_frame(client)) {
+      if (frame->type != gateway::FrameType::binary || frame->body == nullptr) continue;
+      std::uint64_t time_ns = 0;  // behind the kind and the subscription
+      ASSERT_GE(frame->head.size(), 13U);
+      std::memcpy(&time_ns, frame->head.data() + 5, sizeof time_ns);
+      EXPECT_EQ(static_cast<double>(time_ns), Json::parse(*frame->body).value().at("mass").number() * 1e6);
+      ++messages;
+    }
+  }
+  EXPECT_GT(messages, 50);
 }
 
 TEST_F(RecordedSourceTest, ADamagedPlaceIsAnEvent) {
