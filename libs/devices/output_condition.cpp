@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "devices/field_rules.h"
 
@@ -29,6 +30,7 @@ constexpr Field kSwitchedOutputFields[] = {
 };
 
 constexpr std::string_view kBlanks = " \t";
+constexpr double kRounding = 1e-3;  // of a step
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(kBlanks);
@@ -103,21 +105,25 @@ void validate(const SwitchedOutputDef& def, Problems& problems) {
 bool step(const SwitchedOutputDef& def, double value, double dt, SwitchedOutputState& state) noexcept {
   state.is_known = std::isfinite(value);
   const bool was_on = state.is_on;
+  // sums of dt miss a time by their rounding
+  const auto elapsed = [&] { return state.time + kRounding * dt; };
   if (was_on) {
     state.time += dt;
-    if (state.is_known && state.time >= def.least_on && is_left(def, value)) {
-      state.is_on = false;
+    if (state.is_known && elapsed() >= def.least_on && is_left(def, value)) {
+      state.is_on = state.is_met = false;
       state.time = 0;
     }
   } else if (state.is_known) {
-    state.time = is_met(def.comparison, value, def.threshold) ? state.time + dt : 0;
-    if (is_met(def.comparison, value, def.threshold) && state.time >= def.delay) {
+    // from the first value that meets the condition: when between two values it did is unknown
+    const bool was_met = std::exchange(state.is_met, is_met(def.comparison, value, def.threshold));
+    state.time = was_met && state.is_met ? state.time + dt : 0;
+    if (state.is_met && elapsed() >= def.delay) {
       state.is_on = true;
       state.time = 0;
     }
   }
   const double period = def.pulse_on + def.pulse_off;
-  state.is_lit = state.is_on && (period == 0 || std::fmod(state.time, period) < def.pulse_on);
+  state.is_lit = state.is_on && (period == 0 || std::fmod(elapsed(), period) < def.pulse_on);
   if (state.is_on != was_on) ++state.changes;
   return state.is_on != was_on;
 }

@@ -41,7 +41,7 @@ struct SwitchedOutputDef {
   Comparison comparison = Comparison::above;
   double threshold = 0;   // in the variable's SI unit
   double hysteresis = 0;  // in the variable's SI unit
-  double delay = 0;       // s that the condition must hold before the output goes on
+  double delay = 0;       // s from the first value that meets the condition until the output goes on
   double least_on = 0;    // s
   double pulse_on = 0;    // s; 0: steady
   double pulse_off = 0;   // s
@@ -54,6 +54,7 @@ struct SwitchedOutputState {
   bool is_on = false;     // condition: a change is an event
   bool is_lit = false;    // what is sent, with pulses
   bool is_known = false;  // the last value was finite
+  bool is_met = false;    // while off: by the last finite value
   double time = 0;        // s: on since, or met since while off
   std::uint64_t changes = 0;
 };

@@ -71,7 +71,25 @@ TEST(SwitchedOutput, HasAHysteresis) {
 TEST(SwitchedOutput, StaysOnForItsLeastTimeAndGoesOnAfterItsDelay) {
   const std::vector<double> peak = {0, 2, 0, 0, 0, 0, 0};
   EXPECT_EQ(lamp({.name = "L", .threshold = 1, .least_on = 0.035}, peak), "0111100");
-  EXPECT_EQ(lamp({.name = "L", .threshold = 1, .delay = 0.025}, {2, 2, 0, 2, 2, 2, 2, 0}), "00000110");
+  EXPECT_EQ(lamp({.name = "L", .threshold = 1, .delay = 0.025}, {2, 2, 0, 2, 2, 2, 2, 0}), "00000010");
+}
+
+// sums of 0.01 s miss 0.06 s and others by their rounding
+TEST(SwitchedOutput, TimesOfWholeStepsAreExact) {
+  const std::vector<double> on(64, 2), peak = [] {
+    std::vector<double> values(64);
+    values[0] = 2;
+    return values;
+  }();
+  for (int steps = 0; steps < 60; ++steps) {
+    const auto n = static_cast<std::size_t>(steps);
+    const double time = steps * kStep;
+    EXPECT_EQ(lamp({.name = "L", .threshold = 1, .delay = time}, on).find('1'), n);
+    if (steps > 0) {
+      EXPECT_EQ(lamp({.name = "L", .threshold = 1, .least_on = time}, peak).find('0'), n);
+      EXPECT_EQ(lamp({.name = "L", .threshold = 1, .pulse_on = time, .pulse_off = 1}, on, true).find('0'), n);
+    }
+  }
 }
 
 TEST(SwitchedOutput, Pulses) {
