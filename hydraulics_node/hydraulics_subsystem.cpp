@@ -42,6 +42,7 @@ HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
       signals_(scene, *circuit_),
       shared_(*circuit_),
       reduced_(laws_of(scene)),
+      emptying_(m_),
       late_samples_(m_, cross_count(), is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
       alarm_(scene),
       convergence_(scene.hydraulics.solver),
@@ -104,12 +105,12 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
   integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_}, W);
   apply_levels();
   integrator_->refresh();
+  if (partners.mechanism != nullptr && m_ > 0) reduced_.set_sample(*partners.mechanism);
   publish(sample.actuators, 0, false);
   if (m_ > 0 && alarm_.ends_session()) {
     Status status = check_coupling(scene_, partners.mechanism->W, published_, levels_);
     if (!status.is_ok()) return status;
   }
-  if (partners.mechanism != nullptr && m_ > 0) reduced_.set_sample(*partners.mechanism);
   const hydraulics::ExplicitStability stability = integrator_->explicit_stability(H_.seconds(), reduced_);
   return check_stability(stability, offender_name(stability.owner));
 }
@@ -217,10 +218,13 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
 void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up) noexcept {
   if (sample.F.size() != m_) coupling::resize(sample, m_);
   signals_.foresee(*circuit_, *integrator_);
+  const double exchange = exchange_every_ * H_.seconds();
   const std::span<const hydraulics::ActuatorLinearisation> actuators = integrator_->actuators();
+  const std::span<const hydraulics::ActuatorSprings> springs =
+      emptying_.springs(*integrator_, *circuit_, shared_, reduced_, exchange);
   for (std::size_t i = 0; i < m_; ++i) {
     const hydraulics::ActuatorLinearisation& a = actuators[i];
-    const math::RelaxingSpring spring = math::one_for_all(a.springs, exchange_every_ * H_.seconds());
+    const math::RelaxingSpring spring = math::one_for_all(springs[i], exchange);
     sample.F[i] = a.F;
     sample.F_dot[i] = spring.F_dot;
     sample.K[i] = spring.K;
@@ -240,7 +244,7 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
     if (circuit_->has_temperatures()) circuit_->set_friction(static_cast<int>(i), reduced_.law(i).friction(a.F, a.v));
   }
   if (shared_.any()) {
-    shared_.write(*integrator_, *circuit_, exchange_every_ * H_.seconds(), sample.lambda, sample.K_cross);
+    shared_.write(springs, *circuit_, integrator_->state().data(), exchange, sample.lambda, sample.K_cross);
   }
   sample.flags = flags;
   published_ = sample;

@@ -23,6 +23,7 @@
 #include "hydraulics_node/control_signals.h"
 #include "hydraulics_node/convergence_watch.h"
 #include "hydraulics_node/coupling_alarm.h"
+#include "hydraulics_node/emptying_chambers.h"
 #include "hydraulics_node/late_samples.h"
 #include "hydraulics_node/reduced_mechanics.h"
 #include "hydraulics_node/shared_volumes.h"
@@ -91,6 +92,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   ControlSignals signals_;
   SharedVolumes shared_;
   ReducedMechanics reduced_;
+  EmptyingChambers emptying_;
   LateSamples late_samples_;
   CouplingAlarm alarm_;
   ConvergenceWatch convergence_;

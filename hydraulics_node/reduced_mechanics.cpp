@@ -16,16 +16,21 @@ coupling::LineForce ReducedMechanics::line_force(std::size_t port, double F, dou
   return line;
 }
 
-void ReducedMechanics::accelerations(const double* F, const double* x, const double* v, double* a) const noexcept {
+void ReducedMechanics::free_accelerations(const double* F, const double* x, const double* v, double* a) const noexcept {
   const std::size_t m = laws_.size();
   std::array<double, kMaxPorts> line{};
   for (std::size_t j = 0; j < m; ++j) line[j] = line_force(j, F[j], x[j], v[j]).force;
   for (std::size_t i = 0; i < m; ++i) {
-    a[i] = 0;
-    if (ports_[i].level != coupling::Level::two) continue;
     double sum = a_free_[i];
     for (std::size_t j = 0; j < m; ++j) sum += W_[i * m + j] * line[j];
     a[i] = sum;
+  }
+}
+
+void ReducedMechanics::accelerations(const double* F, const double* x, const double* v, double* a) const noexcept {
+  free_accelerations(F, x, v, a);
+  for (std::size_t i = 0; i < laws_.size(); ++i) {
+    if (ports_[i].level != coupling::Level::two) a[i] = 0;
   }
 }
 

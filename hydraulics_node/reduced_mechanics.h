@@ -38,6 +38,11 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
   void set_level(std::size_t port, coupling::Level level) noexcept { ports_[port].level = level; }
   // Force of a port of level tlm, for the coming step [N].
   void set_thrust(std::size_t port, double F) noexcept { ports_[port].thrust = F; }
+  [[nodiscard]] bool has_sample() const noexcept { return a_free_.size() == laws_.size(); }
+  // m/s2 per N of port i by the force of port j.
+  [[nodiscard]] double W(std::size_t i, std::size_t j) const noexcept { return W_[i * laws_.size() + j]; }
+  // (1) of all ports, as if all were of level two.
+  void free_accelerations(const double* F, const double* x, const double* v, double* a) const noexcept;
   void accelerations(const double* F, const double* x, const double* v, double* a) const noexcept override;
   void slopes(const double* F, const double* x, const double* v, double* da_dF, double* da_dx,
               double* da_dv) const noexcept override;

@@ -31,20 +31,31 @@ SharedVolumes::SharedVolumes(const hydraulics::Circuit& circuit) {
   }
 }
 
-void SharedVolumes::write(const hydraulics::CircuitIntegrator& integrator, const hydraulics::Circuit& circuit, double H,
-                          const coupling::PortArray& lambda, coupling::PortMatrix& K_cross) const noexcept {
+void SharedVolumes::write(std::span<const hydraulics::ActuatorSprings> springs, const hydraulics::Circuit& circuit,
+                          const double* y, double H, const coupling::PortArray& lambda,
+                          coupling::PortMatrix& K_cross) const noexcept {
   const std::size_t m = lambda.size();
-  const double* const y = integrator.state().data();
   K_cross.resize(m * m);
   for (double& K : K_cross) K = 0;
   for (const auto& [own, other] : pairs_) {
     const double area = signed_area(circuit.actuators()[own.port], own.side, y);
     if (area == 0) continue;
-    const math::RelaxingSpring& spring = integrator.actuators()[own.port].springs[own.side];
+    const math::RelaxingSpring& spring = springs[own.port][own.side];
     const double share = math::remaining_share(spring.lambda * H) / math::remaining_share(lambda[own.port] * H);
     K_cross[own.port * m + other.port] +=
         spring.K * share * signed_area(circuit.actuators()[other.port], other.side, y) / area;
   }
+}
+
+double SharedVolumes::displacement_of_others(std::size_t port, std::size_t side, const hydraulics::Circuit& circuit,
+                                             const double* y, std::span<const double> s) const noexcept {
+  double sum = 0;
+  for (const auto& [own, other] : pairs_) {
+    if (own.port != port || own.side != side) continue;
+    const double area = signed_area(circuit.actuators()[port], side, y);
+    if (area != 0) sum += signed_area(circuit.actuators()[other.port], other.side, y) / area * s[other.port];
+  }
+  return sum;
 }
 
 }  // namespace slew::hydraulics_node

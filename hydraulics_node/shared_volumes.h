@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "coupling/samples.h"
@@ -22,10 +23,14 @@ class SharedVolumes {
  public:
   explicit SharedVolumes(const hydraulics::Circuit& circuit);
   [[nodiscard]] bool any() const noexcept { return !pairs_.empty(); }
-  // (1) at the integrator's state. circuit: the integrator's, like the one of the construction; lambda: of all ports;
-  // H: time between two exchanges [s].
-  void write(const hydraulics::CircuitIntegrator& integrator, const hydraulics::Circuit& circuit, double H,
-             const coupling::PortArray& lambda, coupling::PortMatrix& K_cross) const noexcept;
+  // (1) at the circuit's state y. circuit: like the one of the construction; springs: by port; lambda: of all ports; H:
+  // time between two exchanges [s].
+  void write(std::span<const hydraulics::ActuatorSprings> springs, const hydraulics::Circuit& circuit, const double* y,
+             double H, const coupling::PortArray& lambda, coupling::PortMatrix& K_cross) const noexcept;
+  // Displacement of a chamber's own port that would change its volume as the displacements s of the other ports on it
+  // do.
+  [[nodiscard]] double displacement_of_others(std::size_t port, std::size_t side, const hydraulics::Circuit& circuit,
+                                              const double* y, std::span<const double> s) const noexcept;
 
  private:
   struct Chamber {

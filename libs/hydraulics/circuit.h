@@ -87,6 +87,7 @@ class Circuit {
   [[nodiscard]] const std::vector<double>& relatives_below_zero() const noexcept { return relative_below_zero_; }
   // non-zero entries of jacobian()
   [[nodiscard]] const math::SparsityPattern& pattern() const noexcept { return pattern_; }
+  [[nodiscard]] double pressure_floor() const noexcept { return floor_; }  // Pa absolute; below, the oil cavitates
   [[nodiscard]] double lowest_pressure() const noexcept { return oil_.lowest_pressure(); }
 
   // start states [y without x and v; the caller sets those]

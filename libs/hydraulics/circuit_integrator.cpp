@@ -450,6 +450,8 @@ void CircuitIntegrator::publish() noexcept {
     const double e = actuator.setting_at(y_.data()), A_a = e * actuator.area_a, A_b = e * actuator.area_b;
     out.Q_a = C_[a] * f_[a] + out.v * A_a;
     out.Q_b = C_[b] * f_[b] - out.v * A_b;
+    out.empty_a = A_a * (circuit_.pressure_floor() - p_a.value);
+    out.empty_b = -A_b * (circuit_.pressure_floor() - p_b.value);
     // a chamber that cavitates is no spring
     const auto spring = [this](std::size_t volume, double area, double slope) {
       const double C = C_[volume];
@@ -476,6 +478,7 @@ void CircuitIntegrator::publish_line(int actuator) noexcept {
   out.F = thrust.force - out.D * out.v;
   out.K = out.F_dot = out.lambda = out.stiffness = 0;
   out.springs = {};
+  out.empty_a = out.empty_b = 0;
   for (std::size_t side = 0; side < 2; ++side) {
     const LineChamber& line = circuit_.lines()[2 * static_cast<std::size_t>(actuator) + side];
     if (!line.is_line) continue;

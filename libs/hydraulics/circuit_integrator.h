@@ -41,6 +41,8 @@
 
 namespace slew::hydraulics {
 
+using ActuatorSprings = std::array<math::RelaxingSpring, 3>;  // chamber A, chamber B, brake
+
 // One actuator's force near (x, v), and its work and impulse in the last step.
 struct ActuatorLinearisation {
   double F = 0;          // N
@@ -49,14 +51,15 @@ struct ActuatorLinearisation {
   double D = 0;          // N s/m
   double stiffness = 0;  // N/m, K of the oil columns, also for lines
   double lambda = 0;     // 1/s
-  // chamber A, chamber B, brake; F_dot, K and lambda are their sums and weighted mean. Zero for lines
-  std::array<math::RelaxingSpring, 3> springs;
-  double x = 0;             // m, the circuit's own piston position
-  double v = 0;             // m/s
-  double work = 0;          // J, integral of F v dt over the last step
-  double impulse = 0;       // N s
-  double p_a = 0, p_b = 0;  // Pa absolute
-  double Q_a = 0, Q_b = 0;  // m3/s, flows of the circuit into the chambers' volumes
+  // F_dot, K and lambda are their sums and weighted mean. Zero for lines
+  ActuatorSprings springs;
+  double empty_a = 0, empty_b = 0;  // N, change of the chamber's force at which its oil is at the pressure floor
+  double x = 0;                     // m, the circuit's own piston position
+  double v = 0;                     // m/s
+  double work = 0;                  // J, integral of F v dt over the last step
+  double impulse = 0;               // N s
+  double p_a = 0, p_b = 0;          // Pa absolute
+  double Q_a = 0, Q_b = 0;          // m3/s, flows of the circuit into the chambers' volumes
 };
 
 // An explicit solver's sub-step relative to its stability limit at a state.

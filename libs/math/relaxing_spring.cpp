@@ -74,4 +74,11 @@ RelaxingSpring one_for_all(std::span<const RelaxingSpring> springs, double H) no
   return one;
 }
 
+RelaxingSpring ended_at(const RelaxingSpring& spring, double change, double t_0, double H) noexcept {
+  const auto [a_0, b_0] = response(spring.lambda * t_0);
+  const double x = 2 * inverse_langevin(std::clamp(1 - 2 * t_0 / H * (1 - b_0 / a_0), 0.0, kFastest));
+  const auto [a, b] = response(x);
+  return {spring.K * t_0 * t_0 * b_0 / (H * H * b), x / H, change / (H * a)};
+}
+
 }  // namespace slew::math

@@ -10,6 +10,12 @@
 // sums, and K after it. A mean of lambda weighted with K, its limit for H -> 0, would let a fast spring (a chamber
 // that is drained within H) relax a slow one (a closed chamber) with it.
 // F_dot keeps the integral of its own change, sum F_dot_i b(x_i) H^2: the impulse of the step.
+//
+// A force whose change ends at R, as that of a chamber which empties, arrives there at t_0 = r H < H and stays. Its
+// change at the end and the integral of it, about linear until t_0, are
+//   R,   R H (1 - r + r c),   c = (b/a)(lambda t_0),   2 b/a - 1 = 1 - 2 r (1 - c)                                (2)
+// which a spring has whose x is the inverse of Langevin's function of (2). Its K has the same integral of the change by
+// u, -K u t_0^2 b(lambda t_0); the end does not depend on u.
 #pragma once
 
 #include <span>
@@ -27,5 +33,9 @@ struct RelaxingSpring {
 
 // The one that stands for all of them over H seconds, H > 0. With one lambda for all it is the sum.
 [[nodiscard]] RelaxingSpring one_for_all(std::span<const RelaxingSpring> springs, double H) noexcept;
+
+// (2): the one that stands over H seconds for a spring whose change of force ends at `change` [N], which it reaches
+// after t_0, 0 < t_0 <= H.
+[[nodiscard]] RelaxingSpring ended_at(const RelaxingSpring& spring, double change, double t_0, double H) noexcept;
 
 }  // namespace slew::math

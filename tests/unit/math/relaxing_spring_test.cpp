@@ -93,6 +93,22 @@ TEST(RelaxingSpring, OfAClosedAndADrainedChamberKeepsTheClosedOne) {
   }
 }
 
+// the change of a chamber's force runs to its end in a line and stays there
+TEST(RelaxingSpring, OfAChamberThatEmptiesHasItsEndAndItsImpulse) {
+  constexpr double H = 1e-3, kRoom = -4e3;
+  for (const double r : {1e-4, 1e-2, 0.1, 0.3, 0.7, 0.99, 1.0}) {
+    const double t_0 = r * H;
+    const RelaxingSpring spring = ended_at({5e6, 0, kRoom / t_0}, kRoom, t_0, H);
+    EXPECT_NEAR(change(spring.F_dot, spring.lambda, H).end, kRoom, 1e-8 * -kRoom) << r;
+    EXPECT_NEAR(change(spring.F_dot, spring.lambda, H).integral, kRoom * (H - t_0 / 2), 1e-5 * -kRoom * H) << r;
+    EXPECT_NEAR(change(spring.K, spring.lambda, H).integral, 5e6 * t_0 * t_0 / 2, 1e-5 * 5e6 * t_0 * t_0) << r;
+  }
+  const RelaxingSpring whole = ended_at({5e6, 200, -3e6}, -3e6 * H * remaining_share(200 * H), H, H);
+  EXPECT_NEAR(whole.K, 5e6, 1e-5 * 5e6);
+  EXPECT_NEAR(whole.lambda, 200, 1e-3 * 200);
+  EXPECT_NEAR(whole.F_dot, -3e6, 1e-5 * 3e6);
+}
+
 TEST(RelaxingSpring, IsFiniteWhereNothingIsLeft) {
   const RelaxingSpring none = one_for_all({}, 1e-3);
   EXPECT_EQ(none.K, 0);
