@@ -47,7 +47,8 @@ Indicator::Indicator(std::size_t ports, SimDuration communication_step)
       others_(ports),
       largest_(ports),
       steps_below_alarm_(ports, 0),
-      defects_(ports) {}
+      defects_(ports),
+      kinetic_(ports, 0) {}
 
 void Indicator::reset() noexcept {
   for (auto& buckets : window_) buckets.fill(Bucket{});
@@ -55,6 +56,7 @@ void Indicator::reset() noexcept {
   for (auto& largest : largest_) largest.fill(0);
   for (std::int64_t& steps : steps_below_alarm_) steps = 0;
   for (PortDefects& defects : defects_) defects = PortDefects{};
+  for (double& energy : kinetic_) energy = 0;
   steps_in_bucket_ = 0;
   current_ = 0;
   omega_H_ = 0;
@@ -138,6 +140,7 @@ void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& a
     bucket.work += std::fabs(mechanism.work[i]);
     bucket.force = std::max(bucket.force, std::fabs(actuators.F[i]));
     bucket.stiffness = std::max(bucket.stiffness, stiffness[i]);
+    kinetic_[i] = mechanism.v[i] * mechanism.v[i] / (2 * mechanism.W[i * ports_ + i]);
     machine_scale = std::max(machine_scale, scale_of(window_sum(i)));
   }
   for (std::size_t i = 0; i < ports_; ++i) evaluate(i, levels[i], machine_scale);
@@ -178,7 +181,7 @@ bool Indicator::creates_energy() const noexcept {
 
 double Indicator::own_residual(std::size_t port) const noexcept {
   const Bucket sum = window_sum(port);
-  const double own = scale_of(sum);
+  const double own = std::max(scale_of(sum), kinetic_[port]);
   return own > 0 ? sum.residual / own : 0.0;
 }
 

@@ -22,8 +22,9 @@
 // the whole window and does no more. A coupling that diverges fails exchange after exchange. So a port diverges when
 //   sum |dE*| > 0.1 max(sum |W_mech|, F^2 / (2 K))                                                  (7)
 // within half of the window's buckets or more, each with its own work and its own largest |F|: a swing that grows
-// within the window does not hide the buckets before it; and at once when sum |dE*| > 4 own, more than any jump of a
-// sound run leaves.
+// within the window does not hide the buckets before it; and at once when sum |dE*| > 4 max(own, v^2 / (2 W_ii)), more
+// than any jump of a sound run leaves. A port without force that others begin to move has done no work yet: its kinetic
+// energy stands in for it.
 #pragma once
 
 #include <array>
@@ -87,7 +88,7 @@ class Indicator {
   [[nodiscard]] const PortDefects& port(std::size_t i) const noexcept { return defects_[i]; }
   [[nodiscard]] double omega_H() const noexcept { return omega_H_; }  // of the last update [-]
   [[nodiscard]] bool creates_energy() const noexcept;
-  // sum |dE*| of the window over the port's own scale [-]
+  // sum |dE*| of the window over the port's own scale, or its kinetic energy of the last update where that is more [-]
   [[nodiscard]] double own_residual(std::size_t port) const noexcept;
   // (7), by the full buckets, or at once by own_residual. No allocation.
   [[nodiscard]] bool diverges(std::size_t port) const noexcept;
@@ -128,6 +129,7 @@ class Indicator {
   std::vector<std::array<double, kLeftOut>> largest_;  // by port, residuals of others_, falling
   std::vector<std::int64_t> steps_below_alarm_;        // by port
   std::vector<PortDefects> defects_;
+  std::vector<double> kinetic_;  // by port, of the last update [J]; infinite for a port that nothing moves
   double omega_H_ = 0;
 };
 
