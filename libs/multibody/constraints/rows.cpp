@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "core/index.h"
 #include "core/reductions.h"
@@ -229,17 +230,30 @@ double bias_of_angle(const AngleElement& element, const AngleMotion& angle, cons
   return (c * s2 - s * c2) / rho - 2 * (c * s1 - s * c1) * (c * c1 + s * s1) / (rho * rho);
 }
 
+namespace {
+
+// Speeds of a row outside of which its residual is zero, as rows of other trees are: their products add nothing.
+std::pair<std::size_t, std::size_t> range_of(std::span<const double> residual) noexcept {
+  std::size_t begin = 0, end = residual.size();
+  while (begin < end && residual[begin] == 0) ++begin;
+  while (end > begin && residual[end - 1] == 0) --end;
+  return {begin, end};
+}
+
+}  // namespace
+
 void evaluate_rows(const Model& model, const State& state, Workspace& ws) noexcept {
   const std::size_t rows = model.rows.size(), dof = ws.udot.size();
   for (std::size_t k = 0; k < rows; ++k) evaluate_row(model, state, k, ws);
   for (std::size_t k = 0; k < rows; ++k) {
     const double* residual = ws.row_residual.data() + k * dof;
+    const auto [begin, end] = range_of({residual, dof});
     for (std::size_t l = 0; l <= k; ++l) {
       const double* rate = ws.row_rate.data() + l * dof;
       double w = 0;
       const bool is_carried = ws.loops.pattern.ports.empty() || ws.loops.pattern.are_coupled(k, l);
       if (is_carried && ws.row_is_active[k] != 0 && ws.row_is_active[l] != 0) {
-        for (std::size_t j = 0; j < dof; ++j) w += residual[j] * rate[j];
+        for (std::size_t j = begin; j < end; ++j) w += residual[j] * rate[j];
       }
       ws.row_W[k * rows + l] = ws.row_W[l * rows + k] = w;
     }

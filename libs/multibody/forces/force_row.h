@@ -84,6 +84,13 @@ struct VariableSink {
   [[nodiscard]] std::span<double> rest() const noexcept { return values.subspan(next); }
 };
 
+// Motion along the coordinate of a one-sided law at one instant.
+struct StopMotion {
+  int side = 0;      // the part of the law that acts, 0: none
+  double x = 0;      // coordinate of its spring [m or rad]
+  double speed = 0;  // m/s or rad/s
+};
+
 template <typename T>
 struct ForceRow {
   using Element = T;
@@ -111,9 +118,11 @@ struct ForceRow {
   template <typename Couple>
   static void for_each_coupling(const T& /*element*/, Couple&& /*couple*/) {}
 
-  // Which part of a one-sided law acts: a change of it within an implicit step restarts that step.
+  // One-sided laws: a change of the side within an implicit step restarts that step. curve_force: of a spring by table,
+  // at its coordinate; 0 of linear ones.
   static constexpr bool kHasStops = false;
-  static int side_of(const T& /*element*/, std::span<const LinkMotion> /*motion*/) noexcept { return 0; }
+  static StopMotion stop_of(const T& /*element*/, std::span<const LinkMotion> /*motion*/) noexcept { return {}; }
+  static double curve_force(const T& /*element*/, double /*x*/) noexcept { return 0; }
 
   // Whether it is linear around the start, but for tables, which linearise() leaves out; silence() leaves nothing. For
   // the check of explicit steps (steepest_laws.h, which has the laws of kinds that push on one side or saturate).

@@ -116,8 +116,12 @@ struct RopeRow : ForceRow<Rope> {
     }
   }
   static constexpr bool kHasStops = true;
-  static int side_of(const Rope& rope, std::span<const LinkMotion> motion) noexcept {
-    return state_of(rope, motion).springs;
+  static StopMotion stop_of(const Rope& rope, std::span<const LinkMotion> motion) noexcept {
+    const RopeState state = state_of(rope, motion);
+    return {state.springs, state.length - rope.free_length, state.rate};
+  }
+  static double curve_force(const Rope& rope, double stretch) noexcept {
+    return stretch > 0 && !rope.spring_curve.empty() ? math::value_at(rope.spring_curve, stretch) : 0;
   }
 
   static void list_variables(const Rope& rope, VariableNames& names);

@@ -143,10 +143,10 @@ TyreState state_of(const Tyre& tyre, const LinkMotion& link) noexcept {
   state.t = cross(state.axle, n) * (1 / s);
   state.l = cross(n, state.t);
   state.depth = tyre.height - dot(n, state.Q);
+  state.depth_rate = depth_rate(tyre, state, link);
   if (!(state.depth > 0)) return state;
   // (2)
-  const LimitedForce limited =
-      limited_force(tyre.stiffness * state.depth, tyre.damping * depth_rate(tyre, state, link));
+  const LimitedForce limited = limited_force(tyre.stiffness * state.depth, tyre.damping * state.depth_rate);
   state.normal_force = limited.force;
   state.springs = limited.springs;
   add_slip(tyre, link, state);

@@ -72,6 +72,7 @@ struct TyreState {
   math::Vec3 C, Q;                // m, Ground
   math::Vec3 t, l, axle;          // unit, Ground axes
   double depth = 0;               // delta [m], negative in the air
+  double depth_rate = 0;          // delta' [m/s]
   double normal_force = 0;        // N [N]
   int springs = 0;                // LimitedForce of (2)
   double longitudinal_force = 0;  // F_x [N]; of a free wheel its resistance
@@ -127,8 +128,9 @@ struct TyreRow : ForceRow<Tyre> {
   static constexpr bool kHasSlopes = true;
   static void add_stiffness(const Tyre& tyre, StiffnessSum& sum) noexcept;
   static constexpr bool kHasStops = true;
-  static int side_of(const Tyre& tyre, std::span<const LinkMotion> motion) noexcept {
-    return state_of(tyre, motion[static_cast<std::size_t>(tyre.link)]).springs;
+  static StopMotion stop_of(const Tyre& tyre, std::span<const LinkMotion> motion) noexcept {
+    const TyreState state = state_of(tyre, motion[static_cast<std::size_t>(tyre.link)]);
+    return {state.springs, state.depth, state.depth_rate};
   }
 
   static void list_variables(const Tyre& tyre, VariableNames& names);

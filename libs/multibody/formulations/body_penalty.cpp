@@ -11,6 +11,7 @@
 #include "core/check.h"
 #include "multibody/formulations/link_stiffness.h"
 #include "multibody/formulations/penalty_passes.h"
+#include "multibody/formulations/stops.h"
 
 namespace slew::multibody {
 
@@ -120,7 +121,8 @@ PenaltyWorkspace::PenaltyWorkspace(const Model& model, const PenaltyModel& body)
   }
   factored_modal = modal;
   for (auto* by_row : {&target, &free_multipliers, &multipliers, &no_target, &rates}) by_row->resize(row_count);
-  for (auto* by_u : {&force, &correction, &free, &udot, &end_udot, &displacement, &row_displacement}) {
+  for (auto* by_u :
+       {&force, &correction, &free, &udot, &end_udot, &displacement, &row_displacement, &last_correction}) {
     by_u->resize(speeds);
   }
   if (body.formulation == Formulation::penalty) determinants.resize(body.pattern.nodes.size());
@@ -132,6 +134,7 @@ PenaltyWorkspace::PenaltyWorkspace(const Model& model, const PenaltyModel& body)
     copy->u.resize(speeds);
   }
   stage_joints = {model.start_q, model.start_u};
+  for (auto* by_element : {&stops, &stops_0}) by_element->resize(element_stop_count(model));
   row_force.resize(model.rows.size());
   part_mean.resize(model.rows.size());
   frequency = model.penalty.frequency;

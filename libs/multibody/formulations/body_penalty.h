@@ -37,6 +37,9 @@
 // (5) takes the mean of a row's force alone. What a change within the step moves the mechanism beside it is part of the
 // positions, and not of d:
 //   A_h d_r = -h^3/12 J^T slope,   p_1 = p_0 + d_p + d_r,p,   R_1 = exp((d_R + d_r,R)~) R_0             (10)
+// By the mean of both ends, (5) makes energy of a one-sided force that begins or ends within the step (stops.h). Such a
+// step is divided until the part p in which that happens is short; p takes the implicit Euler rule,
+//   u_1 = u_0 + p u_1',  d = p u_1,   (7) with p^2 for h^2/4 and p for h/2                            (11)
 // The remainder of (5) in G u is removed in the metric of A_h, and u_1' of the next step comes from (3):
 //   u := u - A_h^-1 G^T alpha G u   until G u = 0                                                      (8)
 // (8) is the velocity projection, (3) the acceleration projection of the sources; both need no matrix of their own.
@@ -90,16 +93,19 @@ struct PenaltyWorkspace {
   std::vector<double> rates;                               // G u less the prescribed speeds, by row
   std::vector<double> qdot, udot, end_udot, displacement;  // values of a step
   std::vector<double> row_displacement;                    // d_r of (10)
+  std::vector<double> last_correction;                     // by u
+  std::vector<StopMotion> stops, stops_0;                  // one-sided forces at the end and the start of a part
   BodyState stage, sum;
   State stage_joints;
   std::vector<double> row_force;
-  int iterations = 0;  // iterations of Newton's method in the last step
+  int iterations = 0;             // iterations of Newton's method in the last part
+  int parts = 1;                  // parts of the last step, of `augmented`
+  std::vector<double> part_mean;  // mean of the rows' forces over a part
 
   // penalty
   std::vector<double> determinants;  // d_first of (9), by node
   double change = 0;                 // left side of (9), the largest of the last part
   double frequency = 0;              // rad/s, omega_p
-  std::vector<double> part_mean;     // mean of the rows' forces over a part
 };
 
 // m: the largest distance of a joint's point from the origin of a moving link that it is fixed to, or radius of

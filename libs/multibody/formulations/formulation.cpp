@@ -300,7 +300,7 @@ int Dynamics::iterations() const noexcept {
 }
 
 int Dynamics::parts() const noexcept {
-  return stages_ == nullptr ? 1 : stages_->parts;
+  return stages_ != nullptr ? stages_->parts : held_ != nullptr ? held_->ws.parts : 1;
 }
 
 const BodyState* Dynamics::own_state() const noexcept {

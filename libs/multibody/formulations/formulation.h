@@ -50,7 +50,7 @@ class Dynamics {
   // shows it (joint_gauge.h); the joint coordinates of the State cannot.
   void observe(const Model& model, const State& state, Workspace& ws) const noexcept;
   // Corrections of the last sub-step's implicit stages, and its number of parts: one, except after an iteration without
-  // convergence.
+  // convergence, and of `augmented` where a one-sided force begins or ends.
   [[nodiscard]] int iterations() const noexcept;
   [[nodiscard]] int parts() const noexcept;
   // Number of parts of the last advance() because of contacts, and the number of them by the implicit rule.

@@ -10,6 +10,7 @@
 #include "multibody/formulations/dynamics.h"
 #include "multibody/formulations/passes.h"
 #include "multibody/formulations/stage_passes.h"
+#include "multibody/formulations/stops.h"
 
 namespace slew::multibody {
 

@@ -140,7 +140,8 @@ void add_pulls(const Model& model, const PenaltyModel& body, const Workspace& ws
 
 }  // namespace
 
-bool factorize(const Model& model, const PenaltyModel& body, Workspace& ws, PenaltyWorkspace& pws, double h) noexcept {
+bool factorize(const Model& model, const PenaltyModel& body, Workspace& ws, PenaltyWorkspace& pws,
+               double tau) noexcept {
   pws.ldl.clear();
   PenaltyMatrix matrix(pws.ldl);
   add_masses(model, ws, matrix);
@@ -160,8 +161,8 @@ bool factorize(const Model& model, const PenaltyModel& body, Workspace& ws, Pena
   pws.factored_gears = pws.gears;
   const std::size_t first_gear = pws.rows.size() - pws.gears.size();
   for (std::size_t k = 0; k < pws.gears.size(); ++k) add_gear(pws.gears[k], body.alpha[first_gear + k], pws.ldl);
-  if (h > 0) {
-    const ChangeWeights weights{.position = 0.25 * h * h, .rate = 0.5 * h};
+  if (tau > 0) {
+    const ChangeWeights weights{.position = tau * tau, .rate = tau};
     // contacts are resolved by parts of the sub-step instead (contact_rate.h)
     add_stiffness(model, ws, weights, matrix);
     add_modal_stiffness(model, body.modal, weights, ws, pws.ldl);

@@ -13,10 +13,10 @@ namespace slew::multibody {
 void see(const Model& model, const PenaltyModel& body, const BodyState& state, State& joints, Workspace& ws,
          PenaltyWorkspace& pws) noexcept;
 
-// The matrix (1), for h > 0 with the elements' C and K, and its factors; after see(). False when it is singular to
-// working precision.
+// The matrix (1), for tau > 0 A_h of (7) or (11) with the elements' C and K, and its factors; after see(). False when
+// it is singular to working precision.
 [[nodiscard]] bool factorize(const Model& model, const PenaltyModel& body, Workspace& ws, PenaltyWorkspace& pws,
-                             double h) noexcept;
+                             double tau) noexcept;
 
 // y = Q without row forces; y -= M x.
 void put_free_forces(const Model& model, const Workspace& ws, std::span<double> y) noexcept;

@@ -6,7 +6,6 @@
 #include "core/index.h"
 #include "multibody/constraints/loops.h"
 #include "multibody/contacts/contact_stiffness.h"
-#include "multibody/forces/element_law.h"
 #include "multibody/formulations/body_block.h"
 #include "multibody/formulations/stage_passes.h"
 
@@ -37,41 +36,6 @@ void add_pulls(const StageContext& at, double weight, LinkMatrix& matrix) noexce
 }
 
 }  // namespace
-
-void see_stops(const Model& model, const Workspace& ws, std::span<signed char> stops) noexcept {
-  const auto side_of = [](const ElementLaw& law, double x, double rate) -> signed char {
-    if (!(law.end_spring > 0)) return 0;
-    const double force = math::stop_force(x, rate, law.min, law.max, law.end_spring, law.end_damping).force;
-    return force > 0 ? -1 : force < 0 ? 1 : 0;
-  };
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < model.lines.size(); ++i) {
-    stops[k++] = side_of(model.lines[i].law, ws.lines[i].length, ws.lines[i].rate);
-  }
-  for (std::size_t i = 0; i < model.angles.size(); ++i) {
-    stops[k++] = side_of(model.angles[i].law, ws.angles[i].angle, ws.angles[i].rate);
-  }
-  for_each_force_kind([&](auto row) {
-    if constexpr (decltype(row)::kHasStops) {
-      for (const auto& element : elements_of(row, model.elements)) {
-        stops[k++] = static_cast<signed char>(row.side_of(element, ws.motion));
-      }
-    }
-  });
-  if (model.contact == nullptr) return;
-  const std::span<signed char> pairs = stops.subspan(k);
-  std::fill(pairs.begin(), pairs.end(), static_cast<signed char>(0));
-  const std::span<const contact::ContactPoint> points = ws.contact->set.points();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const math::Vec3 force = ws.contact->forces[i].normal_W;
-    if (dot(force, force) > 0) ++pairs[points[i].pair];
-  }
-}
-
-std::size_t stop_count(const Model& model) noexcept {
-  return model.lines.size() + model.angles.size() + stop_count(model.elements) +
-         (model.contact == nullptr ? 0 : model.contact->model.pairs().size());
-}
 
 BodyModel build_stiff_body_model(const Model& model) {
   BodyModel body = build_body_model(model);

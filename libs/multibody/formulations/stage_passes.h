@@ -33,11 +33,6 @@ void place(const StageContext& at, double sigma) noexcept;
 // Adds the accelerations by the speeds' rates to those of the motion.
 void add_accelerations(const StageContext& at, std::span<const double> rate) noexcept;
 
-// State of one-sided forces, by element: the side of its range on which an end damper pushes (-1, 0, 1), LimitedForce
-// of ropes and tyres, the pushing contact points of a pair. Needs the elements' motion and a search for contacts.
-[[nodiscard]] std::size_t stop_count(const Model& model) noexcept;
-void see_stops(const Model& model, const Workspace& ws, std::span<signed char> stops) noexcept;
-
 // Right side of (4) into bws.solution; evaluates elements, inertia and joints' rows. Needs place(), and the time of the
 // stage in ws.
 void find_residual(const StageContext& at, const Stage& stage) noexcept;
