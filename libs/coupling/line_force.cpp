@@ -18,6 +18,9 @@ constexpr double kInside = 0.97;
 
 LineForceLaw::LineForceLaw(const LineForceDef& def)
     : def_(def),
+      cushion_min_(def.cushion_min),
+      cushion_max_(def.cushion_max),
+      has_cushion_(cushion_min_.exists() || cushion_max_.exists()),
       loss_(1 - def.efficiency),
       seal_slope_(def.seal_friction / def.seal_speed),
       has_friction_((!def.friction_curve.empty() && def.efficiency != 1) || def.seal_friction > 0 ||
@@ -50,6 +53,28 @@ double LineForceLaw::time_to_rest(double v, double a, double j) const noexcept {
 
 double LineForceLaw::friction(double F, double v) const noexcept {
   return friction_at(F, v).force;
+}
+
+// (4) and its slopes
+void LineForceLaw::add_cushions(double x, double v, LineForce& line) const noexcept {
+  if (cushion_min_.exists()) {
+    const math::CushionBrake brake = cushion_min_.at(x - def_.stroke_min, -v);
+    line.force += brake.force;
+    line.d_position += brake.d_remaining;
+    line.d_speed -= brake.d_closing;
+  }
+  if (cushion_max_.exists()) {
+    const math::CushionBrake brake = cushion_max_.at(def_.stroke_max - x, v);
+    line.force -= brake.force;
+    line.d_position += brake.d_remaining;
+    line.d_speed -= brake.d_closing;
+  }
+}
+
+double LineForceLaw::cushion_force(double x, double v) const noexcept {
+  LineForce line{.force = 0};
+  if (has_cushion_) add_cushions(x, v, line);
+  return line.force;
 }
 
 double LineForceLaw::stop_force(double x, double v) const noexcept {

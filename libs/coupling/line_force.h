@@ -2,10 +2,11 @@
 // The force that an actuator's line transmits: pressure force less friction plus end stops. One code for mechanics,
 // hydraulics and the monolith, so that all three use the same cylinder.
 //
-//   F_line = F - F_mu + F_stop                                                                     (1)
+//   F_line = F - F_mu + F_stop + F_c                                                               (1)
 //   F_mu   = (|F| (1 - eta) f(|v|) + F_seal min(|v| / v_seal, 1)) sgn(v) + c_v v                   (2)
 //   F_stop = max(0, k d_min - c v) - max(0, k d_max + c v)                                         (3)
 //            d_min = x_min - x while x < x_min, else the first term is 0; d_max = x - x_max likewise
+//   F_c    = f(x - x_min, -v) - f(x_max - x, v), the brake f of each end's cushion (math/cushion.h)   (4)
 //
 // F [N] pressure force, positive pushes the stroke open; x [m], v [m/s] stroke and its speed; eta efficiency
 // ("cylinder coefficient"); f friction curve over speed, piecewise linear, last value held. A stop never pulls.
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "core/field.h"
+#include "math/cushion.h"
 #include "math/stop.h"
 
 namespace slew::coupling {
@@ -31,6 +33,7 @@ struct LineForceDef {
   double stroke_max = 0;        // [m]
   double stop_stiffness = 0;    // k [N/m], >= 0
   double stop_damping = 0;      // c [N s/m], >= 0
+  math::CushionDef cushion_min = {}, cushion_max = {};
 };
 
 // A force law's value and slopes at one point.
@@ -49,6 +52,8 @@ class LineForceLaw {
   [[nodiscard]] LineForce evaluate(double F, double x, double v) const noexcept;
   [[nodiscard]] double friction(double F, double v) const noexcept;    // F_mu of (2) [N]
   [[nodiscard]] double stop_force(double x, double v) const noexcept;  // F_stop of (3) [N]
+  [[nodiscard]] bool has_cushion() const noexcept { return has_cushion_; }
+  [[nodiscard]] double cushion_force(double x, double v) const noexcept;  // F_c of (4) [N]
   // Time [s] until a falling speed v with the acceleration a and its rate j [m/s3] is just before the edge of the steep
   // part of the friction about rest; for a speed at the edge, until just behind it. Infinite if the speed does not
   // reach the edge or there is no steep part.
@@ -71,8 +76,11 @@ class LineForceLaw {
   [[nodiscard]] Coefficient curve_at(double speed) const noexcept;
   [[nodiscard]] Friction friction_at(double F, double v) const noexcept;
   [[nodiscard]] math::StopForce stop_at(double x, double v) const noexcept;
+  void add_cushions(double x, double v, LineForce& line) const noexcept;
 
   LineForceDef def_;
+  math::Cushion cushion_min_, cushion_max_;
+  bool has_cushion_;
   std::vector<Segment> segments_;  // the last one holds its value
   double loss_;                    // 1 - eta
   double seal_slope_;              // F_seal / v_seal [N s/m]
@@ -120,11 +128,13 @@ inline math::StopForce LineForceLaw::stop_at(double x, double v) const noexcept 
 inline LineForce LineForceLaw::evaluate(double F, double x, double v) const noexcept {
   const Friction friction = friction_at(F, v);
   const math::StopForce stop = stop_at(x, v);
-  return {.force = F - friction.force + stop.force,
-          .d_pressure = 1 - friction.d_pressure,
-          .d_position = stop.d_x,
-          .d_speed = stop.d_v - friction.d_speed,
-          .stop = stop.force};
+  LineForce line{.force = F - friction.force + stop.force,
+                 .d_pressure = 1 - friction.d_pressure,
+                 .d_position = stop.d_x,
+                 .d_speed = stop.d_v - friction.d_speed,
+                 .stop = stop.force};
+  if (has_cushion_) add_cushions(x, v, line);
+  return line;
 }
 
 }  // namespace slew::coupling

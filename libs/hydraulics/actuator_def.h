@@ -5,13 +5,24 @@
 
 #include <string>
 
+#include "core/field.h"
+
 namespace slew::hydraulics {
 
 // Friction that follows the pressure force where friction_curve names no curve: none, or f = 1 from seal_speed on.
 enum class FrictionWithoutCurve { none, constant };
 
+// Cushion at one end of the stroke (math/cushion.h).
+struct EndCushion {
+  double length = 0;        // m, from the end of the stroke; 0: none
+  double entry_length = 0;  // m, way on which the plunger shuts the port
+  double area = 0;          // m2, of the enclosed oil
+  Table throttle = {};      // remaining stroke [m], discharge coefficient times area [m2]
+  bool has_check_valve = true;
+};
+
 // Parameters of the line force, evaluated in port space by both sides of the coupling:
-//   F_line = F - F_mu + F_stop,  F = p_A A_A - p_B A_B
+//   F_line = F - F_mu + F_stop + F_c,  F = p_A A_A - p_B A_B;  F_c: brake of the end cushions
 //   F_mu   = (|F| (1 - cylinder_coefficient) f(|v|) + seal_friction f_0(v)) sgn v + viscous_friction v
 //   F_stop = max(0, end_stiffness d + end_damping d') at either end, pushing only
 struct LineForceParameters {
@@ -25,6 +36,7 @@ struct LineForceParameters {
   double maximum_stroke = 0;        // m
   double seal_speed = 1e-4;         // m/s, speed from which on the seal friction is fully there
   FrictionWithoutCurve friction_without_curve = FrictionWithoutCurve::none;
+  EndCushion minimum_cushion = {}, maximum_cushion = {};  // of chambers A and B
 };
 
 // Coupling level of the actuator's power port: a level of its own or the session's. coupling/level.h defines the

@@ -393,6 +393,7 @@ void SceneEquations::list_variables() {
     variables_.push_back({port.name + ".line_force", force});
     variables_.push_back({port.name + ".friction_force", force});
     variables_.push_back({port.name + ".end_stop_force", force});
+    if (port.law.has_cushion()) variables_.push_back({port.name + ".cushion_force", force});
   }
   if (circuit_ == nullptr) return;
   const std::span<const ElementVariable> circuit = circuit_->variables();
@@ -406,10 +407,12 @@ void SceneEquations::read_variables(std::span<double> values) {
   multibody::read_reactions(model_, workspace_, row_force_, reactions_,
                             values.subspan(model_variables_, reaction_variables_));
   std::size_t k = model_variables_ + reaction_variables_;
-  for (const PortState& port : port_states_) {
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    const PortState& port = port_states_[i];
     values[k++] = port.line_force;
     values[k++] = port.friction;
     values[k++] = port.stop;
+    if (ports_[i].law.has_cushion()) values[k++] = ports_[i].law.cushion_force(port.x, port.v);
   }
   if (circuit_) circuit_->read_variables(circuit_y_.data(), values.subspan(k));
 }

@@ -13,6 +13,7 @@
 
 #include "coupling/samples.h"
 #include "hydraulics/curve.h"
+#include "hydraulics/end_cushion.h"
 #include "multibody/formulations/dynamics.h"
 
 namespace slew::scene {
@@ -153,6 +154,8 @@ void make_ports(Scene& scene, Problems& problems) {
     PortDef port = port_of(component->name, *actuator);
     port.shares_volume = chambers[actuator->port_a] > 1 || chambers[actuator->port_b] > 1;
     take_curve(port, actuator->line_force.friction_curve, scene, problems);
+    port.line_force.cushion_min = hydraulics::cushion_law(actuator->line_force.minimum_cushion, scene.hydraulics);
+    port.line_force.cushion_max = hydraulics::cushion_law(actuator->line_force.maximum_cushion, scene.hydraulics);
     check_force(port, actuator->motion, scene, problems);
     scene.ports.push_back(std::move(port));
   }

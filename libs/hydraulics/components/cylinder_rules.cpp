@@ -26,7 +26,51 @@ void check_chamber(const std::string& name, const CylinderParameters& c, char po
                     "a stroke inside the chamber, a stiffer stop or a dead volume", ""});
 }
 
+// side: "cushion_a" or "cushion_b"
+void check_cushion(const std::string& side, const CushionParameters& cushion, const CylinderParameters& cylinder,
+                   double rod_diameter, Problems& errors) {
+  if (cushion.length == 0) return;
+  const double stroke = cylinder.maximum_stroke - cylinder.minimum_stroke, plunger = cushion.plunger_diameter;
+  if (cushion.length > stroke) {
+    errors.push_back(
+        {side + "_length",
+         fmt::format("the cushion is longer than the stroke: {:.4g} m of {:.4g} m", cushion.length, stroke),
+         "at most maximum_stroke - minimum_stroke", ""});
+  }
+  if (cushion.entry_length > cushion.length) {
+    errors.push_back({side + "_entry_length",
+                      fmt::format("the plunger shuts the port over {:.4g} m, and the cushion has {:.4g} m",
+                                  cushion.entry_length, cushion.length),
+                      "at most the length of the cushion", ""});
+  }
+  if (!(plunger < cylinder.piston_diameter)) {
+    errors.push_back(
+        {side + "_plunger_diameter", "the plunger is not thinner than the piston", "less than piston_diameter", ""});
+  } else if (plunger > 0 && plunger < rod_diameter) {
+    errors.push_back({side + "_plunger_diameter", "the plunger is thinner than the rod that it sits on",
+                      "rod_diameter or more, or 0 for the whole chamber", ""});
+  }
+  if (cushion.areas.empty() == (cushion.orifice_diameter == 0)) {
+    const bool has_none = cushion.areas.empty();
+    errors.push_back({side + "_orifice_diameter",
+                      has_none ? "the cushion has no throttle" : "the throttle has a diameter and a table of areas",
+                      has_none ? "a diameter above 0, or a table of areas" : "one of both", ""});
+  }
+  if (!cushion.areas.empty() && (cushion.areas.front()[0] < 0 || cushion.areas.back()[0] > cushion.length)) {
+    errors.push_back({side + "_areas",
+                      fmt::format("the table is over {:.4g} to {:.4g} m, and the cushion over 0 to {:.4g} m",
+                                  cushion.areas.front()[0], cushion.areas.back()[0], cushion.length),
+                      "remaining strokes from 0 to the length of the cushion", ""});
+  }
+}
+
 }  // namespace
+
+void check_cushions(const std::string& name, const CylinderParameters& cylinder, const RodDiameters& rods,
+                    Problems& errors) {
+  check_cushion(name + ".cushion_a", cylinder.cushion_a, cylinder, rods.a, errors);
+  check_cushion(name + ".cushion_b", cylinder.cushion_b, cylinder, rods.b, errors);
+}
 
 void check_friction_curve(const HydraulicsDef& circuit, const std::string& element, const std::string& name,
                           const FrictionSpeeds& speeds, Problems& errors, Problems& warnings) {

@@ -25,4 +25,13 @@ void check_friction_curve(const HydraulicsDef& circuit, const std::string& eleme
 void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& cylinder,
                     double rod_diameter, Problems& errors, Problems& warnings);
 
+// Diameters of the rods through both chambers, 0 for none [m].
+struct RodDiameters {
+  double a = 0, b = 0;
+};
+
+// Cushions lie within the stroke, their plungers between rod and piston, and each has one throttle.
+void check_cushions(const std::string& name, const CylinderParameters& cylinder, const RodDiameters& rods,
+                    Problems& errors);
+
 }  // namespace slew::hydraulics

@@ -8,7 +8,7 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr auto kSingleActingCylinderFields = cylinder_fields<SingleActingCylinderDef>(std::array{
+constexpr auto kSingleActingCylinderFields = cylinder_fields<SingleActingCylinderDef, CushionEnds::a>(std::array{
     field<&SingleActingCylinderDef::rod_length>("rod_length", {.dimension = Dimension::length,
                                                                .range = kNotNegative,
                                                                .presence = Presence::required,
@@ -28,6 +28,7 @@ void validate_single_acting(const HydraulicsDef& circuit, const ComponentDef& co
                       "a volume with fixed: true, or a double_acting_cylinder", ""});
   }
   check_cylinder(circuit, def.name, def.common, 0, errors, warnings);
+  check_cushions(def.name, def.common, {}, errors);
 }
 
 }  // namespace
@@ -35,6 +36,7 @@ void validate_single_acting(const HydraulicsDef& circuit, const ComponentDef& co
 std::optional<ActuatorDef> SingleActingCylinderDef::actuator() const {
   ActuatorDef actuator = actuator_of(common);
   actuator.coordinate.offset = -(attachment_length + rod_length);
+  set_cushions(common, actuator);
   return actuator;
 }
 
