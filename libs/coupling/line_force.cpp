@@ -24,7 +24,7 @@ LineForceLaw::LineForceLaw(const LineForceDef& def)
       loss_(1 - def.efficiency),
       seal_slope_(def.seal_friction / def.seal_speed),
       has_friction_((!def.friction_curve.empty() && def.efficiency != 1) || def.seal_friction > 0 ||
-                    def.viscous_friction > 0) {
+                    def.viscous_friction > 0 || def.breakaway_friction > 0) {
   const Table& curve = def_.friction_curve;
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const bool is_last = i + 1 == curve.size();
@@ -32,7 +32,7 @@ LineForceLaw::LineForceLaw(const LineForceDef& def)
     segments_.push_back({curve[i][0], curve[i][1], slope});
   }
   if (curve.size() > 1 && curve[0][0] == 0 && curve[0][1] == 0 && loss_ > 0) curve_edge_ = curve[1][0];
-  if (def_.seal_friction > 0) seal_edge_ = def_.seal_speed;
+  if (def_.seal_friction > 0 || def_.breakaway_friction > 0) seal_edge_ = def_.seal_speed;
 }
 
 double LineForceLaw::time_to_rest(double v, double a, double j) const noexcept {
@@ -49,6 +49,14 @@ double LineForceLaw::time_to_rest(double v, double a, double j) const noexcept {
   const double b = std::fabs(a), c = a > 0 ? -j : j;
   const double root = b * b - 2 * c * change;
   return root >= 0 ? 2 * change / (b + std::sqrt(root)) : kNever;
+}
+
+// (2): F_brk exp(-(v/v_s)^2) min(|v|/v_seal, 1)
+LineForceLaw::Coefficient LineForceLaw::breakaway_at(double speed) const noexcept {
+  const double ratio = speed / def_.stribeck_speed, left = def_.breakaway_friction * std::exp(-ratio * ratio);
+  const double share = std::fmin(speed / def_.seal_speed, 1.0),
+               growth = speed < def_.seal_speed ? 1 / def_.seal_speed : 0;
+  return {left * share, left * (growth - 2 * share * ratio / def_.stribeck_speed)};
 }
 
 double LineForceLaw::friction(double F, double v) const noexcept {

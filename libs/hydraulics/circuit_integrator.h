@@ -49,7 +49,8 @@ struct ActuatorLinearisation {
   double D = 0;          // N s/m
   double stiffness = 0;  // N/m, K of the oil columns, also for lines
   double lambda = 0;     // 1/s
-  // chamber A, chamber B, brake; F_dot, K and lambda are their sums and weighted mean. Zero for lines
+  // chamber A, chamber B, brake or stop between two stages; F_dot, K and lambda are their sums and weighted mean. Zero
+  // for lines
   std::array<math::RelaxingSpring, 3> springs;
   double x = 0;             // m, the circuit's own piston position
   double v = 0;             // m/s

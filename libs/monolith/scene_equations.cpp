@@ -162,6 +162,7 @@ void SceneEquations::neglect_dry_friction() {
     def.friction_curve.clear();
     def.efficiency = 1;
     def.seal_friction = 0;
+    def.breakaway_friction = 0;
     port.law = coupling::LineForceLaw(def);
   }
   for (multibody::Row& row : model_.rows) row.law.coulomb = row.law.bristle_stiffness = 0;
@@ -208,6 +209,10 @@ Status SceneEquations::start(std::span<double> y) {
   std::vector<double> mobility;
   if (start_ == hydraulics::StartState::equilibrium) {
     if (const Status status = find_static_forces(F_, mobility); !status.is_ok()) return status;
+  }
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    const auto position = static_cast<std::size_t>(circuit_->position(static_cast<int>(i)));
+    circuit_y_[position] = ports_[i].offset + ports_[i].ratio * workspace_.row_x[i];
   }
   circuit_->start(F_, circuit_y_, mobility);
   if (circuit_->has_temperatures()) circuit_->start_heat(circuit_y_.data());

@@ -47,7 +47,10 @@ PortDef port_of(const std::string& name, const hydraulics::ActuatorDef& actuator
   port.line_force.stop_stiffness = actuator.line_force.end_stiffness;
   port.line_force.stop_damping = actuator.line_force.end_damping;
   port.line_force.seal_speed = actuator.line_force.seal_speed;
+  port.line_force.breakaway_friction = actuator.line_force.breakaway_friction;
+  port.line_force.stribeck_speed = actuator.line_force.stribeck_speed;
   port.unit = static_cast<coupling::PortUnit>(actuator.coordinate.unit);
+  port.has_stages = actuator.has_stages;
   if (actuator.line_force.friction_curve.empty() &&
       actuator.line_force.friction_without_curve == hydraulics::FrictionWithoutCurve::constant) {
     port.line_force.friction_curve = {{0, 0}, {actuator.line_force.seal_speed, 1}};
@@ -131,6 +134,9 @@ std::string_view obstacle_of(const PortDef& port, coupling::Level level) noexcep
   if (level != coupling::Level::tlm) return "";
   if (port.unit == coupling::PortUnit::radian) {
     return "level tlm is not for motors: the oil of one step is a large part of the motor's own";
+  }
+  if (port.has_stages) {
+    return "level tlm is not for telescopic cylinders: the area of their lines would change with the stroke";
   }
   if (port.shares_volume) {
     return "level tlm is not for cylinders that share a volume: the waves between their lines grow at any step";

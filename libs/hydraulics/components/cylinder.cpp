@@ -49,7 +49,9 @@ ActuatorDef actuator_of(const CylinderParameters& common) {
                          .end_stiffness = common.end_stiffness,
                          .end_damping = common.end_damping,
                          .minimum_stroke = common.minimum_stroke,
-                         .maximum_stroke = common.maximum_stroke},
+                         .maximum_stroke = common.maximum_stroke,
+                         .breakaway_friction = common.breakaway_friction,
+                         .stribeck_speed = common.stribeck_speed},
           .coupling = common.coupling};
 }
 
@@ -81,13 +83,13 @@ Cylinder::Cylinder(std::unique_ptr<ComponentDef> def, const CylinderParameters& 
   const double span = common.piston_travel();
   const WallLaw wall{.factor = 0, .lowest = common.bulk_modulus, .highest = common.bulk_modulus};
   builder.add_content({.volume_index = a_,
-                       .volume = common.dead_volume,
+                       .volume = common.dead_volume + common.dead_volume_a,
                        .slope = A_a_,
                        .position = x_,
                        .smallest = kSmallestChamber * A_a_ * span,
                        .wall = wall});
   builder.add_content({.volume_index = b_,
-                       .volume = A_b_ * span + common.dead_volume,
+                       .volume = A_b_ * span + common.dead_volume + common.dead_volume_b,
                        .slope = -A_b_,
                        .position = x_,
                        .smallest = kSmallestChamber * A_b_ * span,

@@ -35,11 +35,15 @@ struct CylinderParameters {
   double cylinder_coefficient = 0.9;  // eta, 1 = no friction
   double seal_friction = 0;           // N
   double viscous_friction = 0;        // N s/m
+  double breakaway_friction = 0;      // N, of the seals at rest beside seal_friction
+  double stribeck_speed = 0.01;       // m/s, at which 1/e of it is left
   double leak_flow = 0;               // m3/s across the piston ...
   double leak_pressure = 100e5;       // Pa ... at this difference
   double end_stiffness = 5e7;         // N/m
   double end_damping = 5e5;           // N s/m
   double dead_volume = 0;             // m3 in each chamber
+  double dead_volume_a = 0;           // m3 in chamber A beside it: its port and lines
+  double dead_volume_b = 0;           // m3 in chamber B beside it
   PortCoupling coupling = PortCoupling::session;
   CushionParameters cushion_a = {}, cushion_b = {};  // at the minimum stroke, at the maximum stroke
 

@@ -20,9 +20,8 @@ constexpr Field cylinder_field(std::string_view key, const FieldOptions& options
   return field<&Def::common, Member>(key, options);
 }
 
-// Connections and piston.
 template <typename Def>
-constexpr auto cylinder_piston_fields() {
+constexpr auto cylinder_connection_fields() {
   using C = CylinderParameters;
   return std::array{
       cylinder_field<Def, &C::force>(
@@ -34,6 +33,13 @@ constexpr auto cylinder_piston_fields() {
           "port_a", {.presence = Presence::required, .reference = "volume", .doc = "volume at port A"}),
       cylinder_field<Def, &C::port_b>(
           "port_b", {.presence = Presence::required, .reference = "volume", .doc = "volume at port B"}),
+  };
+}
+
+template <typename Def>
+constexpr auto cylinder_piston_fields() {
+  using C = CylinderParameters;
+  return std::array{
       cylinder_field<Def, &C::piston_diameter>("piston_diameter", {.dimension = Dimension::length,
                                                                    .range = kPositive,
                                                                    .presence = Presence::required,
@@ -48,6 +54,11 @@ constexpr auto cylinder_piston_fields() {
                                                                  .doc = "inner length of the barrel"}),
   };
 }
+
+template <typename Def>
+inline constexpr ReadBy kReadByBreakaway[] = {
+    {"breakaway_friction", "a breakaway_friction above 0",
+     [](const void* def) noexcept { return static_cast<const Def*>(def)->common.breakaway_friction != 0; }}};
 
 // Stroke, barrel, friction, leak and end dampers.
 template <typename Def>
@@ -72,6 +83,15 @@ constexpr auto cylinder_stroke_fields() {
       cylinder_field<Def, &C::viscous_friction>(
           "viscous_friction",
           {.dimension = Dimension::damping, .range = kNotNegative, .doc = "friction proportional to the speed"}),
+      cylinder_field<Def, &C::breakaway_friction>(
+          "breakaway_friction", {.dimension = Dimension::force,
+                                 .range = kNotNegative,
+                                 .doc = "friction that the seals have near rest beyond seal_friction"}),
+      cylinder_field<Def, &C::stribeck_speed>("stribeck_speed",
+                                              {.dimension = Dimension::velocity,
+                                               .range = kPositive,
+                                               .read_by = kReadByBreakaway<Def>,
+                                               .doc = "speed at which 1/e of breakaway_friction is left"}),
       cylinder_field<Def, &C::leak_flow>("leak_flow", {.dimension = Dimension::volume_flow,
                                                        .range = kNotNegative,
                                                        .change = Change::live,
@@ -88,6 +108,10 @@ constexpr auto cylinder_stroke_fields() {
       cylinder_field<Def, &C::dead_volume>(
           "dead_volume",
           {.dimension = Dimension::volume, .range = kNotNegative, .doc = "oil in each chamber beyond the stroke"}),
+      cylinder_field<Def, &C::dead_volume_a>("dead_volume_a",
+                                             {.dimension = Dimension::volume,
+                                              .range = kNotNegative,
+                                              .doc = "oil in chamber A beside dead_volume: its port and its lines"}),
       cylinder_field<Def, &C::coupling>(
           "coupling", {.change = Change::live,
                        .choices = kPortCouplings,
@@ -166,6 +190,15 @@ constexpr auto cushion_fields() {
   };
 }
 
+// Of chambers that hold oil on both sides.
+template <typename Def>
+constexpr auto cylinder_second_chamber_fields() {
+  return std::array{cylinder_field<Def, &CylinderParameters::dead_volume_b>(
+      "dead_volume_b", {.dimension = Dimension::volume,
+                        .range = kNotNegative,
+                        .doc = "oil in chamber B beside dead_volume: its port and its lines"})};
+}
+
 // Chambers that may have a cushion.
 enum class CushionEnds { a, both };
 
@@ -180,12 +213,13 @@ constexpr auto joined(const std::array<Field, N>&... parts) {
 // A cylinder's whole table.
 template <typename Def, CushionEnds Ends = CushionEnds::both, std::size_t N>
 constexpr auto cylinder_fields(const std::array<Field, N>& geometry) {
-  const auto until_a = joined(cylinder_piston_fields<Def>(), geometry, cylinder_stroke_fields<Def>(),
-                              cushion_fields<Def, &CylinderParameters::cushion_a>());
+  const auto until_a = joined(cylinder_connection_fields<Def>(), cylinder_piston_fields<Def>(), geometry,
+                              cylinder_stroke_fields<Def>(), cushion_fields<Def, &CylinderParameters::cushion_a>());
   if constexpr (Ends == CushionEnds::a) {
     return until_a;
   } else {
-    return joined(until_a, cushion_fields<Def, &CylinderParameters::cushion_b>());
+    return joined(until_a, cushion_fields<Def, &CylinderParameters::cushion_b>(),
+                  cylinder_second_chamber_fields<Def>());
   }
 }
 

@@ -21,12 +21,7 @@ constexpr auto kSingleActingCylinderFields = cylinder_fields<SingleActingCylinde
 void validate_single_acting(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors,
                             Problems& warnings) {
   const SingleActingCylinderDef& def = static_cast<const SingleActingCylinderDef&>(component);
-  for (const VolumeDef& volume : circuit.volumes) {
-    if (volume.name != def.common.port_b || volume.fixed) continue;
-    errors.push_back({def.name + ".port_b",
-                      "the open side is not open: '" + volume.name + "' is not held at a fixed pressure",
-                      "a volume with fixed: true, or a double_acting_cylinder", ""});
-  }
+  check_open_side(circuit, def.name, def.common.port_b, errors);
   check_cylinder(circuit, def.name, def.common, 0, errors, warnings);
   check_cushions(def.name, def.common, {}, errors);
 }

@@ -142,6 +142,32 @@ TEST(LineForce, SlopesOfCushionsAgreeWithDifferences) {
   }
 }
 
+LineForceDef stribeck() {
+  LineForceDef def;
+  def.seal_friction = 800, def.breakaway_friction = 500, def.stribeck_speed = 0.02, def.seal_speed = 1e-4;
+  return def;
+}
+
+TEST(SealFriction, FallsFromBreakawayAlongTheStribeckCurveWhateverThePressure) {
+  const LineForceLaw law(stribeck());
+  for (const double F : {-1e5, 0.0, 4e5}) {
+    EXPECT_NEAR(law.friction(F, 1e-3), 800 + 500 * std::exp(-0.0025), 1e-9);
+    EXPECT_NEAR(law.friction(F, -0.02), -800 - 500 / std::exp(1.0), 1e-9);
+    EXPECT_NEAR(law.friction(F, 0.5), 800, 1e-9);
+    EXPECT_EQ(law.friction(F, 0), 0);
+    EXPECT_NEAR(law.friction(F, 5e-5), 0.5 * (800 + 500 * std::exp(-6.25e-6)), 1e-9);
+  }
+}
+
+TEST(SealFriction, SlopesAgreeWithDifferencesAndNeverDrive) {
+  const LineForceLaw law(stribeck());
+  for (const double v : {-0.3, -0.02, -1e-3, -4e-5, 4e-5, 1e-3, 0.01, 0.05}) {
+    const double h = 1e-9, slope = (law.evaluate(1e5, 0, v + h).force - law.evaluate(1e5, 0, v - h).force) / (2 * h);
+    EXPECT_NEAR(law.evaluate(1e5, 0, v).d_speed, slope, 1e-5 * std::fabs(slope) + 1) << v;
+    EXPECT_GT(law.friction(1e5, v) * v, 0) << v;
+  }
+}
+
 TEST(LineForce, TimeToRestReachesTheEdgeOfTheSteepPart) {
   const LineForceLaw law(crane_lift());
   const double edge = 1e-4;
