@@ -99,7 +99,8 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
       return Status::error(ExitCode::failed, std::string(coupling::kNoStaticForces));
     }
     if (scene_.hydraulics.start == hydraulics::StartState::equilibrium) {
-      if (Status status = check_pressures(scene_, *circuit_, {F.data(), m_}, W); !status.is_ok()) return status;
+      if (Status status = check_pressures(scene_, *circuit_, {F.data(), m_}, W, {x.data(), m_}); !status.is_ok())
+        return status;
     }
   }
   integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_}, W);

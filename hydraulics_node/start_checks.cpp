@@ -13,8 +13,8 @@
 namespace slew::hydraulics_node {
 
 Status check_pressures(const scene::Scene& scene, const hydraulics::Circuit& circuit, std::span<const double> F,
-                       std::span<const double> W) {
-  const std::optional<hydraulics::StartDemand> demand = circuit.demand_beyond_limits(F, W);
+                       std::span<const double> W, std::span<const double> x) {
+  const std::optional<hydraulics::StartDemand> demand = circuit.demand_beyond_limits(F, W, x);
   if (!demand) return Status::ok();
   constexpr double kBar = 1e5, kKilo = 1e3;
   const auto actuator = static_cast<std::size_t>(demand->actuator);

@@ -18,7 +18,7 @@ namespace slew::hydraulics_node {
 // The pressures that hold the actuators at rest with the forces F [N] and the mobility W of the ports: the circuit must
 // be able to have them.
 [[nodiscard]] Status check_pressures(const scene::Scene& scene, const hydraulics::Circuit& circuit,
-                                     std::span<const double> F, std::span<const double> W);
+                                     std::span<const double> F, std::span<const double> W, std::span<const double> x);
 
 // An explicit solver at the start state; owner: name of the fastest state. Later the solver's limit is flagged.
 [[nodiscard]] Status check_stability(const hydraulics::ExplicitStability& stability, std::string_view owner);

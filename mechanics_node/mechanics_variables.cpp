@@ -36,6 +36,7 @@ MechanicsVariables::MechanicsVariables(const multibody::Model& model, const std:
       list_.push_back({port.name + force, dimensions.force});
     }
     list_.push_back({port.name + ".static_force_per_kg", dimensions.force_per_mass});
+    if (port.law.has_cushion()) list_.push_back({port.name + ".cushion_force", dimensions.force});
   }
   if (has_partner_age) list_.push_back({"mechanics.partner_age", Dimension::none});
   if (payload > 0) {
@@ -62,6 +63,8 @@ void MechanicsVariables::read(const Instant& instant, PayloadSensitivity& payloa
     values[k++] = instant.ports[i].stop;
     values[k++] = static_force[i];
     values[k++] = slopes[i];
+    const coupling::LineForceLaw& law = instant.ports[i].law;
+    if (law.has_cushion()) values[k++] = law.cushion_force(instant.published.x[i], instant.published.v[i]);
   }
   if (has_partner_age_) values[k++] = static_cast<double>(instant.partner_age);
   if (payload_ > 0) values[k++] = mass;

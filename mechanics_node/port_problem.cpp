@@ -243,6 +243,7 @@ void PortProblem::publish_line_forces(coupling::MechanismSample& sample, std::sp
     port.friction = port.law.friction(port.F, sample.v[i]);
     port.stop = port.law.stop_force(sample.x[i], sample.v[i]);
     sample.F_line[i] = port.F - port.friction + port.stop;
+    if (port.law.has_cushion()) sample.F_line[i] += port.law.cushion_force(sample.x[i], sample.v[i]);
     row_force[i] = port.ratio * sample.F_line[i];
   }
   for (std::size_t i = 0; i < m; ++i) {

@@ -20,7 +20,8 @@ std::string unheld_warning(const scene::Scene& scene, const session::DirectSessi
   const coupling::MechanismSample& mechanism = session.sample(wire::Role::mechanics).mechanism;
   std::vector<double> F(scene.ports.size());
   if (!coupling::static_forces(mechanism.W.span(), mechanism.a_free.span(), F)) return {};
-  const std::vector<double> missing = hydraulics::Circuit(scene.hydraulics).unheld_at_start(F, mechanism.W.span());
+  const std::vector<double> missing =
+      hydraulics::Circuit(scene.hydraulics).unheld_at_start(F, mechanism.W.span(), mechanism.x.span());
   std::string forces;
   for (std::size_t i = 0; i < missing.size(); ++i) {
     if (missing[i] == 0) continue;

@@ -60,6 +60,19 @@ Symbol single_acting_symbol(const ComponentDef& def) {
   return symbol;
 }
 
+// three tubes in each other; the open side stands at the volume of port B
+Symbol telescopic_symbol(const ComponentDef& def) {
+  Symbol symbol{.width = kBarrel + 24, .height = kCylinderHeight, .place = Place::actuator};
+  Pen pen;
+  pen.box({2, kBarrelTop}, 60, kBarrelBottom - kBarrelTop);
+  pen.box({26, kRodAxis - 9}, 60, 18);
+  pen.box({50, kRodAxis - 5}, 60, 10);
+  for (const double x : {12.0, kBarrel - 8}) pen.line({x, x < 60 ? kBarrelBottom : kRodAxis + 9}, {x, kCylinderHeight});
+  add_chambers(symbol, def, 12, kBarrel - 8);
+  symbol.drawing = pen.take();
+  return symbol;
+}
+
 // double piston with a rack under its pinion
 Symbol slew_symbol(const ComponentDef& def) {
   Symbol symbol{.width = 108, .height = 52, .place = Place::actuator};
@@ -108,6 +121,7 @@ Symbol motor_symbol(const ComponentDef& def) {
 constexpr SymbolRow kActuatorRows[] = {{"double_acting_cylinder", double_acting_symbol},
                                        {"double_rod_cylinder", double_rod_symbol},
                                        {"single_acting_cylinder", single_acting_symbol},
+                                       {"telescopic_cylinder", telescopic_symbol},
                                        {"slew_cylinder", slew_symbol},
                                        {"hydraulic_motor", motor_symbol}};
 

@@ -116,6 +116,16 @@ std::vector<std::string> cylinder_figures(const ComponentDef& def) {
   return {std::move(bore), fmt::format("stroke {:.6g} mm", 1e3 * stroke)};
 }
 
+// diameters of the stages, and the stroke
+std::vector<std::string> telescopic_figures(const ComponentDef& def) {
+  std::string diameters;
+  for (const auto& stage : member_of<Table>(def, "stages", FieldType::table)) {
+    diameters += fmt::format("{}{:.6g}", diameters.empty() ? "" : "/", 1e3 * stage[1]);
+  }
+  const double stroke = number_of(def, "maximum_stroke") - number_of(def, "minimum_stroke");
+  return {diameters + " mm", fmt::format("stroke {:.6g} mm", 1e3 * stroke)};
+}
+
 }  // namespace
 
 std::string text_of(const ComponentDef& def, std::string_view key) {
@@ -171,6 +181,7 @@ void turn_over(Symbol& symbol) {
 
 std::vector<std::string> figures_of(const ComponentDef& def) {
   if (is_set(def, "piston_diameter")) return cylinder_figures(def);
+  if (def.type_name() == "telescopic_cylinder") return telescopic_figures(def);
   std::vector<std::string> texts;
   for (const Figure& figure : kFigures) {
     if (figure.type != def.type_name() || !is_set(def, figure.key)) continue;

@@ -5,15 +5,26 @@
 
 #include <string>
 
+#include "core/field.h"
+
 namespace slew::hydraulics {
 
 // Friction that follows the pressure force where friction_curve names no curve: none, or f = 1 from seal_speed on.
 enum class FrictionWithoutCurve { none, constant };
 
+// Cushion at one end of the stroke (math/cushion.h).
+struct EndCushion {
+  double length = 0;        // m, from the end of the stroke; 0: none
+  double entry_length = 0;  // m, way on which the plunger shuts the port
+  double area = 0;          // m2, of the enclosed oil
+  Table throttle = {};      // remaining stroke [m], discharge coefficient times area [m2]
+  bool has_check_valve = true;
+};
+
 // Parameters of the line force, evaluated in port space by both sides of the coupling:
-//   F_line = F - F_mu + F_stop,  F = p_A A_A - p_B A_B
-//   F_mu   = (|F| (1 - cylinder_coefficient) f(|v|) + seal_friction f_0(v)) sgn v + viscous_friction v
-//   F_stop = max(0, end_stiffness d + end_damping d') at either end, pushing only
+//   F_line = F - F_mu + F_stop + F_c,  F = p_A A_A - p_B A_B;  F_c: brake of the end cushions
+//   F_mu   = (|F| (1 - cylinder_coefficient) f(|v|) + (seal_friction + F_brk exp(-(v/v_s)^2)) f_0(v)) sgn v +
+//   viscous_friction v F_stop = max(0, end_stiffness d + end_damping d') at either end, pushing only
 struct LineForceParameters {
   std::string friction_curve;       // coefficient f over piston speed, m/s
   double cylinder_coefficient = 1;  // eta
@@ -25,6 +36,9 @@ struct LineForceParameters {
   double maximum_stroke = 0;        // m
   double seal_speed = 1e-4;         // m/s, speed from which on the seal friction is fully there
   FrictionWithoutCurve friction_without_curve = FrictionWithoutCurve::none;
+  double breakaway_friction = 0;                          // F_brk [N]
+  double stribeck_speed = 0.01;                           // v_s [m/s]
+  EndCushion minimum_cushion = {}, maximum_cushion = {};  // of chambers A and B
 };
 
 // Coupling level of the actuator's power port: a level of its own or the session's. coupling/level.h defines the
@@ -57,6 +71,7 @@ struct ActuatorDef {
   LineForceParameters line_force = {};
   PortCoupling coupling = PortCoupling::session;
   StartRule start = StartRule::return_pressure;
+  bool has_stages = false;  // the areas are the largest, and fall with the stroke (staged_area.h)
   // typical sizes, for the error measure
   double position_scale = 1e-3;  // m: at rtol 1e-4 an error of 0.1 um, a few newtons of oil spring
   double speed_scale = 0.1;      // m/s

@@ -209,7 +209,7 @@ void Circuit::to_pressure_rates(std::size_t volume, const Capacity& C, double ra
   for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
     const Piece& piece = pieces_[k];
     if (piece.position < 0 || piece.is_closed(y)) continue;
-    row[piece.position] -= share * piece.lumped * piece.slope * (C.oil + piece.wall_at(y[volume]).value);
+    row[piece.position] -= share * piece.lumped * piece.growth_at(y) * (C.oil + piece.wall_at(y[volume]).value);
   }
 }
 
@@ -239,7 +239,7 @@ void Circuit::pressure_forces(const double* y, double* F) const noexcept {
   for (std::size_t j = 0; j < actuators_.size(); ++j) {
     const Actuator& actuator = actuators_[j];
     F[j] = pressure(actuator.port_a, y).value * actuator.area_a - pressure(actuator.port_b, y).value * actuator.area_b;
-    if (actuator.setting.state >= 0) F[j] *= y[actuator.setting.state];
+    if (actuator.has_share()) F[j] *= actuator.setting_at(y);
     if (actuator.brake.state >= 0) F[j] += actuator.brake_at(y);
   }
 }

@@ -90,16 +90,18 @@ class Circuit {
   [[nodiscard]] double pressure_floor() const noexcept { return floor_; }  // Pa absolute; below, the oil cavitates
   [[nodiscard]] double lowest_pressure() const noexcept { return oil_.lowest_pressure(); }
 
-  // start states [y without x and v; the caller sets those]
+  // start states [y without x and v; the caller sets those, x before: areas of stages follow it]
   // Equilibrium: the pressures hold F (start_pressures.h), W is the mobility of the actuators' coordinates, empty
   // where each has its own. Components with states of their own begin at rest under these pressures.
   void start_in_equilibrium(std::span<const double> F, std::span<double> y, std::span<const double> W = {}) const;
   // Part of F that the pressures of common volumes cannot hold, by actuator [N or Nm]. Allocates.
-  [[nodiscard]] std::vector<double> unheld_at_start(std::span<const double> F, std::span<const double> W) const;
+  [[nodiscard]] std::vector<double> unheld_at_start(std::span<const double> F, std::span<const double> W,
+                                                    std::span<const double> x = {}) const;
   // The volume whose start pressure exceeds its limit most: above the pressure at which its relief and shock valves are
   // fully open, above kMostHeld without any, or below zero. None: all hold.
   [[nodiscard]] std::optional<StartDemand> demand_beyond_limits(std::span<const double> F,
-                                                                std::span<const double> W = {}) const;
+                                                                std::span<const double> W = {},
+                                                                std::span<const double> x = {}) const;
   void start_at_initial_pressures(std::span<double> y) const;
   // The start that the Def selects.
   void start(std::span<const double> F, std::span<double> y, std::span<const double> W = {}) const;
@@ -240,11 +242,23 @@ class Circuit {
     bool has_constant_wall = true;
     double wall_compressibility = 0;  // 1/Pa, when constant
 
-    [[nodiscard]] bool is_closed(const double* y) const noexcept { return volume + slope * y[position] <= smallest; }
+    [[nodiscard]] bool is_closed(const double* y) const noexcept { return unbound_content(y[position]) <= smallest; }
     [[nodiscard]] double content_at(const double* y) const noexcept {
       if (position < 0) return volume;
-      const double V = volume + slope * y[position];
+      const double V = unbound_content(y[position]);
       return V > smallest ? V : smallest;
+    }
+    [[nodiscard]] double unbound_content(double x) const noexcept {
+      return stages == nullptr ? volume + slope * x : volume + stages->content_at(x);
+    }
+    // dV/dx
+    [[nodiscard]] double growth_at(const double* y) const noexcept {
+      return stages == nullptr ? slope : stages->area_at(y[position]).value;
+    }
+    // Oil that a displacement from y takes in: of stages by the contents at both ends.
+    [[nodiscard]] double swept(const double* y, double dx) const noexcept {
+      if (stages == nullptr) return sweep_at(y) * dx;
+      return stages->content_at(y[position] + dx) - stages->content_at(y[position]);
     }
     [[nodiscard]] ValueSlope wall_at(double p) const noexcept {
       return has_constant_wall ? ValueSlope{wall_compressibility, 0} : elastic_wall_at(p);

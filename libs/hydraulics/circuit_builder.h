@@ -10,6 +10,7 @@
 
 #include "hydraulics/component.h"
 #include "hydraulics/hydraulics_def.h"
+#include "hydraulics/staged_area.h"
 
 namespace slew::hydraulics {
 
@@ -30,16 +31,32 @@ struct Content {
   double swept_by_position = 0;  // m2, oil that leaves per x where it is not `slope`: a motor's displacement
   StateIndex setting = -1;       // state that scales swept_by_position; -1: none
   WallLaw wall = {};
+  const StagedArea* stages = nullptr;  // V = volume + content of the stages at x, in the place of slope x; null: none
 
   // Oil that leaves the volume per x [m2], at full setting and at the state y.
   [[nodiscard]] double sweep() const noexcept { return swept_by_position != 0 ? swept_by_position : slope; }
-  [[nodiscard]] double sweep_at(const double* y) const noexcept { return setting < 0 ? sweep() : sweep() * y[setting]; }
+  [[nodiscard]] double sweep_at(const double* y) const noexcept {
+    if (stages != nullptr) return stages->area_at(y[position]).value;
+    return setting < 0 ? sweep() : sweep() * y[setting];
+  }
 };
 
 // A displacement that changes while the circuit runs: a state e scales both areas of its actuator.
 struct Setting {
   StateIndex state = -1;  // e, above 0; -1: the areas are constant
   double at_start = 1;    // e that an equilibrium start assumes
+};
+
+// Areas that change with the stroke: those of a telescopic cylinder, on both sides in the same shares.
+struct Stages {
+  const StagedArea* area = nullptr;  // null: none
+  StateIndex position = -1;
+
+  // Share of the largest area, and its slope over the stroke [1/m].
+  [[nodiscard]] ValueSlope share_at(const double* y) const noexcept {
+    const ValueSlope A = area->area_at(y[position]);
+    return {A.value / area->largest(), A.slope / area->largest()};
+  }
 };
 
 // A brake on an actuator. Its state b is the brake's force in shares of `force`.
@@ -60,8 +77,14 @@ struct Actuator {
   double position_scale = 1, speed_scale = 1;  // m, m/s, typical sizes
   Setting setting = {};
   Brake brake = {};
+  Stages stages = {};
 
-  [[nodiscard]] double setting_at(const double* y) const noexcept { return setting.state < 0 ? 1 : y[setting.state]; }
+  // e: share of the areas that acts at y.
+  [[nodiscard]] bool has_share() const noexcept { return setting.state >= 0 || stages.area != nullptr; }
+  [[nodiscard]] double setting_at(const double* y) const noexcept {
+    if (stages.area != nullptr) return stages.share_at(y).value;
+    return setting.state < 0 ? 1 : y[setting.state];
+  }
   [[nodiscard]] double brake_at(const double* y) const noexcept {
     return brake.state < 0 ? 0 : brake.force * y[brake.state];
   }
@@ -110,6 +133,10 @@ class CircuitBuilder {
   [[nodiscard]] StateIndex speed(int actuator) const noexcept { return volume_count_ + actuator_count_ + actuator; }
   void set_setting(int actuator, const Setting& setting) {
     actuators_[static_cast<std::size_t>(actuator)].setting = setting;
+  }
+  // stages: kept by the component.
+  void set_stages(int actuator, const StagedArea* stages) {
+    actuators_[static_cast<std::size_t>(actuator)].stages = {stages, position(actuator)};
   }
   void set_brake(int actuator, const Brake& brake) { actuators_[static_cast<std::size_t>(actuator)].brake = brake; }
   // The volume starts at the pump pressure in an equilibrium start.

@@ -125,6 +125,8 @@ void CircuitIntegrator::start(std::span<const double> x, std::span<const double>
                               std::span<const double> W) noexcept {
   SLEW_CHECK(x.size() == m_ && v.size() == m_ && F.size() == m_);
   for (std::size_t j = 0; j < m_; ++j) circuit_.lump_line(static_cast<int>(j), y_.data());
+  // the areas of stages are those at the stroke
+  std::copy(x.begin(), x.end(), y_.begin() + circuit_.position(0));
   circuit_.start(F, y_, W);
   for (std::size_t j = 0; j < m_; ++j) {
     y_[static_cast<std::size_t>(circuit_.position(static_cast<int>(j)))] = x[j];
@@ -249,15 +251,18 @@ void CircuitIntegrator::stamp_accelerations(const double* y, double* J) noexcept
       const Actuator& actuator = circuit_.actuators()[static_cast<std::size_t>(j)];
       double da_dF = da_dF_[static_cast<std::size_t>(i * m + j)];
       if (actuator.brake.state >= 0) row[actuator.brake.state] += da_dF * actuator.brake.force;
-      if (actuator.setting.state >= 0) {
-        row[actuator.setting.state] += da_dF * at_full_setting(actuator, y);
-        da_dF *= y[actuator.setting.state];
+      double by_stages = 0;
+      if (actuator.setting.state >= 0) row[actuator.setting.state] += da_dF * at_full_setting(actuator, y);
+      if (actuator.stages.area != nullptr) {
+        by_stages = da_dF * at_full_setting(actuator, y) * actuator.stages.share_at(y).slope;
       }
+      if (actuator.has_share()) da_dF *= actuator.setting_at(y);
       if (!circuit_.is_fixed(actuator.port_a))
         row[actuator.port_a] += da_dF * actuator.area_a * circuit_.pressure(actuator.port_a, y).slope;
       if (!circuit_.is_fixed(actuator.port_b))
         row[actuator.port_b] -= da_dF * actuator.area_b * circuit_.pressure(actuator.port_b, y).slope;
       row[circuit_.position(j)] = da_dx_[static_cast<std::size_t>(i * m + j)];
+      if (actuator.stages.area != nullptr) row[circuit_.position(j)] += by_stages;
       row[circuit_.speed(j)] = da_dv_[static_cast<std::size_t>(i * m + j)];
     }
   }
@@ -272,6 +277,10 @@ CircuitIntegrator::PressureForce CircuitIntegrator::pressure_force(const Actuato
     const double e = y[actuator.setting.state];
     force = {e * force.F, e * force.rate + f[actuator.setting.state] * force.F};
   }
+  if (actuator.stages.area != nullptr) {
+    const ValueSlope e = actuator.stages.share_at(y);
+    force = {e.value * force.F, e.value * force.rate + e.slope * f[actuator.stages.position] * force.F};
+  }
   if (actuator.brake.state >= 0) {
     force.F += actuator.brake_at(y);
     force.rate += actuator.brake.force * f[actuator.brake.state];
@@ -279,7 +288,7 @@ CircuitIntegrator::PressureForce CircuitIntegrator::pressure_force(const Actuato
   return force;
 }
 
-// Force of the pressures at a setting of 1.
+// Force of the pressures at a setting of 1, and on the largest areas of stages.
 double CircuitIntegrator::at_full_setting(const Actuator& actuator, const double* y) const noexcept {
   return circuit_.pressure(actuator.port_a, y).value * actuator.area_a -
          circuit_.pressure(actuator.port_b, y).value * actuator.area_b;
@@ -419,15 +428,22 @@ void CircuitIntegrator::publish_force_rate(std::size_t j) noexcept {
   out.F_dot = pressure_force(actuator, y_.data(), f_.data()).rate;
   const double b = -actuator.setting_at(y_.data()) * actuator.area_b *
                    circuit_.pressure(actuator.port_b, y_.data()).slope * f_[at(actuator.port_b)];
-  const double brake = actuator.brake.state < 0 ? 0 : actuator.brake.force * f_[at(actuator.brake.state)];
+  double brake = actuator.brake.state < 0 ? 0 : actuator.brake.force * f_[at(actuator.brake.state)];
+  if (actuator.stages.area != nullptr) {
+    brake = at_full_setting(actuator, y_.data()) * actuator.stages.share_at(y_.data()).slope *
+            y_[at(actuator.stages.position + circuit_.actuator_count())];
+  }
   out.springs[0].F_dot = out.F_dot - b - brake;
   out.springs[1].F_dot = b;
   out.springs[2].F_dot = brake;
 }
 
-// Stiffness of an actuator's brake: its own while it holds, none while it slips.
+// Stiffness of an actuator's brake: its own while it holds, none while it slips. Of stages that of the present stop.
 double CircuitIntegrator::brake_stiffness(int actuator) noexcept {
   const Actuator& braked = circuit_.actuators()[at(actuator)];
+  if (braked.stages.area != nullptr) {
+    return std::max(0.0, -at_full_setting(braked, y_.data()) * braked.stages.share_at(y_.data()).slope);
+  }
   if (braked.brake.state < 0) return 0;
   const double K = circuit_.brake_stiffness(actuator, y_.data());
   const double held = -K * y_[at(circuit_.speed(actuator))];  // rate of its force while it holds

@@ -41,7 +41,8 @@
 
 namespace slew::hydraulics {
 
-using ActuatorSprings = std::array<math::RelaxingSpring, 3>;  // chamber A, chamber B, brake
+// chamber A, chamber B, brake or stop between two stages
+using ActuatorSprings = std::array<math::RelaxingSpring, 3>;
 
 // One actuator's force near (x, v), and its work and impulse in the last step.
 struct ActuatorLinearisation {

@@ -33,7 +33,11 @@ Circuit::Equilibrium Circuit::equilibrium(std::span<const double> F, std::span<c
   Equilibrium found{held_by_brakes(F, y.data()), {}};
   std::vector<double> by_pressure(F.begin(), F.end());
   for (std::size_t j = 0; j < by_pressure.size(); ++j) by_pressure[j] -= found.held_by_brakes[j];
-  found.start = start_pressures({actuators_, is_fixed_, initial_pressure_, start_return_, start_slew_}, by_pressure, W);
+  std::vector<Actuator> at_start = actuators_;
+  for (Actuator& actuator : at_start) {
+    if (actuator.stages.area != nullptr) actuator.setting.at_start = actuator.setting_at(y.data());
+  }
+  found.start = start_pressures({at_start, is_fixed_, initial_pressure_, start_return_, start_slew_}, by_pressure, W);
   return found;
 }
 
@@ -67,15 +71,19 @@ void Circuit::start_in_equilibrium(std::span<const double> F, std::span<double> 
   }
 }
 
-std::vector<double> Circuit::unheld_at_start(std::span<const double> F, std::span<const double> W) const {
+std::vector<double> Circuit::unheld_at_start(std::span<const double> F, std::span<const double> W,
+                                             std::span<const double> x) const {
   std::vector<double> y(static_cast<std::size_t>(size_));
+  std::copy(x.begin(), x.end(), y.begin() + volume_count());
   return equilibrium(F, W, y).start.missing;
 }
 
-std::optional<StartDemand> Circuit::demand_beyond_limits(std::span<const double> F, std::span<const double> W) const {
+std::optional<StartDemand> Circuit::demand_beyond_limits(std::span<const double> F, std::span<const double> W,
+                                                         std::span<const double> x) const {
   std::optional<StartDemand> worst;
   double farthest = 0;
   std::vector<double> y(static_cast<std::size_t>(size_));
+  std::copy(x.begin(), x.end(), y.begin() + volume_count());
   const StartPressures start = equilibrium(F, W, y).start;
   for (std::size_t i = 0; i < is_fixed_.size(); ++i) {
     if (start.actuator[i] < 0 || is_fixed_[i] != 0) continue;

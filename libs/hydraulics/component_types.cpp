@@ -34,6 +34,7 @@
 #include "hydraulics/components/slew_cylinder.h"
 #include "hydraulics/components/sources.h"
 #include "hydraulics/components/spool_valve.h"
+#include "hydraulics/components/telescopic_cylinder.h"
 #include "hydraulics/components/unloading_valve.h"
 
 namespace slew::hydraulics {
@@ -45,6 +46,7 @@ std::span<const ComponentType> component_types() {
       double_acting_cylinder_type(),
       double_rod_cylinder_type(),
       single_acting_cylinder_type(),
+      telescopic_cylinder_type(),
       slew_cylinder_type(),
       hydraulic_motor_type(),
       l90ls_valve_type(),

@@ -100,7 +100,7 @@ double Circuit::chamber_growth(std::size_t volume, const double* y) const noexce
   for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
     const Piece& piece = pieces_[k];
     if (piece.position >= 0 && piece.lumped == 1)
-      dV += piece.sweep_at(y) * displacement_[static_cast<std::size_t>(piece.position - volume_count())];
+      dV += piece.swept(y, displacement_[static_cast<std::size_t>(piece.position - volume_count())]);
   }
   return dV;
 }

@@ -162,6 +162,7 @@ void SceneEquations::neglect_dry_friction() {
     def.friction_curve.clear();
     def.efficiency = 1;
     def.seal_friction = 0;
+    def.breakaway_friction = 0;
     port.law = coupling::LineForceLaw(def);
   }
   for (multibody::Row& row : model_.rows) row.law.coulomb = row.law.bristle_stiffness = 0;
@@ -208,6 +209,10 @@ Status SceneEquations::start(std::span<double> y) {
   std::vector<double> mobility;
   if (start_ == hydraulics::StartState::equilibrium) {
     if (const Status status = find_static_forces(F_, mobility); !status.is_ok()) return status;
+  }
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    const auto position = static_cast<std::size_t>(circuit_->position(static_cast<int>(i)));
+    circuit_y_[position] = ports_[i].offset + ports_[i].ratio * workspace_.row_x[i];
   }
   circuit_->start(F_, circuit_y_, mobility);
   if (circuit_->has_temperatures()) circuit_->start_heat(circuit_y_.data());
@@ -393,6 +398,7 @@ void SceneEquations::list_variables() {
     variables_.push_back({port.name + ".line_force", force});
     variables_.push_back({port.name + ".friction_force", force});
     variables_.push_back({port.name + ".end_stop_force", force});
+    if (port.law.has_cushion()) variables_.push_back({port.name + ".cushion_force", force});
   }
   if (circuit_ == nullptr) return;
   const std::span<const ElementVariable> circuit = circuit_->variables();
@@ -406,10 +412,12 @@ void SceneEquations::read_variables(std::span<double> values) {
   multibody::read_reactions(model_, workspace_, row_force_, reactions_,
                             values.subspan(model_variables_, reaction_variables_));
   std::size_t k = model_variables_ + reaction_variables_;
-  for (const PortState& port : port_states_) {
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    const PortState& port = port_states_[i];
     values[k++] = port.line_force;
     values[k++] = port.friction;
     values[k++] = port.stop;
+    if (ports_[i].law.has_cushion()) values[k++] = ports_[i].law.cushion_force(port.x, port.v);
   }
   if (circuit_) circuit_->read_variables(circuit_y_.data(), values.subspan(k));
 }

@@ -13,6 +13,7 @@
 
 #include "coupling/samples.h"
 #include "hydraulics/curve.h"
+#include "hydraulics/end_cushion.h"
 #include "multibody/formulations/dynamics.h"
 
 namespace slew::scene {
@@ -46,7 +47,10 @@ PortDef port_of(const std::string& name, const hydraulics::ActuatorDef& actuator
   port.line_force.stop_stiffness = actuator.line_force.end_stiffness;
   port.line_force.stop_damping = actuator.line_force.end_damping;
   port.line_force.seal_speed = actuator.line_force.seal_speed;
+  port.line_force.breakaway_friction = actuator.line_force.breakaway_friction;
+  port.line_force.stribeck_speed = actuator.line_force.stribeck_speed;
   port.unit = static_cast<coupling::PortUnit>(actuator.coordinate.unit);
+  port.has_stages = actuator.has_stages;
   if (actuator.line_force.friction_curve.empty() &&
       actuator.line_force.friction_without_curve == hydraulics::FrictionWithoutCurve::constant) {
     port.line_force.friction_curve = {{0, 0}, {actuator.line_force.seal_speed, 1}};
@@ -131,6 +135,9 @@ std::string_view obstacle_of(const PortDef& port, coupling::Level level) noexcep
   if (port.unit == coupling::PortUnit::radian) {
     return "level tlm is not for motors: the oil of one step is a large part of the motor's own";
   }
+  if (port.has_stages) {
+    return "level tlm is not for telescopic cylinders: the area of their lines would change with the stroke";
+  }
   if (port.shares_volume) {
     return "level tlm is not for cylinders that share a volume: the waves between their lines grow at any step";
   }
@@ -153,6 +160,8 @@ void make_ports(Scene& scene, Problems& problems) {
     PortDef port = port_of(component->name, *actuator);
     port.shares_volume = chambers[actuator->port_a] > 1 || chambers[actuator->port_b] > 1;
     take_curve(port, actuator->line_force.friction_curve, scene, problems);
+    port.line_force.cushion_min = hydraulics::cushion_law(actuator->line_force.minimum_cushion, scene.hydraulics);
+    port.line_force.cushion_max = hydraulics::cushion_law(actuator->line_force.maximum_cushion, scene.hydraulics);
     check_force(port, actuator->motion, scene, problems);
     scene.ports.push_back(std::move(port));
   }

@@ -44,6 +44,7 @@ struct PortDef {
   coupling::PortLevel level = coupling::PortLevel::session;
   coupling::PortUnit unit = coupling::PortUnit::metre;
   bool shares_volume = false;  // with a chamber of another actuator
+  bool has_stages = false;     // areas fall with the stroke
 };
 
 // A file that belongs to the scene and must be the same on every machine.

@@ -4,11 +4,31 @@
 #include <numbers>
 #include <utility>
 
+#include "hydraulics/end_cushion.h"
+
 namespace slew::hydraulics {
 namespace {
 
 // a chamber squeezed beyond its stop keeps this part of its largest volume, so that the equations stay defined
 constexpr double kSmallestChamber = 1e-3;
+
+EndCushion cushion_of(const CushionParameters& cushion, double piston_diameter, double chamber_area) {
+  if (cushion.length == 0) return {};
+  constexpr double kCircle = 0.25 * std::numbers::pi;
+  const double D = piston_diameter, d = cushion.plunger_diameter;
+  EndCushion end{.length = cushion.length,
+                 .entry_length = cushion.entry_length,
+                 .area = d > 0 ? kCircle * (D * D - d * d) : chamber_area,
+                 .has_check_valve = cushion.flow_back == CushionReturn::check_valve};
+  for (const auto& [remaining, area] : cushion.areas) {
+    end.throttle.push_back({remaining, cushion.discharge_coefficient * area});
+  }
+  if (cushion.areas.empty()) {
+    const double bore = cushion.orifice_diameter;
+    end.throttle.push_back({0, cushion.discharge_coefficient * kCircle * bore * bore});
+  }
+  return end;
+}
 
 }  // namespace
 
@@ -29,8 +49,16 @@ ActuatorDef actuator_of(const CylinderParameters& common) {
                          .end_stiffness = common.end_stiffness,
                          .end_damping = common.end_damping,
                          .minimum_stroke = common.minimum_stroke,
-                         .maximum_stroke = common.maximum_stroke},
+                         .maximum_stroke = common.maximum_stroke,
+                         .breakaway_friction = common.breakaway_friction,
+                         .stribeck_speed = common.stribeck_speed},
           .coupling = common.coupling};
+}
+
+void set_cushions(const CylinderParameters& common, ActuatorDef& actuator) {
+  const double D = common.piston_diameter;
+  actuator.line_force.minimum_cushion = cushion_of(common.cushion_a, D, actuator.area_a);
+  actuator.line_force.maximum_cushion = cushion_of(common.cushion_b, D, actuator.area_b);
 }
 
 Cylinder::Cylinder(std::unique_ptr<ComponentDef> def, const CylinderParameters& common, const ActuatorDef& actuator,
@@ -43,20 +71,25 @@ Cylinder::Cylinder(std::unique_ptr<ComponentDef> def, const CylinderParameters& 
       A_a_(actuator.area_a),
       A_b_(actuator.area_b),
       motion_(actuator.motion),
-      ratio_(actuator.coordinate.ratio) {
+      ratio_(actuator.coordinate.ratio),
+      cushion_a_(cushion_law(actuator.line_force.minimum_cushion, builder.def())),
+      cushion_b_(cushion_law(actuator.line_force.maximum_cushion, builder.def())),
+      minimum_stroke_(common.minimum_stroke),
+      maximum_stroke_(common.maximum_stroke),
+      pressure_floor_(builder.def().pressure_floor) {
   actuator_ = builder.add_actuator(name(), actuator);
   x_ = builder.position(actuator_);
   v_ = builder.speed(actuator_);
   const double span = common.piston_travel();
   const WallLaw wall{.factor = 0, .lowest = common.bulk_modulus, .highest = common.bulk_modulus};
   builder.add_content({.volume_index = a_,
-                       .volume = common.dead_volume,
+                       .volume = common.dead_volume + common.dead_volume_a,
                        .slope = A_a_,
                        .position = x_,
                        .smallest = kSmallestChamber * A_a_ * span,
                        .wall = wall});
   builder.add_content({.volume_index = b_,
-                       .volume = A_b_ * span + common.dead_volume,
+                       .volume = A_b_ * span + common.dead_volume + common.dead_volume_b,
                        .slope = -A_b_,
                        .position = x_,
                        .smallest = kSmallestChamber * A_b_ * span,
@@ -96,6 +129,8 @@ void Cylinder::list_variables(std::vector<ElementVariable>& variables) const {
   variables.push_back(variable("flow_a", Dimension::volume_flow));
   variables.push_back(variable("flow_b", Dimension::volume_flow));
   variables.push_back(variable("leak_flow", Dimension::volume_flow));
+  if (cushion_a_.exists()) variables.push_back(variable("cushion_pressure_a", Dimension::pressure));
+  if (cushion_b_.exists()) variables.push_back(variable("cushion_pressure_b", Dimension::pressure));
 }
 
 double* Cylinder::read_variables(const CircuitView& view, double* values) const noexcept {
@@ -111,7 +146,21 @@ double* Cylinder::read_variables(const CircuitView& view, double* values) const 
   *values++ = v * A_a_;
   *values++ = -v * A_b_;
   *values++ = leak(view);
+  if (cushion_a_.exists()) *values++ = view[a_] + brake_a(view).drop;
+  if (cushion_b_.exists()) *values++ = view[b_] + brake_b(view).drop;
   return values;
+}
+
+void Cylinder::add_passages(const CircuitView& view, Passages& passages) const noexcept {
+  passages.move(a_, b_, leak(view));
+  if (cushion_a_.exists()) passages.add_heat(a_, -brake_a(view).force * view[v_]);
+  if (cushion_b_.exists()) passages.add_heat(b_, brake_b(view).force * view[v_]);
+}
+
+StateIndex Cylinder::first_cavitating(const CircuitView& view) const noexcept {
+  if (cushion_a_.exists() && view[a_] + brake_a(view).drop < pressure_floor_) return a_;
+  if (cushion_b_.exists() && view[b_] + brake_b(view).drop < pressure_floor_) return b_;
+  return -1;
 }
 
 }  // namespace slew::hydraulics

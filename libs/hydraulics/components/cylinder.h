@@ -12,6 +12,7 @@
 #include "hydraulics/components/cylinder_def.h"
 #include "hydraulics/oil_properties.h"
 #include "hydraulics/passages.h"
+#include "math/cushion.h"
 
 namespace slew::hydraulics {
 
@@ -32,12 +33,19 @@ class Cylinder final : public HydraulicComponent {
     fluidity_ = oil.fluidity(a_, b_);
     apply_parameters();
   }
-  // what the piston sweeps does not leave the chambers
-  void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
-    passages.move(a_, b_, leak(view));
-  }
+  // what the piston sweeps does not leave the chambers; the throttle of a cushion heats the oil of its chamber
+  void add_passages(const CircuitView& view, Passages& passages) const noexcept override;
+  // A chamber whose cushion is drawn empty on the way out; -1: none.
+  [[nodiscard]] StateIndex first_cavitating(const CircuitView& view) const noexcept override;
 
  private:
+  // Pressures of the enclosed oil above those of the chambers [Pa].
+  [[nodiscard]] math::CushionBrake brake_a(const CircuitView& view) const noexcept {
+    return cushion_a_.at(view[x_] - minimum_stroke_, -view[v_]);
+  }
+  [[nodiscard]] math::CushionBrake brake_b(const CircuitView& view) const noexcept {
+    return cushion_b_.at(maximum_stroke_ - view[x_], view[v_]);
+  }
   [[nodiscard]] double leak(const CircuitView& view) const noexcept { return G_leak_ * (view[a_] - view[b_]); }
 
   std::unique_ptr<ComponentDef> def_;
@@ -50,13 +58,18 @@ class Cylinder final : public HydraulicComponent {
   StateIndex x_ = 0, v_ = 0;
   double G_leak_ = 0;    // m3/s/Pa
   double fluidity_ = 1;  // of the oil
+  math::Cushion cushion_a_, cushion_b_;
+  double minimum_stroke_, maximum_stroke_;  // m
+  double pressure_floor_;                   // Pa
 };
 
 // The area of a full piston [m2].
 [[nodiscard]] double piston_area(const CylinderParameters& common) noexcept;
 
-// A linear actuator with a full piston on either side; the type's Def puts in what differs.
+// A linear actuator with a full piston on either side; the type's Def puts in what differs, then the cushions.
 [[nodiscard]] ActuatorDef actuator_of(const CylinderParameters& common);
+// Cushions of both chambers, whose areas the actuator has.
+void set_cushions(const CylinderParameters& common, ActuatorDef& actuator);
 
 // Def: the final Def of `component`, with a member `CylinderParameters common`.
 template <typename Def>

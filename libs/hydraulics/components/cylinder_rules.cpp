@@ -12,21 +12,91 @@ constexpr FrictionSpeeds kPistonSpeeds{.greatest = 20, .unit = "m/s"};  // seals
 
 constexpr double kStopPressure = 300e5;  // Pa, load pressure that may press the piston into its stop
 
-// Checks the smallest volume of the chamber, with the piston in its stop and `length` of the chamber left.
-void check_chamber(const std::string& name, const CylinderParameters& c, char port, double area, double length,
-                   const char* key, Problems& errors) {
-  const double piston_area = 0.25 * std::numbers::pi * c.piston_diameter * c.piston_diameter;
-  const double compression = c.end_stiffness > 0 ? kStopPressure * piston_area / c.end_stiffness : 0;
-  const double volume = area * (length - compression) + c.dead_volume;
-  if (volume > 0) return;
-  errors.push_back({name + "." + key,
-                    fmt::format("the volume of chamber {} is not positive over the stroke: {:.4g} l with the stop "
-                                "compressed by {:.3g} mm",
-                                port, volume * 1e3, compression * 1e3),
-                    "a stroke inside the chamber, a stiffer stop or a dead volume", ""});
+// side: "cushion_a" or "cushion_b"
+void check_cushion(const std::string& side, const CushionParameters& cushion, const CylinderParameters& cylinder,
+                   double rod_diameter, Problems& errors) {
+  if (cushion.length == 0) return;
+  const double stroke = cylinder.maximum_stroke - cylinder.minimum_stroke, plunger = cushion.plunger_diameter;
+  if (cushion.length > stroke) {
+    errors.push_back(
+        {side + "_length",
+         fmt::format("the cushion is longer than the stroke: {:.4g} m of {:.4g} m", cushion.length, stroke),
+         "at most maximum_stroke - minimum_stroke", ""});
+  }
+  if (cushion.entry_length > cushion.length) {
+    errors.push_back({side + "_entry_length",
+                      fmt::format("the plunger shuts the port over {:.4g} m, and the cushion has {:.4g} m",
+                                  cushion.entry_length, cushion.length),
+                      "at most the length of the cushion", ""});
+  }
+  if (!(plunger < cylinder.piston_diameter)) {
+    errors.push_back(
+        {side + "_plunger_diameter", "the plunger is not thinner than the piston", "less than piston_diameter", ""});
+  } else if (plunger > 0 && plunger < rod_diameter) {
+    errors.push_back({side + "_plunger_diameter", "the plunger is thinner than the rod that it sits on",
+                      "rod_diameter or more, or 0 for the whole chamber", ""});
+  }
+  if (cushion.areas.empty() == (cushion.orifice_diameter == 0)) {
+    const bool has_none = cushion.areas.empty();
+    errors.push_back({side + "_orifice_diameter",
+                      has_none ? "the cushion has no throttle" : "the throttle has a diameter and a table of areas",
+                      has_none ? "a diameter above 0, or a table of areas" : "one of both", ""});
+  }
+  if (!cushion.areas.empty() && (cushion.areas.front()[0] < 0 || cushion.areas.back()[0] > cushion.length)) {
+    errors.push_back({side + "_areas",
+                      fmt::format("the table is over {:.4g} to {:.4g} m, and the cushion over 0 to {:.4g} m",
+                                  cushion.areas.front()[0], cushion.areas.back()[0], cushion.length),
+                      "remaining strokes from 0 to the length of the cushion", ""});
+  }
 }
 
 }  // namespace
+
+void check_open_side(const HydraulicsDef& circuit, const std::string& name, const std::string& port_b,
+                     Problems& errors) {
+  for (const VolumeDef& volume : circuit.volumes) {
+    if (volume.name != port_b || volume.fixed) continue;
+    errors.push_back({name + ".port_b",
+                      "the open side is not open: '" + volume.name + "' is not held at a fixed pressure",
+                      "a volume with fixed: true, or a double_acting_cylinder", ""});
+  }
+}
+
+void check_connections(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& c,
+                       Problems& errors, Problems& warnings) {
+  if (c.port_a == c.port_b) {
+    errors.push_back({name + ".port_b", "both ports are connected to '" + c.port_a + "'", "two volumes", ""});
+  }
+  check_friction_curve(circuit, name, c.friction_curve, kPistonSpeeds, errors, warnings);
+}
+
+bool check_stroke_order(const std::string& name, const CylinderParameters& c, Problems& errors) {
+  if (c.minimum_stroke < c.maximum_stroke) return true;
+  errors.push_back({name + ".maximum_stroke",
+                    fmt::format("the stroke limits are swapped: minimum {:.4g} m, maximum {:.4g} m", c.minimum_stroke,
+                                c.maximum_stroke),
+                    "more than minimum_stroke", ""});
+  return false;
+}
+
+void check_chamber(const std::string& name, const CylinderParameters& c, const ChamberEnd& end, double piston_area,
+                   Problems& errors) {
+  const double compression = c.end_stiffness > 0 ? kStopPressure * piston_area / c.end_stiffness : 0;
+  const double dead_volume = c.dead_volume + (end.port == 'A' ? c.dead_volume_a : c.dead_volume_b);
+  const double volume = end.area * (end.length - compression) + dead_volume;
+  if (volume > 0) return;
+  errors.push_back({name + "." + end.key,
+                    fmt::format("the volume of chamber {} is not positive over the stroke: {:.4g} l with the stop "
+                                "compressed by {:.3g} mm",
+                                end.port, volume * 1e3, compression * 1e3),
+                    "a stroke inside the chamber, a stiffer stop or a dead volume", ""});
+}
+
+void check_cushions(const std::string& name, const CylinderParameters& cylinder, const RodDiameters& rods,
+                    Problems& errors) {
+  check_cushion(name + ".cushion_a", cylinder.cushion_a, cylinder, rods.a, errors);
+  check_cushion(name + ".cushion_b", cylinder.cushion_b, cylinder, rods.b, errors);
+}
 
 void check_friction_curve(const HydraulicsDef& circuit, const std::string& element, const std::string& name,
                           const FrictionSpeeds& speeds, Problems& errors, Problems& warnings) {
@@ -48,27 +118,19 @@ void check_friction_curve(const HydraulicsDef& circuit, const std::string& eleme
 
 void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& c,
                     double rod_diameter, Problems& errors, Problems& warnings) {
-  if (c.port_a == c.port_b) {
-    errors.push_back({name + ".port_b", "both ports are connected to '" + c.port_a + "'", "two volumes", ""});
-  }
-  check_friction_curve(circuit, name, c.friction_curve, kPistonSpeeds, errors, warnings);
+  check_connections(circuit, name, c, errors, warnings);
   if (!(c.piston_travel() > 0)) {
     errors.push_back(
         {name + ".chamber_length", "the chamber is not longer than the piston", "more than piston_length", ""});
     return;
   }
-  if (!(c.minimum_stroke < c.maximum_stroke)) {
-    errors.push_back({name + ".maximum_stroke",
-                      fmt::format("the stroke limits are swapped: minimum {:.4g} m, maximum {:.4g} m", c.minimum_stroke,
-                                  c.maximum_stroke),
-                      "more than minimum_stroke", ""});
-    return;
-  }
+  if (!check_stroke_order(name, c, errors)) return;
   const double D = c.piston_diameter, d = rod_diameter;
-  check_chamber(name, c, 'A', 0.25 * std::numbers::pi * D * D, c.minimum_stroke, "minimum_stroke", errors);
+  const double piston = 0.25 * std::numbers::pi * D * D;
+  check_chamber(name, c, {'A', piston, c.minimum_stroke, "minimum_stroke"}, piston, errors);
   if (d < D) {
-    check_chamber(name, c, 'B', 0.25 * std::numbers::pi * (D * D - d * d), c.piston_travel() - c.maximum_stroke,
-                  "maximum_stroke", errors);
+    const double ring = 0.25 * std::numbers::pi * (D * D - d * d);
+    check_chamber(name, c, {'B', ring, c.piston_travel() - c.maximum_stroke, "maximum_stroke"}, piston, errors);
   }
 }
 

@@ -31,6 +31,7 @@ void validate_cylinder(const HydraulicsDef& circuit, const ComponentDef& compone
         {def.name + ".rod_diameter", "the rod is not thinner than the piston", "less than piston_diameter", ""});
   }
   check_cylinder(circuit, def.name, def.common, def.rod_diameter, errors, warnings);
+  check_cushions(def.name, def.common, {.a = 0, .b = def.rod_diameter}, errors);
 }
 
 }  // namespace
@@ -40,6 +41,7 @@ std::optional<ActuatorDef> DoubleActingCylinderDef::actuator() const {
   ActuatorDef actuator = actuator_of(common);
   actuator.area_b = 0.25 * std::numbers::pi * (D * D - d * d);
   actuator.coordinate.offset = -(attachment_length + rod_length);
+  set_cushions(common, actuator);
   return actuator;
 }
 

@@ -10,8 +10,8 @@
 //
 // Friction and end stops belong to the line force (see LineForceParameters): the coupling evaluates them in port space.
 // Source: the flexible-body tutorial thesis (Saimaa UAS 2017), table 2, tables 16 to 18. Deviation: friction has a
-// modulus and the sign of the speed; as printed it would create energy. Not covered: mass of piston and oil (the
-// mechanics' dummies carry it), cushioning orifices.
+// modulus and the sign of the speed; as printed it would create energy. Cushions: math/cushion.h. Not covered: mass of
+// piston and oil (the mechanics' dummies carry it).
 #pragma once
 
 #include "hydraulics/component_def.h"

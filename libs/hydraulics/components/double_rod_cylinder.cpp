@@ -32,6 +32,7 @@ void validate_double_rod(const HydraulicsDef& circuit, const ComponentDef& compo
         {def.name + ".rod_diameter", "the rod is not thinner than the piston", "less than piston_diameter", ""});
   }
   check_cylinder(circuit, def.name, def.common, def.rod_diameter, errors, warnings);
+  check_cushions(def.name, def.common, {.a = def.rod_diameter, .b = def.rod_diameter}, errors);
 }
 
 }  // namespace
@@ -42,6 +43,7 @@ std::optional<ActuatorDef> DoubleRodCylinderDef::actuator() const {
   actuator.area_b = actuator.area_a;
   actuator.coordinate.offset = -(attachment_length + rod_length);
   actuator.start = StartRule::mean_pressure;
+  set_cushions(common, actuator);
   return actuator;
 }
 

@@ -8,7 +8,7 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr auto kSingleActingCylinderFields = cylinder_fields<SingleActingCylinderDef>(std::array{
+constexpr auto kSingleActingCylinderFields = cylinder_fields<SingleActingCylinderDef, CushionEnds::a>(std::array{
     field<&SingleActingCylinderDef::rod_length>("rod_length", {.dimension = Dimension::length,
                                                                .range = kNotNegative,
                                                                .presence = Presence::required,
@@ -21,13 +21,9 @@ constexpr auto kSingleActingCylinderFields = cylinder_fields<SingleActingCylinde
 void validate_single_acting(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors,
                             Problems& warnings) {
   const SingleActingCylinderDef& def = static_cast<const SingleActingCylinderDef&>(component);
-  for (const VolumeDef& volume : circuit.volumes) {
-    if (volume.name != def.common.port_b || volume.fixed) continue;
-    errors.push_back({def.name + ".port_b",
-                      "the open side is not open: '" + volume.name + "' is not held at a fixed pressure",
-                      "a volume with fixed: true, or a double_acting_cylinder", ""});
-  }
+  check_open_side(circuit, def.name, def.common.port_b, errors);
   check_cylinder(circuit, def.name, def.common, 0, errors, warnings);
+  check_cushions(def.name, def.common, {}, errors);
 }
 
 }  // namespace
@@ -35,6 +31,7 @@ void validate_single_acting(const HydraulicsDef& circuit, const ComponentDef& co
 std::optional<ActuatorDef> SingleActingCylinderDef::actuator() const {
   ActuatorDef actuator = actuator_of(common);
   actuator.coordinate.offset = -(attachment_length + rod_length);
+  set_cushions(common, actuator);
   return actuator;
 }
 

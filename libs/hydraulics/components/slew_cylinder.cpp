@@ -20,7 +20,9 @@ constexpr auto kSlewCylinderFields = cylinder_fields<SlewCylinderDef>(std::array
 });
 
 void validate_slew(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems& warnings) {
-  check_cylinder(circuit, component.name, static_cast<const SlewCylinderDef&>(component).common, 0, errors, warnings);
+  const CylinderParameters& common = static_cast<const SlewCylinderDef&>(component).common;
+  check_cylinder(circuit, component.name, common, 0, errors, warnings);
+  check_cushions(component.name, common, {}, errors);
 }
 
 }  // namespace
@@ -30,6 +32,7 @@ std::optional<ActuatorDef> SlewCylinderDef::actuator() const {
   actuator.motion = Motion::rotary;
   actuator.coordinate = {.offset = stroke_offset, .ratio = pinion_radius};
   actuator.start = StartRule::mean_pressure;
+  set_cushions(common, actuator);
   return actuator;
 }
 

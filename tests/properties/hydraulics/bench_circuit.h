@@ -26,6 +26,7 @@
 #include "hydraulics/components/single_acting_cylinder.h"
 #include "hydraulics/components/sources.h"
 #include "hydraulics/components/spool_valve.h"
+#include "hydraulics/components/telescopic_cylinder.h"
 #include "hydraulics/components/unloading_valve.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
 
@@ -84,7 +85,8 @@ inline void add_spool_valves(HydraulicsDef& circuit) {
   circuit.curves.push_back({.name = "Edge", .points = {{-1, 0}, {0.1, 0}, {0.4, 0.2}, {1, 1.5}}});
 }
 
-// A motor with a case drain, one without, two of variable displacement with brakes, and a single-acting cylinder.
+// A motor with a case drain, one without, two of variable displacement with brakes, a single-acting and a telescopic
+// cylinder.
 inline void add_actuators(HydraulicsDef& circuit) {
   HydraulicMotorDef& motor = add<HydraulicMotorDef>(circuit, "Motor");
   motor.force = "Ring", motor.port_a = "Vol_C", motor.port_b = "Vol_D", motor.port_c = "Vol_T";
@@ -101,6 +103,10 @@ inline void add_actuators(HydraulicsDef& circuit) {
   plunger.common.force = "Plunger_Force", plunger.common.port_a = "Vol_D", plunger.common.port_b = "Vol_T";
   plunger.common.piston_diameter = 0.06, plunger.common.chamber_length = 0.6, plunger.common.leak_flow = kLeak;
   plunger.common.minimum_stroke = 0.05, plunger.common.maximum_stroke = 0.5;
+  TelescopicCylinderDef& jack = add<TelescopicCylinderDef>(circuit, "Jack");
+  jack.common.force = "Jack_Force", jack.common.port_a = "Vol_C", jack.common.port_b = "Vol_T";
+  jack.stages = {{0.3, 0.08}, {0.6, 0.06}}, jack.stage_transition = 0.1, jack.common.leak_flow = kLeak;
+  jack.common.minimum_stroke = 0.05, jack.common.maximum_stroke = 0.6;
 }
 
 // A flow and a pressure source, a pump with both limits.

@@ -92,6 +92,82 @@ TEST(LineForce, SlopesAgreeWithDifferences) {
   }
 }
 
+// Cushions of 40 mm at both ends, of different areas.
+LineForceDef cushioned_lift() {
+  LineForceDef def = crane_lift();
+  def.cushion_min = {
+      .length = 0.04, .entry = 0.001, .area = 0.02, .transition = 1e4, .conductances = {{0, 2e-7}, {0.04, 6e-7}}};
+  def.cushion_max = {.length = 0.04,
+                     .entry = 0.001,
+                     .area = 0.01,
+                     .transition = 1e4,
+                     .conductances = {{0, 3e-7}},
+                     .has_check_valve = false};
+  return def;
+}
+
+TEST(LineForce, CushionBrakesBeforeEachEndAndOnlyThere) {
+  const LineForceLaw law(cushioned_lift()), bare(crane_lift());
+  EXPECT_FALSE(bare.has_cushion());
+  EXPECT_EQ(bare.cushion_force(0.701, -0.1), 0);
+  // A dp at half of the ways; dp^2 = q^2/2 (q^2 + (q^4 + 4 p_t^2)^(1/2)), q = A v/K, is q^2 + p_t^2/(2 q^2) for q^2 >>
+  // p_t
+  const auto brake = [](double A, double K) {
+    const double q_2 = std::pow(A * 0.05 / K, 2);
+    return A * (q_2 + 1e8 / (2 * q_2));
+  };
+  EXPECT_NEAR(law.cushion_force(0.72, -0.05), brake(0.02, 4e-7), 1e-3);
+  EXPECT_NEAR(law.cushion_force(1.03, 0.05), -brake(0.01, 3e-7), 1e-3);
+  EXPECT_EQ(law.cushion_force(0.72, 0.05), 0);
+  EXPECT_NEAR(law.cushion_force(1.03, -0.05), brake(0.01, 3e-7), 1e-3);
+  for (const double v : {-0.1, 0.1}) EXPECT_EQ(law.cushion_force(0.9, v), 0);
+  for (const double x : {0.69, 0.72, 0.9, 1.03, 1.06}) {
+    for (const double v : {-0.2, 0.0, 0.2}) {
+      const double expected = 2e5 - law.friction(2e5, v) + law.stop_force(x, v) + law.cushion_force(x, v);
+      EXPECT_EQ(law.evaluate(2e5, x, v).force, expected);
+    }
+  }
+}
+
+TEST(LineForce, SlopesOfCushionsAgreeWithDifferences) {
+  const LineForceLaw law(cushioned_lift());
+  const double h = 1e-7;
+  for (const double x : {0.705, 0.7396, 0.9, 1.0104, 1.04}) {
+    for (const double v : {-0.2, -0.03, -1e-3, 1e-3, 0.03, 0.2}) {
+      const LineForce line = law.evaluate(1e5, x, v);
+      const auto force = [&](double dx, double dv) { return law.evaluate(1e5, x + dx, v + dv).force; };
+      EXPECT_NEAR(line.d_position, (force(h, 0) - force(-h, 0)) / (2 * h), 1e-5 * std::fabs(line.d_position) + 1);
+      EXPECT_NEAR(line.d_speed, (force(0, h) - force(0, -h)) / (2 * h), 1e-5 * std::fabs(line.d_speed) + 1);
+    }
+  }
+}
+
+LineForceDef stribeck() {
+  LineForceDef def;
+  def.seal_friction = 800, def.breakaway_friction = 500, def.stribeck_speed = 0.02, def.seal_speed = 1e-4;
+  return def;
+}
+
+TEST(SealFriction, FallsFromBreakawayAlongTheStribeckCurveWhateverThePressure) {
+  const LineForceLaw law(stribeck());
+  for (const double F : {-1e5, 0.0, 4e5}) {
+    EXPECT_NEAR(law.friction(F, 1e-3), 800 + 500 * std::exp(-0.0025), 1e-9);
+    EXPECT_NEAR(law.friction(F, -0.02), -800 - 500 / std::exp(1.0), 1e-9);
+    EXPECT_NEAR(law.friction(F, 0.5), 800, 1e-9);
+    EXPECT_EQ(law.friction(F, 0), 0);
+    EXPECT_NEAR(law.friction(F, 5e-5), 0.5 * (800 + 500 * std::exp(-6.25e-6)), 1e-9);
+  }
+}
+
+TEST(SealFriction, SlopesAgreeWithDifferencesAndNeverDrive) {
+  const LineForceLaw law(stribeck());
+  for (const double v : {-0.3, -0.02, -1e-3, -4e-5, 4e-5, 1e-3, 0.01, 0.05}) {
+    const double h = 1e-9, slope = (law.evaluate(1e5, 0, v + h).force - law.evaluate(1e5, 0, v - h).force) / (2 * h);
+    EXPECT_NEAR(law.evaluate(1e5, 0, v).d_speed, slope, 1e-5 * std::fabs(slope) + 1) << v;
+    EXPECT_GT(law.friction(1e5, v) * v, 0) << v;
+  }
+}
+
 TEST(LineForce, TimeToRestReachesTheEdgeOfTheSteepPart) {
   const LineForceLaw law(crane_lift());
   const double edge = 1e-4;

@@ -86,5 +86,15 @@ TEST(CircuitSymbols, FiguresAreThoseOfTheScene) {
   EXPECT_EQ(figures_of(*def), (std::vector<std::string>{"80/45 mm", "stroke 720 mm"}));
 }
 
+TEST(CircuitSymbols, FiguresOfATelescopicCylinderAreItsStages) {
+  const ComponentType* type = hydraulics::find_component_type("telescopic_cylinder");
+  const auto def = type->make_def();
+  for (const Field& field : type->fields) {
+    if (field.key == "stages") *static_cast<Table*>(field.member(def->address())) = {{0.3, 0.11}, {0.6, 0.09}};
+    if (field.key == "maximum_stroke") *static_cast<double*>(field.member(def->address())) = 0.6;
+  }
+  EXPECT_EQ(figures_of(*def), (std::vector<std::string>{"110/90 mm", "stroke 600 mm"}));
+}
+
 }  // namespace
 }  // namespace slew::diagram

@@ -677,5 +677,32 @@ TEST(Circuit, equilibrium_beyond_its_shock_valves_names_volume_and_valve) {
   EXPECT_NEAR(demand->pressure, 1.001 * limit, 1e-3 * limit);
 }
 
+// Content of a volume at the start state of the crane.
+double content_of(const HydraulicsDef& def, const std::string& volume) {
+  Circuit circuit(def);
+  std::vector<double> y(at(circuit.state_count()));
+  circuit.start_at_initial_pressures(y);
+  for (int j = 0; j < circuit.actuator_count(); ++j) y[at(circuit.position(j))] = kCraneStrokes[j];
+  std::vector<double> values(circuit.variables().size());
+  circuit.read_variables(y.data(), values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (circuit.variables()[i].name == volume + ".content") return values[i];
+  }
+  ADD_FAILURE() << volume;
+  return 0;
+}
+
+TEST(Circuit, each_chamber_has_a_dead_volume_of_its_own) {
+  HydraulicsDef def = crane_circuit();
+  const double a = content_of(def, "Vol_LiftCyl_A"), b = content_of(def, "Vol_LiftCyl_B");
+  for (const auto& component : def.components) {
+    if (component->name != "Cyl_Lift") continue;
+    CylinderParameters& common = static_cast<DoubleActingCylinderDef&>(*component).common;
+    common.dead_volume_a = 3e-4, common.dead_volume_b = 7e-4;
+  }
+  EXPECT_NEAR(content_of(def, "Vol_LiftCyl_A") - a, 3e-4, 1e-12);
+  EXPECT_NEAR(content_of(def, "Vol_LiftCyl_B") - b, 7e-4, 1e-12);
+}
+
 }  // namespace circuit_test
 }  // namespace slew::hydraulics::test
