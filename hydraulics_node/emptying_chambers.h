@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chambers that empty before the next exchange.
 //
-// The mechanics continues the force of a port by its springs (hydraulics/circuit_integrator.h, (2)), which know no
+// The mechanics continues the force of a port by its springs (hydraulics/circuit_integrator.h, (2)), which have no
 // vacuum: a chamber of 20 bar that empties within a fifth of a step would pull with 100 bar at its end. Where F_dot
 // alone takes a chamber below the pressure floor within H, the ports' motion is foreseen by the reduced mechanics,
 //   s'' = a + W dF,   dF_i = sum_c (F_dot_c t - k_c (s_i + sum_d s_d/s_c s_j))                       (1)

@@ -71,7 +71,8 @@ TEST(EmptyingChamber, PullsNoMoreThanTheAtmosphereAndKeepsTheSpeed) {
         // what the pressure does while it falls, of less than 1 ms, is not followed in time
         EXPECT_NEAR(outcome.speed, right, 0.02 * one.speed) << one.mass << " kg, " << one.pressure << " bar, " << step;
         // and a hundredth of what the chamber pushed with
-        EXPECT_GT(outcome.least, -kPull - 0.01 * one.pressure * kPull) << one.mass << " kg, " << one.pressure << " bar, " << step;
+        EXPECT_GT(outcome.least, -kPull - 0.01 * one.pressure * kPull)
+            << one.mass << " kg, " << one.pressure << " bar, " << step;
       }
     }
   }
