@@ -22,6 +22,16 @@ TEST(Display, ShowsQuantitiesInTheUnitsOfTheWorkshop) {
   EXPECT_EQ(quantity_text(-0.0, "N"), "0 kN");
 }
 
+TEST(Display, ShowsEveryUnitOfTheWorkshopByItsDefinition) {
+  EXPECT_EQ(quantity_text(2e5, "Pa/s"), "2 bar/s");
+  EXPECT_EQ(quantity_text(0.25, "m3"), "250 l");
+  EXPECT_EQ(quantity_text(1234, "N m"), "1.234 kN m");
+  EXPECT_EQ(quantity_text(5e7, "N/m"), "50 kN/mm");
+  EXPECT_EQ(quantity_text(4.2e6, "J"), "4200 kJ");
+  EXPECT_EQ(quantity_text(7500, "W"), "7.5 kW");
+  EXPECT_EQ(quantity_text(3.14159265358979323846, "rad/s2"), "180 deg/s2");
+}
+
 // by their names: speeds of joints and bodies, of ports and of cylinders are no shafts
 TEST(Display, ShowsTheSpeedOfAShaftInRevolutionsPerMinute) {
   constexpr double kSpeed = 1500 * 3.14159265358979323846 / 30;
@@ -43,6 +53,11 @@ TEST(Display, WritesAChosenValueAsAPersonWould) {
   EXPECT_EQ(chosen_text(0.1 + 0.2, "kg"), "0.3 kg");
   EXPECT_EQ(chosen_text(250e5, "Pa"), "250 bar");
   EXPECT_EQ(chosen_text(500, "N"), "500 N");
+  EXPECT_EQ(chosen_text(0.063, "m"), "63 mm");
+  EXPECT_EQ(chosen_text(3.14e-4, "m2"), "3.14 cm2");
+  EXPECT_EQ(chosen_text(2.5e-6, "m3"), "2.5 cm3");
+  EXPECT_EQ(chosen_text(46e-6, "m2/s"), "46 cSt");
+  EXPECT_EQ(chosen_text(140e-6 / (2 * 3.14159265358979323846), "m3/rad"), "140 cm3/rev");
   EXPECT_EQ(chosen_text(2.1e6, "kg"), "2100000 kg");
   EXPECT_EQ(chosen_text(-9.80665, "m/s2"), "-9.80665 m/s2");
   EXPECT_EQ(chosen_text(1.0 / 3, "1"), "0.333333") << "no person writes more digits";

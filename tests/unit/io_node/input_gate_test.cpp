@@ -50,6 +50,25 @@ TEST(InputGate, DeadZoneCutsAndScaleHasItsSign) {
   EXPECT_EQ(gate.control(1), -500);
 }
 
+// Two courses of the same mean, at 1.5 of the ramp's 2 per step at most: the next step begins where each has ended.
+TEST(InputGate, TheEndOfARampIsPartOfTheHash) {
+  const auto after = [](const SignalCourse& course) {
+    InputGate gate = crane_gate(0.5e-3);
+    for (StepIndex n = 0; n < 3; ++n) gate.advance(n, held({0.5, 0.5}), 0);
+    gate.advance(3, std::vector<SignalCourse>{course, course}, 0);
+    return gate;
+  };
+  const InputGate level = after({{1, 0.5, 0.5}}), swung = after({{0.5, 0.5, 0.25}, {0.5, 0.25, 1.0}});
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_EQ(level.raw(i), swung.raw(i));
+    ASSERT_EQ(level.control(i), swung.control(i));
+  }
+  StateHash of_level, of_swung;
+  level.add_to(of_level);
+  swung.add_to(of_swung);
+  EXPECT_NE(of_level.digest(), of_swung.digest());
+}
+
 TEST(InputGate, RampTakesItsTimeForAFullStroke) {
   InputGate gate = crane_gate(0.5);
   for (StepIndex n = 0; n < 250; ++n) gate.advance(n, held({0, 1}), 0);

@@ -2,13 +2,17 @@
 // A live parameter that the directory accepts is one that a subsystem takes: nothing is accepted and then ignored.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "build_paths.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "scene/parameters.h"
 #include "scene/scene.h"
+#include "support/mechanics_alone.h"
 
 namespace slew::testing {
 namespace live_parameters_test {
@@ -54,6 +58,56 @@ TEST(LiveParameters, OfJointsWithAndWithoutFrictionAndLimitsAreTakenOrRefused) {
                                     "  Ball: {type: spherical, body1: Rod, body2: Bob}\n",
                                     "joints"),
                    "joints");
+}
+
+// The step that a change is given for is the first one computed with it, and a change over k steps has 1/k of its way
+// in that step: m v = H (sum of the forces so far).
+TEST(LiveParameters, OfMechanicsActInTheStepThatTheyAreGivenFor) {
+  for (const int over : {0, 4}) {
+    SCOPED_TRACE(over);
+    MechanicsAlone m(
+        scene::load_text("mechanics: {gravity: [0, 0, 0]}\n"
+                         "bodies:\n  S: {mass: 2 kg, inertia: [2, 2, 2]}\n"
+                         "joints:\n  R: {type: prismatic, body2: S}\n"
+                         "forces:\n  D: {type: point_force, body: S, axes: ground, direction: [0, 0, 1]}\n"
+                         "session: {step: 1 ms, duration: 1 s}\n",
+                         "push"));
+    double force_sum = 0;
+    for (int n = 0; n < 12; ++n) {
+      if (n == 5) ASSERT_TRUE(m.subsystem.change_parameter(n, {"D.force", 100, milliseconds(over)}));
+      if (n >= 5) force_sum += 100 * std::min(1.0, (n - 5 + 1) / std::max(1.0, static_cast<double>(over)));
+      m.step();
+      EXPECT_NEAR(m.value("R.velocity"), 1e-3 * force_sum / 2, 1e-14) << n;
+    }
+  }
+}
+
+TEST(LiveParameters, OfHydraulicsActInTheStepThatTheyAreGivenFor) {
+  const scene::Scene scene = scene::load_text(
+      "hydraulics: {start_return_pressure: 1 bar}\n"
+      "volumes:\n"
+      "  T: {initial_pressure: 1 bar, fixed: true}\n"
+      "  V: {initial_pressure: 1 bar, fixed: true}\n"
+      "components: {F: {type: flow_source, port_1: T, port_2: V}}\n"
+      "session: {step: 1 ms, duration: 1 s}\n",
+      "source");
+  for (const int over : {0, 4}) {
+    SCOPED_TRACE(over);
+    hydraulics_node::HydraulicsSubsystem hydraulics(scene);
+    coupling::OwnSample sample;
+    ASSERT_TRUE(hydraulics.start({}, sample).is_ok());
+    std::vector<double> values(hydraulics.variables().size());
+    std::size_t flow = 0;
+    while (flow < values.size() && hydraulics.variables()[flow].name != "F.flow") ++flow;
+    ASSERT_LT(flow, values.size());
+    for (int n = 0; n < 12; ++n) {
+      if (n == 5) ASSERT_TRUE(hydraulics.change_parameter(n, {"F.flow", 1e-3, milliseconds(over)}));
+      hydraulics.step(n, {}, {}, sample);
+      hydraulics.read_variables(values);
+      const double share = n < 5 ? 0 : std::min(1.0, (n - 5 + 1) / std::max(1.0, static_cast<double>(over)));
+      EXPECT_NEAR(values[flow], 1e-3 * share, 1e-18) << n;
+    }
+  }
 }
 
 }  // namespace live_parameters_test

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <span>
+#include <vector>
 
 #include "support/crane_pair.h"
 
@@ -146,6 +148,52 @@ joints:
   pendulum.step(0, {}, {}, sample);
   pendulum.mutable_state() = start;
   EXPECT_NE(pendulum.state_hash(), taking_part);
+}
+
+// The copy of the mechanics' model serves until the next exchange. At level hold no piston uses it, so that the circuit
+// is the same with another copy; a level that changes live before the next exchange uses it.
+TEST_F(SubsystemHash, OfHydraulicsHoldsTheModelOfTheMechanicsBetweenExchanges) {
+  const scene::Scene every_fourth = CranePair::load({"session.exchange_every=4", "session.coupling=hold"});
+  for (std::size_t port = 0; port < crane.mechanics_now.mechanism.a_free.size(); ++port) {
+    std::uint64_t hashes[2] = {};
+    std::vector<double> states[2];
+    for (int changed = 0; changed < 2; ++changed) {
+      CranePair pair(every_fourth);
+      pair.start();
+      double& a_free = pair.mechanics_now.mechanism.a_free[port];
+      if (changed == 1) a_free = next(a_free);
+      pair.step(CranePair::levers(pair.n));
+      hashes[changed] = pair.hydraulics->state_hash();
+      const std::span<const double> y = pair.hydraulics->integrator().mutable_state();
+      states[changed].assign(y.begin(), y.end());
+    }
+    EXPECT_EQ(states[0], states[1]) << port;
+    EXPECT_NE(hashes[0], hashes[1]) << port;
+  }
+}
+
+// Between fixed pressures no state of the circuit depends on the signal; the change that the next step expects does.
+TEST(SubsystemHashOfASource, DependsOnTheLastChangeOfItsSignal) {
+  const scene::Scene scene = scene::load_text(R"(
+hydraulics: {start_return_pressure: 1 bar}
+volumes: {T: {initial_pressure: 1 bar, fixed: true}, V: {initial_pressure: 1 bar, fixed: true}}
+components: {F: {type: flow_source, port_1: T, port_2: V, flow_per_signal: 1 l/min}}
+inputs: {I: {type: analog, primitive: F}}
+session: {step: 1 ms, duration: 1 s}
+)",
+                                              "source");
+  std::uint64_t hashes[2] = {};
+  for (int stepped = 0; stepped < 2; ++stepped) {
+    hydraulics_node::HydraulicsSubsystem source(scene);
+    coupling::OwnSample sample;
+    ASSERT_TRUE(source.start({}, sample).is_ok());
+    for (int n = 0; n < 4; ++n) {
+      const double signal[] = {stepped == 1 && n < 3 ? 0.5 : 1.0};
+      source.step(n, {}, signal, sample);
+    }
+    hashes[stepped] = source.state_hash();
+  }
+  EXPECT_NE(hashes[0], hashes[1]);
 }
 
 TEST_F(SubsystemHash, DistinguishesAFailedStateFromAGoodOne) {

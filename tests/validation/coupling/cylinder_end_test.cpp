@@ -14,9 +14,16 @@ namespace cylinder_end_test {
 
 constexpr double kMass = 1000, kSpeed = 1.5;
 
-scene::Scene load(double k, double c, const char* mechanics, const char* level) {
-  char ends[100];
+// stroke of an end, direction of the motion into it, place of the load 0.2 m before it
+struct End {
+  double stroke, direction, start;
+};
+constexpr End kIn = {0.2, -1, 1.3}, kOut = {0.98, 1, 1.68};
+
+scene::Scene load(double k, double c, const char* mechanics, const char* level, const End& end = kIn) {
+  char ends[100], place[100];
   std::snprintf(ends, sizeof ends, "end_stiffness: %.17g N/m, end_damping: %.17g Ns/m}\n", k, c);
+  std::snprintf(place, sizeof place, "Load.position=[0, %.17g, 0]", end.start);
   return scene::load_text(std::string("mechanics: {gravity: [0, 0, 0], ") + mechanics + R"(}
 bodies:
   Load: {position: [0, 1.3 m, 0], mass: 1000 kg, inertia: [0, 0, 0]}
@@ -31,7 +38,8 @@ components:
         rod_diameter: 0.5 mm, piston_length: 0, chamber_length: 1 m, rod_length: 900 mm, attachment_length: 0,
         minimum_stroke: 200 mm, maximum_stroke: 980 mm, bulk_modulus: 1e30 Pa, )" +
                               ends + "session: {duration: 1 s, pace: free, step: 1 ms, coupling: " + level + "}\n",
-                          "cylinder_end");
+                          "cylinder_end",
+                          {place, end.direction < 0 ? "Rail.initial_velocity=-1.5" : "Rail.initial_velocity=1.5"});
 }
 
 double rebound(double k, double c) {
@@ -60,6 +68,21 @@ TEST(CylinderEnd, ThrowsBackAsTheClosedForm) {
           EXPECT_NEAR(run.mechanism().v[0] / kSpeed, rebound(k, c), 0.012);
         }
       }
+    }
+  }
+}
+
+TEST(CylinderEnd, ThrowsBackAtEitherEndOfTheStroke) {
+  for (const End& end : {kIn, kOut}) {
+    for (const double zeta : {0.0, 0.1, 0.9}) {
+      const double k = 1e9, c = 2 * zeta * std::sqrt(k * kMass);
+      SCOPED_TRACE("end at " + std::to_string(end.stroke) + " m, zeta = " + std::to_string(zeta));
+      const scene::Scene scene = load(k, c, "integrator: rk4", "two", end);
+      CoupledRun run(scene);
+      ASSERT_TRUE(run.start().is_ok());
+      ASSERT_NEAR(run.mechanism().x[0], end.stroke - 0.2 * end.direction, 1e-12);
+      for (int n = 0; n < 250; ++n) run.step({});
+      EXPECT_NEAR(run.mechanism().v[0] / kSpeed, -end.direction * rebound(k, c), 0.012);
     }
   }
 }
