@@ -242,8 +242,9 @@ async function recording() {
     const state = await waitFor(`the answer to the seek to ${time} s`, () => client.playback[0]);
     require(state.getUint8(1) === 1 && state.getUint8(14) === 1, "the playback does not stand at the new time");
     require(Number(state.getBigUint64(2, true)) === Math.round(time * 1e9), "the time is another one");
-    await waitFor(`values at ${time} s`, () => Number(client.times.get("/Cyl_Lift")) === Math.round(time * 1e9));
-    const expected = rows.filter(([t]) => t <= time + 1e-9).at(-1)[1];
+    // values have the time of their sample
+    const [sampled, expected] = rows.filter(([t]) => t <= time + 1e-9).at(-1);
+    await waitFor(`values at ${time} s`, () => Number(client.times.get("/Cyl_Lift")) === Math.round(sampled * 1e9));
     require(client.values.get("/Cyl_Lift").stroke === expected,
       `at ${time} s the stroke is ${client.values.get("/Cyl_Lift").stroke}, in the recording ${expected}`);
   }
