@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "cli/terminal.h"
 #include "cli/verbs.h"
@@ -21,6 +22,7 @@
 #include "device_node/input_device.h"
 #include "devices/layout_header.h"
 #include "node/driver.h"
+#include "scene/recorded_files.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 #include "session/survey.h"
@@ -181,7 +183,8 @@ std::unique_ptr<InputDevice> open_receiver(const std::string& name, const std::s
 }
 
 std::unique_ptr<InputDevice> open_of_scene(const DeviceOptions& options) {
-  const scene::Scene scene = scene::load_file(options.scene);
+  scene::Scene scene = scene::load_file(options.scene);
+  place_recorded_files(scene.devices, std::filesystem::path(options.scene).parent_path().string());
   if (const auto* stick = find_device(scene.devices.joysticks, options.device))
     return device_node::open_joystick(*stick, scene.inputs);
   const auto reach = options.is_insecure ? device_node::Reach::network : device_node::Reach::this_machine;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "scene/recorded_files.h"
 #include "scene/scene.h"
 #include "scene_text.h"
 #include "support/temporary_folder.h"
@@ -210,6 +211,36 @@ TEST(DeviceSection, CanSignalsComeFromTheDatabaseAndStayInTheText) {
   EXPECT_EQ(
       problem_of("    - {signal: Panel.Lift, input: Input_Push}\n").find(":15:15: Panel.database: machine.dbc:3: "), 0u)
       << problem_of("    - {signal: Panel.Lift, input: Input_Push}\n");
+}
+
+TEST(DeviceSection, RecordedFilesAreInTheFolderOfTheScene) {
+  const testing::TemporaryFolder folder("recorded_files");
+  const auto stick = [](const std::string& path) {
+    return kPushed + "devices:\n  Stick: {type: joystick, path: " + path +
+           ", block: 2, axes: [{code: ABS_X, channel: 1, lowest: 0, centre: 1, highest: 2}]}\n";
+  };
+  const auto path_of = [&](const std::string& path) {
+    return load_file(folder.write("scene.yaml", stick(path)).string()).devices.joysticks.at(0).path;
+  };
+  folder.write("stick.events", "");
+  EXPECT_EQ(path_of("stick.events"), "stick.events");
+  EXPECT_EQ(path_of("/dev/input/is_plugged_in_later"), "/dev/input/is_plugged_in_later");
+  try {
+    static_cast<void>(path_of("stik.events"));
+    ADD_FAILURE() << "accepted";
+  } catch (const LoadError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("Stick.path: there is no file '" + (folder.path() / "stik.events").string() +
+                        "'; expected a file in the scene's folder"),
+              std::string::npos)
+        << text;
+  }
+  // a session's scene has names alone, and each machine its own folder
+  DevicesDef devices = load_text(stick("stik.events"), "session").devices;
+  place_recorded_files(devices, "there");
+  EXPECT_EQ(devices.joysticks.at(0).path, "there/stik.events");
+  place_recorded_files(devices, ".");
+  EXPECT_EQ(devices.joysticks.at(0).path, "there/stik.events");
 }
 
 TEST(OutputSection, QuantitiesMustFitEachOther) {
