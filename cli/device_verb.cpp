@@ -178,7 +178,7 @@ const Def* find_device(const std::vector<Def>& defs, const std::string& name) {
 std::unique_ptr<InputDevice> open_receiver(const std::string& name, const std::string& address,
                                            const devices::LayoutDef& layout, device_node::Reach reach) {
   scene::UdpInDef def{.name = name, .listen = address, .layout = layout, .enable = {}};
-  def.layout.most_lost = INT32_MAX;  // gaps are shown, not refused
+  def.layout.most_lost = 1'000'000;  // as many as a layout may have: gaps are shown, not refused
   return device_node::open_udp_in(def, reach);
 }
 

@@ -383,14 +383,18 @@ devices:
     type: joystick
     path: stick.events
     axes: [{code: ABS_X, channel: 0, lowest: 0, centre: 512, highest: 1024}]
+  Dash:
+    type: udp_out
+    send: 127.0.0.1:PORT
+    fields: [{name: count, as: uint8, is: sequence}, {name: push, as: float64, variable: Input_Push.raw}]
 """
 
 
 def case_recorded_files(folder, domain):
-    """The file is beside the scene, and every program runs in another folder."""
+    """The file is beside the scene, and every program runs in another folder; a monitor shows what another device sends."""
     os.mkdir(f"{folder}/joy")
     with open(f"{folder}/joy/ball.yaml", "w") as file:
-        file.write(BALL)
+        file.write(BALL.replace("PORT", str(free_port())))
     missing = subprocess.run([SLEWRING, "check", "joy/ball.yaml"], capture_output=True, text=True, cwd=folder,
                              timeout=DEADLINE)
     require(missing.returncode == 2 and "Stick.path: there is no file 'joy/stick.events'" in missing.stderr,
@@ -400,17 +404,23 @@ def case_recorded_files(folder, domain):
     shown = subprocess.run([SLEWRING, "device", "monitor", "Stick", "--scene", "joy/ball.yaml", "--duration", "0.1"],
                            capture_output=True, text=True, cwd=folder, timeout=DEADLINE)
     require(shown.returncode == 0 and "reads joy/stick.events" in shown.stdout, f"{shown.stdout}{shown.stderr}")
+    monitor = subprocess.Popen([SLEWRING, "device", "monitor", "Dash", "--scene", "joy/ball.yaml", "--every", "0"],
+                               stdout=open(f"{folder}/dash.out", "w"), stderr=subprocess.STDOUT, cwd=folder)
     run = subprocess.Popen([SLEWRING, "run", "joy/ball.yaml", "--domain", domain, "--no-record", "--json"],
                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=open(f"{folder}/run.err", "w"),
                            text=True, cwd=folder)
     try:
         wait_for("the end of the events", lambda: "device Stick: the recorded events are over" in
                  text_of(f"{folder}/run.err"))
+        wait_for("the other device's packets", lambda: "push " in text_of(f"{folder}/dash.out") or monitor.poll() is not None)
+        require(monitor.poll() is None, text_of(f"{folder}/dash.out"))
         run.send_signal(signal.SIGINT)
         out, _ = run.communicate(timeout=DEADLINE)
     finally:
         run.kill()
         run.wait()
+        monitor.kill()
+        monitor.wait()
     require(json.loads(out)["devices"]["Stick"]["summary"]["events"]["reports"] == 1, out)
 
 
