@@ -99,7 +99,7 @@ std::vector<NamedVariable> variables_of(const DevicesDef& devices, const Outputs
   }
   for (const UdpOutDef& device : devices.udp_outs) {
     for (const devices::LayoutFieldDef& f : device.layout.fields) {
-      if (!f.variable.empty()) all.push_back({fmt::format("{}.{}.variable", device.name, f.name), f.variable});
+      if (!f.variable.empty()) all.push_back({fmt::format("{}.{}.variable", device.name, f.name), f.variable, f.unit});
     }
   }
   for (const MotionPlatformDef& device : devices.platforms) {
@@ -107,7 +107,7 @@ std::vector<NamedVariable> variables_of(const DevicesDef& devices, const Outputs
     for (const std::string& variable : device.body_variables()) all.push_back({device.name + ".body", variable});
     for (const devices::LayoutFieldDef& f : device.layout.fields) {
       if (f.variable.empty() || device.own_quantity(f) != nullptr) continue;
-      all.push_back({fmt::format("{}.{}.variable", device.name, f.name), f.variable});
+      all.push_back({fmt::format("{}.{}.variable", device.name, f.name), f.variable, f.unit});
     }
   }
   Problems ignored;

@@ -168,6 +168,35 @@ TEST(DeviceSection, WhatAPacketNamesMustExist) {
                  "test:12:71: Dash.fields[0].output: no output 'Lamp'");
 }
 
+TEST(DeviceSection, AFieldOfAVariableIsInItsSiUnit) {
+  const auto dash = [](const std::string& unit) {
+    return "devices:\n  Dash: {type: udp_out, send: 127.0.0.1:9, fields: [{name: a, variable: Ball.position.x, unit: " +
+           unit + "}]}\n";
+  };
+  const std::string place = "test:12:53: Dash.a.unit: ";
+  expect_problem(dash("mm"), place +
+                                 "a variable is sent in SI, not in 'mm'; expected 'unit: m, scale: 0.001' for raw "
+                                 "numbers in mm");
+  expect_problem(dash("bar"), place +
+                                  "a variable is sent in SI, not in 'bar'; expected 'unit: Pa, scale: 100000' for raw "
+                                  "numbers in bar");
+  expect_problem(dash("degC"), place +
+                                   "a variable is sent in SI, not in 'degC'; expected 'unit: K, offset: 273.15' for "
+                                   "raw numbers in degC");
+  expect_problem(dash("zorkmid"), place +
+                                      "there is no unit 'zorkmid'; expected the SI unit of the variable, as m, N "
+                                      "or Pa");
+  expect_problem(dash("mA"), place + "no variable is in 'mA'; expected the SI unit of the variable, as m, N or Pa");
+  // the dimension is compared where the variables are known
+  EXPECT_EQ(variables_of(load_text(kPushed + dash("N m"), "test").devices, {}).at(0).unit, "N m");
+  // an output's numbers are what its other side takes
+  EXPECT_NO_THROW(static_cast<void>(
+      load_text(kPushed + "outputs:\n  Lamp: {type: switched, condition: Ball.position.y > 1 m}\ndevices:\n"
+                          "  Dash: {type: udp_out, send: 127.0.0.1:9, fields: [{name: a, output: Lamp, "
+                          "unit: mA}]}\n",
+                "test")));
+}
+
 TEST(DeviceSection, CanSignalsComeFromTheDatabaseAndStayInTheText) {
   const testing::TemporaryFolder folder("can_section");
   folder.write("machine.dbc",
