@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <filesystem>
 
 #include "cli/terminal.h"
 #include "cli/verbs.h"
@@ -21,6 +23,7 @@
 #include "device_node/input_device.h"
 #include "devices/layout_header.h"
 #include "node/driver.h"
+#include "scene/recorded_files.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 #include "session/survey.h"
@@ -176,12 +179,13 @@ const Def* find_device(const std::vector<Def>& defs, const std::string& name) {
 std::unique_ptr<InputDevice> open_receiver(const std::string& name, const std::string& address,
                                            const devices::LayoutDef& layout, device_node::Reach reach) {
   scene::UdpInDef def{.name = name, .listen = address, .layout = layout, .enable = {}};
-  def.layout.most_lost = INT32_MAX;  // gaps are shown, not refused
+  def.layout.most_lost = 1'000'000;  // as many as a layout may have: gaps are shown, not refused
   return device_node::open_udp_in(def, reach);
 }
 
 std::unique_ptr<InputDevice> open_of_scene(const DeviceOptions& options) {
-  const scene::Scene scene = scene::load_file(options.scene);
+  scene::Scene scene = scene::load_file(options.scene);
+  place_recorded_files(scene.devices, std::filesystem::path(options.scene).parent_path().string());
   if (const auto* stick = find_device(scene.devices.joysticks, options.device))
     return device_node::open_joystick(*stick, scene.inputs);
   const auto reach = options.is_insecure ? device_node::Reach::network : device_node::Reach::this_machine;
@@ -220,11 +224,17 @@ ExitCode monitor(const DeviceOptions& options) {
 
 // ---- calibrate ------------------------------------------------------------------------------------------------
 
-bool has_pressed_enter() {
+// True for Enter. recorded: the motion comes from a file, which has an end of its own.
+bool has_pressed_enter(bool is_recorded) {
   pollfd request{STDIN_FILENO, POLLIN, 0};
   if (::poll(&request, 1, 0) != 1) return false;
   char keys[64];
-  return read(STDIN_FILENO, keys, sizeof keys) > 0;
+  const ssize_t got = read(STDIN_FILENO, keys, sizeof keys);
+  if (got > 0) return true;
+  if (is_recorded || (got < 0 && (errno == EINTR || errno == EAGAIN))) return false;
+  throw Failure(ExitCode::bad_input,
+                "standard input is at its end, and no Enter can come; nothing was written; calibrate in a terminal, or "
+                "state the time for moving the axes with --ends-time");
 }
 
 void print_axes(const std::vector<devices::AxisDef>& axes) {
@@ -271,13 +281,15 @@ ExitCode calibrate(const DeviceOptions& options) {
     const std::int64_t now_ns = monotonic_ns();
     events.clear();
     // a recording that is over leaves its last state
-    if (!source->take(now_ns, events) && source->descriptor() >= 0) {
+    const bool is_over = !source->take(now_ns, events), is_recorded = source->descriptor() < 0;
+    if (is_over && !is_recorded) {
       throw Failure(ExitCode::failed, "the device has left; nothing was written; connect it and begin again");
     }
     take_events(stick, state, events);
     if (state.phase == devices::StickPhase::awaiting_state) static_cast<void>(source->read_state(stick, state));
     // a recording has no counts before its first report
-    if (source->descriptor() < 0 && state.reports == 0) {
+    if (is_recorded && state.reports == 0) {
+      if (is_over) throw Failure(ExitCode::bad_input, "the recorded events have no whole report; nothing was written");
       before_ns = now_ns;
       continue;
     }
@@ -287,19 +299,20 @@ ExitCode calibrate(const DeviceOptions& options) {
       shown = calibration.phase;
       if (shown == devices::CalibrationPhase::ends) {
         ends_ns = now_ns;
-        show(options.ends_time ? "move every axis to its ends" : "move every axis to its ends, then press Enter");
+        show(options.ends_time || is_recorded ? "move every axis to its ends"
+                                              : "move every axis to its ends, then press Enter");
       } else if (shown == devices::CalibrationPhase::rest_again) {
         show("leave the device untouched");
       }
     }
     if (calibration.phase != devices::CalibrationPhase::ends) continue;
-    const bool is_time =
-        options.ends_time ? now_ns - ends_ns >= duration_of_seconds(*options.ends_time).ns : has_pressed_enter();
-    if (!is_time) continue;
+    const bool is_time = options.ends_time ? now_ns - ends_ns >= duration_of_seconds(*options.ends_time).ns
+                                           : has_pressed_enter(is_recorded);
+    if (!is_time && !is_over) continue;
     problems.clear();
     end_of_ends(calibration, problems);
     print_problems(problems);
-    if (!problems.empty() && options.ends_time) {
+    if (!problems.empty() && (options.ends_time || is_over)) {
       throw Failure(ExitCode::bad_input, "not all axes were moved; nothing was written; begin again");
     }
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -55,6 +56,36 @@ ExitCode write_file(const ExportOptions& options, const std::function<Status(con
   require(replace_file(options.output, write));
   if (!is_device) fmt::print("{}\n", options.output);
   return ExitCode::ok;
+}
+
+std::string ending_of(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+// The format by the file's ending where no option states it; a name without an ending is of a table.
+void choose_format(ExportOptions& options) {
+  const std::string ending = ending_of(options.output);
+  if (options.output.starts_with("/dev/")) return;
+  const bool is_stated = options.is_csv || options.is_mat || options.is_input;
+  if (is_stated && options.is_mat != (ending == ".mat") && (ending == ".mat" || ending == ".csv")) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("--{} does not write what '{}' ends in; nothing was written; leave the option out, or "
+                              "give the file another ending",
+                              options.is_mat   ? "mat"
+                              : options.is_csv ? "csv"
+                                               : "input",
+                              options.output));
+  }
+  if (is_stated) return;
+  options.is_mat = ending == ".mat";
+  if (options.is_mat || ending.empty() || ending == ".csv" || ending == ".txt") return;
+  throw Failure(ExitCode::bad_input,
+                fmt::format("'{}' ends neither in .csv nor in .mat, the formats of tables; nothing was written; state "
+                            "--csv or --mat for a file of this name",
+                            options.output));
 }
 
 void check_output(const ExportOptions& options) {
@@ -171,8 +202,7 @@ ExitCode export_lcm(ExportOptions options) {
 
 ExitCode export_variables(ExportOptions options) {
   if (!options.lcm.empty()) return export_lcm(std::move(options));
-  const bool is_named_mat = std::filesystem::path(options.output).extension() == ".mat";
-  options.is_mat = options.is_mat || (is_named_mat && !options.is_csv && !options.is_input);
+  choose_format(options);
   check_output(options);
   std::vector<std::string> patterns = options.variables;
   patterns.insert(patterns.end(), options.only.begin(), options.only.end());
@@ -225,7 +255,8 @@ void add_export(options::Command& program) {
   for (options::Option& option : add_lcm_options(verb, options->for_lcm)) option.needs(lcm);
   verb.option("--from", options->from, "leave out what lies before, such as '2.5 s'").value_name("TIME");
   verb.option("--to", options->to, "leave out what lies behind").value_name("TIME");
-  verb.option("-o,--output", options->output, "file to write; without it standard output").value_name("FILE");
+  verb.option("-o,--output", options->output, "file to write, by its ending .csv or .mat; without it standard output")
+      .value_name("FILE");
   verb.flag("--force", options->may_replace, "replace a file that exists");
   verb.footer(
       "Examples:\n"

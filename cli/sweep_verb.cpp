@@ -12,7 +12,9 @@
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/printable.h"
 #include "core/text_output.h"
+#include "scene/scene.h"
 #include "scene/scene_options.h"
 #include "session/interrupts.h"
 
@@ -76,6 +78,8 @@ ExitCode run_sweep_verb(SweepOptions options) {
   read_sampling(options);
   read_engine(options);
   session::count_interrupts();
+  for (const std::string& warning : scene::load_scene(options.settings.job.scene).warnings)
+    std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
   analysis::ParameterSweep sweep;
   {
     ProgressLine line(options.is_quiet);

@@ -46,14 +46,13 @@ void print_line(const observer::SessionView& view, const std::vector<std::string
   if (step < 0) step = view.step();
   const double time = static_cast<double>(std::max<StepIndex>(0, step) * view.session().step_ns) * 1e-9;
   if (is_json) {
-    Json line = {{"step", step}, {"time", time}};
+    Json line = {{"step", step}, {"time", time}, {"values", Json::object()}};
     for (const std::string& name : names) {
       const observer::VariableView& variable = *view.find(name);
-      if (view.is_left_out(name)) {
-        line["left_out"].push_back(name);
-      } else if (variable.step >= 0) {
-        line["values"][name] = variable.value;
-      }
+      const bool is_left_out = view.is_left_out(name);
+      if (is_left_out) line["left_out"].push_back(name);
+      // null: none has come
+      line["values"][name] = !is_left_out && variable.step >= 0 ? Json(variable.value) : Json();
     }
     fmt::print("{}\n", line.dump());
   } else {
@@ -99,7 +98,7 @@ void add_watch(options::Command& program) {
       .not_negative()
       .value_name("N")
       .show_default();
-  verb.flag("--json", options->is_json, "one JSON object a line, values in SI");
+  verb.flag("--json", options->is_json, "one JSON object a line, values in SI; null where none has come");
   verb.footer(
       "Without --session: the one that runs on the domain.\n\n"
       "Example:\n  slewring watch Cyl_Lift.force 'Bag.position.*' --session truck_crane");

@@ -7,6 +7,10 @@ void add_device_options(options::Command& app, DeviceOptions& options) {
   node::add_session_options(app, options.session, false);
   app.option("--devices", options.file, "file with sections devices and outputs, in the place of those of the scene")
       .value_name("FILE");
+  app.option("--assets", options.assets,
+             "folder of the recorded events and frames that the scene names; those of --devices are beside its file")
+      .value_name("DIR")
+      .show_default();
   app.option("--session-timeout", options.session_timeout, "seconds to wait for the session")
       .between(0.1, 86400.0)
       .value_name("S")

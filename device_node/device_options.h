@@ -7,7 +7,7 @@
 
 namespace slew::device_node {
 
-// --session and the network, --devices, --session-timeout, --insecure-devices.
+// --session and the network, --devices, --assets, --session-timeout, --insecure-devices.
 void add_device_options(options::Command& app, DeviceOptions& options);
 
 }  // namespace slew::device_node

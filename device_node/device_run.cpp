@@ -5,6 +5,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -17,6 +18,7 @@
 #include "node/driver.h"
 #include "node/open_transport.h"
 #include "observer/observer.h"
+#include "scene/recorded_files.h"
 #include "scene/scene.h"
 
 namespace slew::device_node {
@@ -116,6 +118,9 @@ class DeviceRun final : public observer::Receiver {
     const wire::SessionDescription& session = observer_->view().session();
     scene::Scene scene = scene::load_text(session.scene_text, session.scene_name);
     if (!options_.file.empty()) scene = with_devices(scene, options_.file);
+    place_recorded_files(scene.devices, options_.file.empty()
+                                            ? options_.assets
+                                            : std::filesystem::path(options_.file).parent_path().string());
     return scene;
   }
 

@@ -15,6 +15,7 @@ struct DeviceOptions {
   node::SessionOptions session;
   std::string device;           // name in the scene
   std::string file;             // with sections devices and outputs, in the place of those of the session's scene
+  std::string assets = ".";     // folder of the recorded files that the session's scene names
   double session_timeout = 30;  // s
   bool is_insecure = false;     // may receive and send beyond this machine
   bool is_supervised = false;   // publishes signs of life and its summary for `slewring run`

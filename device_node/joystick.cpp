@@ -8,6 +8,7 @@
 #include "device_node/event_source.h"
 #include "device_node/input_device.h"
 #include "scene/defs.h"
+#include "scene/recorded_files.h"
 
 namespace slew::device_node {
 namespace {
@@ -46,7 +47,15 @@ class Joystick final : public InputDevice {
                                     [&](const devices::ButtonDef& b) { return b.code == def.enable.dead_man; });
     dead_man_ = static_cast<std::size_t>(found - buttons.begin());
     look(monotonic_ns());
-    if (source_ == nullptr) add_notice(fmt::format("waiting for {}", missing_));
+    if (source_ != nullptr) return;
+    // only a device can come later
+    if (def.match.empty() && !scene::is_device_file(def.path)) {
+      throw Failure(ExitCode::bad_input,
+                    missing_ +
+                        "; the device was not started; copy the recorded events there, or name their folder with "
+                        "--assets");
+    }
+    add_notice(fmt::format("waiting for {}", missing_));
   }
 
   [[nodiscard]] const std::vector<std::string>& inputs() const noexcept override { return inputs_; }

@@ -51,6 +51,11 @@ constexpr std::size_t kShortestToken = 16;
 std::string read_token(const std::string& path) {
   if (path.empty()) return "";
   std::ifstream file(path);
+  if (!file) {
+    throw Failure(ExitCode::bad_input, fmt::format("--token-file {}: the file cannot be read; nothing was started; "
+                                                   "make one with 'openssl rand -hex 16 > FILE'",
+                                                   path));
+  }
   std::string token;
   std::getline(file, token);
   const bool is_plain = token.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.~") ==
@@ -173,11 +178,16 @@ class LateReceiver final : public observer::Receiver {
 std::unique_ptr<observer::Observer> wait_for_session(const WindowOptions& options, observer::Receiver& receiver) {
   const auto access = options.is_looking_only ? session::Access::look : session::Access::steer;
   const std::int64_t end_ns = monotonic_ns() + duration_of_seconds(options.session_timeout).ns;
+  bool is_reported = false;
   while (true) {
     try {
       return session::find_session(options.session, access, &receiver);
     } catch (const Failure& failure) {
       if (failure.code() != ExitCode::failed || monotonic_ns() > end_ns) throw;
+      // a session that a command starts beside this window is on its way
+      if (!std::exchange(is_reported, true) && options.scene.empty()) {
+        fmt::print(stderr, "no session has been found; the window waits for one for {:g} s\n", options.session_timeout);
+      }
     }
   }
 }

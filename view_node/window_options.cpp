@@ -3,7 +3,28 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
+
+#include "gateway/door.h"
+
 namespace slew::view_node {
+namespace {
+
+std::string problem_of_origin(const std::string& origin) {
+  if (gateway::is_origin(origin)) return "";
+  return "'" + origin +
+         "' is no origin as browsers send it: scheme and name, and a port unless it is the scheme's own, such as "
+         "https://app.foxglove.dev";
+}
+
+std::string problem_of_page(const std::string& folder) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(std::filesystem::path(folder) / "index.html", error)) return "";
+  return "'" + folder + "' has no index.html";
+}
+
+}  // namespace
 
 void add_window_options(options::Command& verb, WindowOptions& options) {
   verb.option("--port", options.port, "TCP port of the page and of the Foxglove protocol; 0: any free one")
@@ -24,6 +45,7 @@ void add_window_options(options::Command& verb, WindowOptions& options) {
       .group("Window");
   verb.option("--allow-origin", options.origins,
               "accept pages of this origin, such as https://app.foxglove.dev; repeat for more")
+      .check(problem_of_origin, "origin")
       .one_value_each()
       .value_name("ORIGIN")
       .group("Window");
@@ -45,6 +67,7 @@ void add_window_options(options::Command& verb, WindowOptions& options) {
       .value_name("REC")
       .group("Window");
   verb.option("--web", options.web, "folder of the page; without it the installed one")
+      .check(problem_of_page, "folder")
       .value_name("DIR")
       .group("Window");
 }

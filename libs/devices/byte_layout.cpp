@@ -44,7 +44,8 @@ constexpr Field kLayoutFieldFields[] = {
                                           .doc = "number of bits; two's complement when the integer is signed"}),
     field<&LayoutFieldDef::scale>("scale", {.doc = "value = scale * raw + offset; not 0"}),
     field<&LayoutFieldDef::offset>("offset", {.doc = "value of a raw 0"}),
-    field<&LayoutFieldDef::unit>("unit", {.doc = "unit of the value, for the header and the note"}),
+    field<&LayoutFieldDef::unit>("unit",
+                                 {.doc = "unit of the value, for the header and the note; of a variable its SI unit"}),
     field<&LayoutFieldDef::lowest>("lowest", {.range = {.min_is_open = false}, .doc = "lowest value that is sent"}),
     field<&LayoutFieldDef::highest>("highest", {.range = {.max_is_open = false}, .doc = "highest value that is sent"}),
     field<&LayoutFieldDef::input>(

@@ -124,6 +124,29 @@ bool is_address(std::string_view text) noexcept {
   return inet_pton(AF_INET, name, bytes) == 1 || inet_pton(AF_INET6, name, bytes) == 1;
 }
 
+bool is_origin(std::string_view text) noexcept {
+  constexpr std::string_view kMark = "://";
+  if (text == "null" || text == "file://") return true;
+  const auto is_of = [](std::string_view part, std::string_view more) {
+    return !part.empty() && std::ranges::all_of(part, [&](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || more.find(c) != std::string_view::npos;
+    });
+  };
+  const std::size_t mark = text.find(kMark);
+  if (mark == std::string_view::npos) return false;
+  const std::string_view scheme = text.substr(0, mark);
+  const std::string_view rest = text.substr(mark + kMark.size());
+  const std::size_t end = rest.starts_with('[') ? rest.find(']') : rest.find(':');
+  const bool is_v6 = rest.starts_with('[') && end != std::string_view::npos;
+  const std::string_view host = is_v6 ? rest.substr(1, end - 1) : rest.substr(0, end);
+  if (!is_of(scheme, "+-.") || !(is_v6 ? is_address(host) : is_of(host, "-._"))) return false;
+  const std::string_view port = end == std::string_view::npos ? "" : rest.substr(is_v6 ? end + 1 : end);
+  if (port.empty()) return true;
+  const bool is_own = (scheme == "http" && port == ":80") || (scheme == "https" && port == ":443");
+  return port.starts_with(':') && port.size() <= 6 && !is_own && port.find_first_not_of("0123456789", 1) == port.npos &&
+         port.size() > 1;
+}
+
 bool is_loopback(std::string_view address) noexcept {
   return is_address(address) && (address.starts_with("127.") || address == "::1");
 }

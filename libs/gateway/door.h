@@ -59,6 +59,10 @@ struct Verdict {
 // The address is of this machine alone: 127.0.0.0/8 or ::1.
 [[nodiscard]] bool is_loopback(std::string_view address) noexcept;
 
+// A text that a browser can send as Origin: "https://app.foxglove.dev", "http://crane:8080", "file://", "null"; with no
+// path, no capital letters, and no port that is the scheme's own.
+[[nodiscard]] bool is_origin(std::string_view text) noexcept;
+
 // An IPv4 or IPv6 address.
 [[nodiscard]] bool is_address(std::string_view text) noexcept;
 

@@ -114,6 +114,8 @@ void Gateway::run_call(const CallPlace& place, Call call, const Json& request, s
       PlaybackControl wanted;
       wanted.is_paused = def_.playback->state(now_ns).status != PlaybackStatus::playing;
       wanted.speed = static_cast<float>(request.at("factor").number());
+      // play() keeps the present one for 0
+      if (wanted.speed == 0) return fail(place, "'factor' is not from 0.01 to 100; nothing was changed");
       return play(place, wanted, now_ns);
     }
     case Call::seek: {

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <map>
+#include <system_error>
 
 #include "scene/device_readers.h"
+#include "scene/recorded_files.h"
 
 namespace slew::scene {
 namespace {
@@ -18,6 +21,11 @@ void check_listeners(const DevicesDef& devices, Problems& problems) {
     problems.push_back({device.name + ".listen", fmt::format("{} is taken by {}", device.listen, first->second),
                         "an address or a port of its own", ""});
   }
+}
+
+// An absolute path stays what it is.
+std::string path_in(const std::string& folder, const std::string& file) {
+  return (std::filesystem::path(folder) / file).lexically_normal().string();
 }
 
 }  // namespace
@@ -48,6 +56,29 @@ void read_devices(DevicesDef& devices, std::span<const InputDef> inputs, Problem
                       fmt::format("at most {}", kMaxDevices), ""});
 }
 
+bool is_device_file(const std::string& path) {
+  return path.starts_with("/dev/");
+}
+
+void place_recorded_files(DevicesDef& devices, const std::string& folder) {
+  const auto place = [&](std::string& path) {
+    if (!path.empty()) path = path_in(folder, path);
+  };
+  for (JoystickDef& device : devices.joysticks) place(device.path);
+  for (CanInDef& device : devices.can_ins) place(device.path);
+}
+
+void check_recorded_files(const DevicesDef& devices, const std::string& folder, Problems& problems) {
+  const auto check = [&](const std::string& device, const std::string& path) {
+    std::error_code error;
+    if (path.empty() || is_device_file(path) || std::filesystem::exists(path_in(folder, path), error)) return;
+    problems.push_back({device + ".path", fmt::format("there is no file '{}'", path_in(folder, path)),
+                        "a file in the scene's folder", ""});
+  };
+  for (const JoystickDef& device : devices.joysticks) check(device.name, device.path);
+  for (const CanInDef& device : devices.can_ins) check(device.name, device.path);
+}
+
 std::vector<NamedVariable> variables_of(const DevicesDef& devices, const OutputsDef& outputs) {
   std::vector<NamedVariable> all;
   const auto add_conditions = [&](const std::string& device, const std::vector<std::string>& conditions) {
@@ -68,7 +99,7 @@ std::vector<NamedVariable> variables_of(const DevicesDef& devices, const Outputs
   }
   for (const UdpOutDef& device : devices.udp_outs) {
     for (const devices::LayoutFieldDef& f : device.layout.fields) {
-      if (!f.variable.empty()) all.push_back({fmt::format("{}.{}.variable", device.name, f.name), f.variable});
+      if (!f.variable.empty()) all.push_back({fmt::format("{}.{}.variable", device.name, f.name), f.variable, f.unit});
     }
   }
   for (const MotionPlatformDef& device : devices.platforms) {
@@ -76,7 +107,7 @@ std::vector<NamedVariable> variables_of(const DevicesDef& devices, const Outputs
     for (const std::string& variable : device.body_variables()) all.push_back({device.name + ".body", variable});
     for (const devices::LayoutFieldDef& f : device.layout.fields) {
       if (f.variable.empty() || device.own_quantity(f) != nullptr) continue;
-      all.push_back({fmt::format("{}.{}.variable", device.name, f.name), f.variable});
+      all.push_back({fmt::format("{}.{}.variable", device.name, f.name), f.variable, f.unit});
     }
   }
   Problems ignored;

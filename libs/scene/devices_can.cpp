@@ -76,7 +76,9 @@ std::vector<Field> make_can_object_fields() {
 
 std::vector<Field> make_can_in_fields() {
   std::vector<Field> fields = {
-      field<&CanInDef::path>("path", {.doc = "file of 'candump -l' in place of an interface, which is played once"}),
+      field<&CanInDef::path>("path",
+                             {.doc = "file of 'candump -l' in the scene's folder, in place of an interface; it is "
+                                     "played once"}),
       field<&CanInDef::timeout>("timeout", {.dimension = Dimension::time,
                                             .range = kSilenceRange,
                                             .doc = "time without a value of a signal after which the inputs go to "

@@ -12,7 +12,7 @@ constexpr Range kJoystickBlockRange{.min = 0, .max = 15, .min_is_open = false, .
 std::vector<Field> make_joystick_fields() {
   std::vector<Field> fields = {
       field<&JoystickDef::path>("path", {.doc = "device file, as /dev/input/event5 or a link in /dev/input/by-id; or a "
-                                                "file of recorded events, which is played once"}),
+                                                "file of recorded events in the scene's folder, which is played once"}),
       field<&JoystickDef::match>("match", {.doc = "name of the device, or a pattern with * and ?; the first one of "
                                                   "/dev/input that fits is taken, also one that is plugged in later"}),
       field<&JoystickDef::block>(

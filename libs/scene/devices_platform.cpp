@@ -132,8 +132,13 @@ void read_platform(MotionPlatformDef& def, Problems& problems) {
   bool moves_something = false;
   for (const devices::PlacedField& placed : layout->fields) {
     const std::string& variable = placed.def.variable;
-    moves_something = moves_something || def.own_quantity(placed.def) != nullptr;
-    if (!variable.starts_with(def.name + ".") || def.own_quantity(placed.def) != nullptr) continue;
+    const devices::PlatformQuantity* const own = def.own_quantity(placed.def);
+    moves_something = moves_something || own != nullptr;
+    if (own != nullptr && !is_same_dimension(placed.def.unit, std::string(own->unit))) {
+      problems.push_back({fmt::format("{}.{}.unit", def.name, placed.def.name),
+                          fmt::format("'{}' is in {}, not in {}", variable, own->unit, placed.def.unit), "", ""});
+    }
+    if (!variable.starts_with(def.name + ".") || own != nullptr) continue;
     const std::string quantity = variable.substr(def.name.size() + 1);
     problems.push_back(
         {fmt::format("{}.{}.variable", def.name, placed.def.name),

@@ -3,6 +3,7 @@
 
 #include "devices/udp_address.h"
 #include "scene/device_readers.h"
+#include "scene/units.h"
 
 namespace slew::scene {
 namespace {
@@ -80,6 +81,25 @@ void read_udp_in(UdpInDef& def, InputUse& use, Problems& problems) {
   }
 }
 
+// Variables are sent in SI: a field's scale and offset make raw numbers in another unit.
+void check_unit_of_variable(const std::string& path, const devices::LayoutFieldDef& f, Problems& problems) {
+  if (f.variable.empty() || f.unit.empty() || f.unit == "1") return;
+  UnitSystem units;
+  const Unit* const unit = units.find(f.unit);
+  if (unit == nullptr || unit->has_other_base) {
+    problems.push_back({path + ".unit",
+                        fmt::format("{} '{}'", unit == nullptr ? "there is no unit" : "no variable is in", f.unit),
+                        "the SI unit of the variable, as m, N or Pa", ""});
+  } else if (unit->scale != 1 || unit->offset != 0) {
+    const std::string si = si_unit_of(unit->exponent);
+    std::string change = fmt::format("unit: {}", si.empty() ? "1" : si);
+    if (unit->scale != 1) change += fmt::format(", scale: {:.15g}", static_cast<double>(unit->scale));
+    if (unit->offset != 0) change += fmt::format(", offset: {:.15g}", static_cast<double>(unit->offset));
+    problems.push_back({path + ".unit", fmt::format("a variable is sent in SI, not in '{}'", f.unit),
+                        fmt::format("'{}' for raw numbers in {}", change, f.unit), ""});
+  }
+}
+
 void check_sent_fields(const std::string& device, const devices::ByteLayout& layout, Problems& problems) {
   bool shows_something = false;
   for (const devices::PlacedField& placed : layout.fields) {
@@ -91,6 +111,7 @@ void check_sent_fields(const std::string& device, const devices::ByteLayout& lay
     if (!f.variable.empty() && !f.output.empty()) {
       problems.push_back({path, "the field has two sources", "variable or output", ""});
     }
+    check_unit_of_variable(path, f, problems);
     if (is_used && !placed.has_value) {
       problems.push_back(
           {path, "a sequence, a checksum or a divided integer has no value", "no variable or output", ""});

@@ -22,7 +22,7 @@ struct LoadContext {
   // The same for the files that nodes read too: those of flexible bodies and of long tables.
   bool has_assets = has_folder;
   std::string asset_folder = folder;
-  std::optional<std::string> device_folder{};  // of databases of devices; none: the text has what they define
+  std::optional<std::string> device_folder{};  // of files of devices; none: the text has what databases define
   bool is_confined = true;                     // files must lie in the folder, except those named on a command line
   bool reads_script = true;                    // only io needs the long tracks of a script
 

@@ -12,6 +12,7 @@
 #include "scene/canonical.h"
 #include "scene/edited_scene.h"
 #include "scene/script_reader.h"
+#include "scene/without_effect.h"
 
 namespace slew::scene {
 namespace {
@@ -150,7 +151,12 @@ Overrides overrides_of(const SceneOptions& options) {
 }
 
 scene::Scene load_scene(const SceneOptions& options) {
-  return with_input(scene::load_file(options.file, overrides_of(options)), options);
+  scene::Scene scene = with_input(scene::load_file(options.file, overrides_of(options)), options);
+  if (options.has_script() && scene.session.duration > 0) {
+    for (std::string& warning : scene::find_unplayed_inputs(scene, "--input " + options.input, scene.session.duration))
+      scene.warnings.push_back(std::move(warning));
+  }
+  return scene;
 }
 
 namespace {

@@ -24,6 +24,7 @@
 #include "scene/parameters.h"
 #include "scene/place_map.h"
 #include "scene/ports.h"
+#include "scene/recorded_files.h"
 #include "scene/script_reader.h"
 #include "scene/sections.h"
 #include "scene/sensors.h"
@@ -329,6 +330,7 @@ class SceneReader {
     check_problems([&](Problems& errors, Problems&) {
       for (CanInDef& device : scene_.devices.can_ins) read_database_of(device, errors);
       for (CanOutDef& device : scene_.devices.can_outs) read_database_of(device, errors);
+      if (load_context_.device_folder) check_recorded_files(scene_.devices, *load_context_.device_folder, errors);
       if (!errors.empty()) return;
       read_outputs(scene_.outputs, errors);
       read_devices(scene_.devices, scene_.inputs, errors);

@@ -182,4 +182,21 @@ void find_points_behind_the_end(const Scene& scene, double end, Problems& warnin
   }
 }
 
+std::vector<std::string> find_unplayed_inputs(const Scene& scene, const std::string& file, double end) {
+  std::vector<std::string> warnings;
+  for (const ScriptTrack& track : scene.script.tracks) {
+    if (track.points.size() < 2 || track.points[1][0] <= end) continue;
+    const double first = track.points.front()[1];
+    const auto change = std::find_if(track.points.begin(), track.points.end(),
+                                     [first](const auto& point) { return point[1] != first; });
+    if (change == track.points.end()) continue;
+    warnings.push_back(
+        fmt::format("{}: {}: the input does not reach its point at {:g} s: the run ends at {:g} s; expected times in "
+                    "s, or a longer "
+                    "duration",
+                    file, track.input, (*change)[0], end));
+  }
+  return warnings;
+}
+
 }  // namespace slew::scene

@@ -87,7 +87,8 @@ std::unique_ptr<ChildProcess> NodePrograms::start(Role role, const std::string& 
 }
 
 std::vector<std::string> NodePrograms::device_arguments(const std::string& name) const {
-  std::vector<std::string> arguments = {"--device", name, "--session", options_.session.session, "--supervised"};
+  std::vector<std::string> arguments = {"--device",     name,       "--session",      options_.session.session,
+                                        "--supervised", "--assets", options_.assets()};
   const std::vector<std::string> network = node::network_arguments(options_.session);
   arguments.insert(arguments.end(), network.begin(), network.end());
   if (options_.are_devices_insecure) arguments.emplace_back("--insecure-devices");

@@ -25,7 +25,8 @@ namespace {
 
 using Points = std::vector<std::vector<double>>;
 
-constexpr double kAtBound = 1e-6;  // distance from a bound, as a part of the range
+constexpr double kInner = 0.38196601;  // part of a range where no whole number or short decimal is met by chance
+constexpr double kAtBound = 1e-6;      // distance from a bound, as a part of the range
 // the same bound as kMostCorrelation, for the variance inflation 1 / (1 - R^2)
 constexpr double kMostInflation = 1 / (1 - kMostCorrelation * kMostCorrelation);
 // a value is part of a combination if it has at least this part of the first one's effect on the signals
@@ -166,19 +167,20 @@ class Fitter {
         refuse_fit("--free " + text + ": " + low.problem->what + "; nothing was run");
       value.low = low.quantity->value;
       value.high = high.quantity->value;
-      for (const double u : {0.0, 1.0}) check_bound(text, value.variation.path + "=" + value.variation.value_at(u));
+      for (const double u : {0.0, 1.0, kInner})
+        check_value(text, value.variation.path + "=" + value.variation.value_at(u));
       start_.push_back(start_of(text, value, units));
       free_.push_back(std::move(value));
     }
   }
 
-  void check_bound(const std::string& text, const std::string& setting) const {
+  void check_value(const std::string& text, const std::string& setting) const {
     scene::SceneOptions options = options_.scene;
     options.overrides.push_back(setting);
     try {
       static_cast<void>(scene::load_scene(options));
     } catch (const scene::LoadError& error) {
-      refuse_fit(fmt::format("--free {}: the scene refuses the bound '{}': {}; nothing was run", text, setting,
+      refuse_fit(fmt::format("--free {}: the scene refuses the value '{}': {}; nothing was run", text, setting,
                              error.diagnostics().front().text()));
     }
   }

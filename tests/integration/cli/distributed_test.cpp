@@ -186,6 +186,11 @@ TEST_F(Distributed, VerbsLookAtAndChangeARunningSession) {
     const CommandResult answered = slewring(arguments);
     EXPECT_EQ(answered.code, 0) << command[0] << answered.err;
     EXPECT_TRUE(answered.out.starts_with("accepted(")) << answered.out;
+    if (command[0] != "pause") continue;
+    // every line has the same members, also where no value has come
+    const CommandResult paused = slewring({"watch", "Bag.position.y", "--count", "1", "--json"});
+    ASSERT_EQ(paused.code, 0) << paused.err;
+    EXPECT_TRUE(nlohmann::json::parse(paused.out).at("values").contains("Bag.position.y")) << paused.out;
   }
   const CommandResult result = session->wait();
   EXPECT_EQ(result.code, 0) << result.err;

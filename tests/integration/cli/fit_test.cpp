@@ -235,7 +235,11 @@ TEST_F(Fit, RefusesBeforeAnyRun) {
   EXPECT_NE(refusal({"--map", "way=Blok.position.x", "--free", free}).find("did you mean 'Block.position.x'?"),
             std::string::npos);
   EXPECT_NE(refusal({"--map", map, "--free", "a=3m/s2..5m/s2"}).find("lies outside of the range"), std::string::npos);
-  EXPECT_NE(refusal({"--map", map, "--free", "Block.mass=-1kg..50kg"}).find("refuses the bound"), std::string::npos);
+  EXPECT_NE(refusal({"--map", map, "--free", "Block.mass=-1kg..50kg"}).find("refuses the value"), std::string::npos);
+  // a whole number does not vary continuously
+  EXPECT_NE(
+      refusal({"--map", map, "--free", "recording.every=1..8"}).find("refuses the value 'recording.every=3.67376"),
+      std::string::npos);
   EXPECT_NE(refusal({"--map", map, "--free", "a=1m/s2..5m/s2:3"}).find("no count"), std::string::npos);
   EXPECT_NE(refusal({"--map", map, "--free", free, "--free", "a=1m/s2..4m/s2"}).find("--free a is given twice"),
             std::string::npos);

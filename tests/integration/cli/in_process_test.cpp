@@ -282,6 +282,11 @@ TEST_F(InProcess, AnExportTakesAPartAndNeverReplacesAFileByItself) {
   ASSERT_EQ(slewring({"export", recording, "-o", "crane.mat", "--force"}).code, 0);
   EXPECT_GT(std::filesystem::file_size(work_.path() / "crane.mat"), size);
   refused({"--mat"}, 2, "a MAT-file needs a name");
+  refused({"-o", "b.xlsx"}, 2, "'b.xlsx' ends neither in .csv nor in .mat, the formats of tables; nothing was written");
+  refused({"-o", "b.MAT", "--csv"}, 2, "--csv does not write what 'b.MAT' ends in; nothing was written");
+  refused({"-o", "b.csv", "--mat"}, 2, "--mat does not write what 'b.csv' ends in; nothing was written");
+  EXPECT_EQ(slewring({"export", recording, "-o", "named.xlsx", "--csv"}).code, 0);
+  EXPECT_EQ(slewring({"export", recording, "-o", "unnamed"}).code, 0);
   refused({"--mat", "--csv", "-o", "b.mat"}, 2, "--csv excludes --mat");
   refused({"Cyl_Lft.force", "-o", "b.mat"}, 2, "there is no variable 'Cyl_Lft.force'; did you mean 'Cyl_Lift.force'?");
   refused({"--from", "2s", "-o", "b.mat"}, 2, "no value of these variables in this time; it goes from 0 to 0.5 s");

@@ -243,6 +243,13 @@ TEST_F(Program, CheckJudgesTheVariablesOfOutputsByNameAndDimension) {
   const CommandResult other = check("Hinge.positon < 10 deg");
   EXPECT_EQ(other.code, 2);
   EXPECT_TRUE(contains(other.err, "did you mean 'Hinge.position'?")) << other.err;
+  // and of fields of packets, whose unit a header names
+  std::ofstream(work_.path() / "packet.yaml")
+      << "include: first_steps.yaml\ndevices:\n  Dash: {type: udp_out, send: "
+         "127.0.0.1:9, fields: [{name: a, variable: Hinge.position, unit: Pa}]}\n";
+  const CommandResult pascal = slewring({"check", "packet.yaml"});
+  EXPECT_EQ(pascal.code, 2);
+  EXPECT_TRUE(contains(pascal.err, "Dash.a.variable: 'Hinge.position' is in rad, not in Pa")) << pascal.err;
 }
 
 TEST_F(Program, CheckAcceptsTheScenesOfTheRepository) {

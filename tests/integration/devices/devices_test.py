@@ -294,13 +294,21 @@ def case_verbs(folder, domain):
     # at rest, to both ends, at rest again
     begin = 1_700_000_000_000_000
     data = report(begin, (EV_ABS, ABS_X, 512), (EV_ABS, ABS_Y, 100))
-    counts = [512] * 3 + [512 - 8 * i for i in range(50)] + [112 + 8 * i for i in range(100)] + [512]
+    counts = [512] * 3 + [512 - 40 * i for i in range(11)] + [112 + 44 * i for i in range(19)] + [512]
     for i, value in enumerate(counts):
-        data += report(begin + 1_300_000 + 5_000 * i, (EV_ABS, ABS_X, value), (EV_ABS, ABS_Y, value // 5))
+        data += report(begin + 1_300_000 + 25_000 * i, (EV_ABS, ABS_X, value), (EV_ABS, ABS_Y, value // 5))
     with open(f"{folder}/stick.events", "wb") as file:
         file.write(data)
-    out = run("calibrate", "stick.events", "--ends-time", "2")
+    # the end of the recorded events ends the motion; standard input is closed and gives no Enter
+    without_enter = subprocess.Popen([SLEWRING, "device", "calibrate", "stick.events"], stdin=subprocess.DEVNULL,
+                                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=folder)
+    try:
+        require("not all axes were moved" in run("calibrate", "stick.events", "--ends-time", "0.1", code=2), "no refusal")
+        out = without_enter.communicate(timeout=DEADLINE)[0]
+    finally:
+        without_enter.kill()
     print(out)
+    require(without_enter.returncode == 0, out)
     require(re.search(r"code: ABS_X, channel: 0, lowest: 112, centre: 512, highest: 904, dead_zone: 0\.[0-9]+", out), out)
     require(re.search(r"code: ABS_Y, channel: 1, lowest: 22, ", out), out)
     out = run("monitor", "stick.events", "--duration", "3", "--every", "0")
@@ -328,6 +336,7 @@ BO_ 257 Load: 8 X
 
 
 def write_panel(folder, bus):
+    os.makedirs(folder, exist_ok=True)
     with open(f"{folder}/machine.dbc", "w") as file:
         file.write(MACHINE)
     with open(f"{folder}/panel.yaml", "w") as file:
@@ -342,15 +351,15 @@ def panel_frame(lift_percent, enable):
 
 
 def case_recorded_can(folder, domain):
-    write_panel(folder, f"path: {folder}/panel.log")
-    with open(f"{folder}/panel.log", "w") as file:
+    write_panel(f"{folder}/panel", "path: panel.log")
+    with open(f"{folder}/panel/panel.log", "w") as file:
         for i in range(200):
             lift = 0 if i < 50 else min(50, i - 50)
             file.write(f"({1700000000 + i // 50}.{20000 * (i % 50):06d}) can0 100#{panel_frame(lift, i >= 25)}\n")
     crane = Crane(folder, domain, "--without-devices")
     try:
         crane.start()
-        device = subprocess.Popen([SLEWRING, "device", "run", "Panel", "--devices", "panel.yaml", "--session",
+        device = subprocess.Popen([SLEWRING, "device", "run", "Panel", "--devices", "panel/panel.yaml", "--session",
                                    "truck_crane_devices", "--domain", domain, "--session-timeout", str(DEADLINE),
                                    "--json"], stdout=open(f"{folder}/panel.out", "w"), stderr=subprocess.STDOUT, cwd=folder)
         wait_for("the end of the frames", lambda: "the recorded frames are over" in text_of(f"{folder}/panel.out"))
@@ -366,6 +375,61 @@ def case_recorded_can(folder, domain):
     require(summary["frames"]["used"] == 200 and summary["inputs"]["latency"]["count"] > 0, f"{summary}")
     raw = value_at_end(result, "Input_Lift.raw")
     require(max(raw) == 0.5 and raw[-1] == 0, f"{max(raw)} {raw[-1]}")
+
+
+BALL = """bodies:
+  Ball: {mass: 2 kg, inertia: [0.1, 0.1, 0.1]}
+joints:
+  Free: {type: floating, body2: Ball}
+forces:
+  Push: {type: point_force, body: Ball, force: 1 N, direction: [1, 0, 0]}
+inputs:
+  Input_Push: {type: analog, primitive: Push, block: 0, channel: 0}
+session: {duration: 0}
+devices:
+  Stick:
+    type: joystick
+    path: stick.events
+    axes: [{code: ABS_X, channel: 0, lowest: 0, centre: 512, highest: 1024}]
+  Dash:
+    type: udp_out
+    send: 127.0.0.1:PORT
+    fields: [{name: count, as: uint8, is: sequence}, {name: push, as: float64, variable: Input_Push.raw}]
+"""
+
+
+def case_recorded_files(folder, domain):
+    """The file is beside the scene, and every program runs in another folder; a monitor shows what another device sends."""
+    os.mkdir(f"{folder}/joy")
+    with open(f"{folder}/joy/ball.yaml", "w") as file:
+        file.write(BALL.replace("PORT", str(free_port())))
+    missing = subprocess.run([SLEWRING, "check", "joy/ball.yaml"], capture_output=True, text=True, cwd=folder,
+                             timeout=DEADLINE)
+    require(missing.returncode == 2 and "Stick.path: there is no file 'joy/stick.events'" in missing.stderr,
+            f"{missing.returncode} {missing.stdout}{missing.stderr}")
+    with open(f"{folder}/joy/stick.events", "wb") as file:
+        file.write(report(1_700_000_000_000_000, (EV_ABS, ABS_X, 768)))
+    shown = subprocess.run([SLEWRING, "device", "monitor", "Stick", "--scene", "joy/ball.yaml", "--duration", "0.1"],
+                           capture_output=True, text=True, cwd=folder, timeout=DEADLINE)
+    require(shown.returncode == 0 and "reads joy/stick.events" in shown.stdout, f"{shown.stdout}{shown.stderr}")
+    monitor = subprocess.Popen([SLEWRING, "device", "monitor", "Dash", "--scene", "joy/ball.yaml", "--every", "0"],
+                               stdout=open(f"{folder}/dash.out", "w"), stderr=subprocess.STDOUT, cwd=folder)
+    run = subprocess.Popen([SLEWRING, "run", "joy/ball.yaml", "--domain", domain, "--no-record", "--json"],
+                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=open(f"{folder}/run.err", "w"),
+                           text=True, cwd=folder)
+    try:
+        wait_for("the end of the events", lambda: "device Stick: the recorded events are over" in
+                 text_of(f"{folder}/run.err"))
+        wait_for("the other device's packets", lambda: "push " in text_of(f"{folder}/dash.out") or monitor.poll() is not None)
+        require(monitor.poll() is None, text_of(f"{folder}/dash.out"))
+        run.send_signal(signal.SIGINT)
+        out, _ = run.communicate(timeout=DEADLINE)
+    finally:
+        run.kill()
+        run.wait()
+        monitor.kill()
+        monitor.wait()
+    require(json.loads(out)["devices"]["Stick"]["summary"]["events"]["reports"] == 1, out)
 
 
 def case_can_utils(folder, domain):
@@ -414,6 +478,7 @@ CASES = {
     "ADeviceRunsWithoutAScene": case_without_a_scene,
     "VerbsWorkWithoutASession": case_verbs,
     "RecordedCanFramesMoveAnInput": case_recorded_can,
+    "RecordedFilesAreBesideTheScene": case_recorded_files,
     "CanUtilsAreTheOtherSide": case_can_utils,
 }
 

@@ -256,6 +256,7 @@ async function recording() {
   await waitFor("the end of the recording", () => client.playback.some((state) => state.getUint8(1) === 3));
   require((await client.call("seek", { time: 0.5 })).status === "paused", "the service does not seek");
   require((await client.call("seek", { time: 1e6 })).failure.includes("not in the recording"), "a seek beyond the end");
+  require((await client.call("speed", { factor: 0 })).failure.includes("0.01 to 100"), "a speed of 0 was not refused");
   await readsCurves(client, rows);
   console.log("values at four times equal those of the recording");
 }

@@ -327,7 +327,11 @@ def door(folder):
     for arguments, text in ((("--listen", "0.0.0.0"), "name a file with --token-file"),
                             (("--listen", "here"), "is no address"),
                             (("--beside", "runs"), "is for the window of a recording"),
-                            (("--token-file", "/dev/null"), "no token")):
+                            (("--token-file", "/dev/null"), "no token"),
+                            (("--token-file", "nosuch"), "the file cannot be read"),
+                            (("--web", "nosuch"), "'nosuch' has no index.html"),
+                            (("--allow-origin", "*"), "'*' is no origin as browsers send it"),
+                            (("--allow-origin", "https://x.example/"), "is no origin as browsers send it")):
         done = subprocess.run([SLEWRING, "window", "--session", "none", "--domain", domain, *arguments],
                               capture_output=True, text=True, timeout=DEADLINE)
         require(done.returncode == 2 and text in done.stderr, f"{arguments}: {done.returncode}: {done.stderr}")

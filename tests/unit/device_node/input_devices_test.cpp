@@ -207,6 +207,15 @@ TEST(Joystick, RecordedEventsMoveTheInputsOfItsBlockInTheirOwnTime) {
   EXPECT_EQ(device->counts().at("reports").integer(), 2);
 }
 
+TEST(Joystick, RecordedEventsThatAreNotThereAreRefused) {
+  const testing::TemporaryFolder folder("joystick");
+  const std::string path = (folder.path() / "stick.events").string();
+  expect_failure([&] { static_cast<void>(open_joystick(stick(path), inputs())); }, ExitCode::bad_input,
+                 path +
+                     ": No such file or directory; the device was not started; copy the recorded events there, or "
+                     "name their folder with --assets");
+}
+
 TEST(Joystick, ADeviceThatIsNotThereIsAwaited) {
   const auto device = open_joystick(stick("/dev/input/no_such_event"), inputs());
   EXPECT_FALSE(device->take(kMs));

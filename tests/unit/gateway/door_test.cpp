@@ -67,6 +67,35 @@ TEST(Door, RefusesPagesOfOtherSites) {
   }
 }
 
+TEST(Door, OriginsAreThoseThatABrowserCanSend) {
+  for (const char* const origin :
+       {"https://app.foxglove.dev", "http://localhost:8080", "http://192.168.1.10:8766", "http://[::1]:5173",
+        "https://x_y.example", "app://index", "file://", "null", "http://crane:443", "https://crane:80"})
+    EXPECT_TRUE(is_origin(origin)) << origin;
+  for (const char* const origin : {"",
+                                   "*",
+                                   "app.foxglove.dev",
+                                   "localhost:8080",
+                                   "https://x.example/",
+                                   "https://x.example/page",
+                                   "https://",
+                                   "https://*.example",
+                                   "https://X.example",
+                                   "HTTPS://x.example",
+                                   "https://x.example:443",
+                                   "http://x.example:80",
+                                   "http://x.example:",
+                                   "http://x.example:80x",
+                                   "http://x.example:1234567",
+                                   "http://[::1",
+                                   "http://[x]:1",
+                                   "http://[::1]x",
+                                   "://x.example",
+                                   "https://x example",
+                                   "https://user@x.example"})
+    EXPECT_FALSE(is_origin(origin)) << origin;
+}
+
 TEST(Door, LetsPlainPathsOfThePageIn) {
   EXPECT_EQ(judge({}, plain("/")).path, "index.html");
   EXPECT_EQ(judge({}, plain("/assets/page-1.js?v=2")).path, "assets/page-1.js");

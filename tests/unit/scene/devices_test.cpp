@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "scene/recorded_files.h"
 #include "scene/scene.h"
 #include "scene_text.h"
 #include "support/temporary_folder.h"
@@ -167,6 +168,35 @@ TEST(DeviceSection, WhatAPacketNamesMustExist) {
                  "test:12:71: Dash.fields[0].output: no output 'Lamp'");
 }
 
+TEST(DeviceSection, AFieldOfAVariableIsInItsSiUnit) {
+  const auto dash = [](const std::string& unit) {
+    return "devices:\n  Dash: {type: udp_out, send: 127.0.0.1:9, fields: [{name: a, variable: Ball.position.x, unit: " +
+           unit + "}]}\n";
+  };
+  const std::string place = "test:12:53: Dash.a.unit: ";
+  expect_problem(dash("mm"), place +
+                                 "a variable is sent in SI, not in 'mm'; expected 'unit: m, scale: 0.001' for raw "
+                                 "numbers in mm");
+  expect_problem(dash("bar"), place +
+                                  "a variable is sent in SI, not in 'bar'; expected 'unit: Pa, scale: 100000' for raw "
+                                  "numbers in bar");
+  expect_problem(dash("degC"), place +
+                                   "a variable is sent in SI, not in 'degC'; expected 'unit: K, offset: 273.15' for "
+                                   "raw numbers in degC");
+  expect_problem(dash("zorkmid"), place +
+                                      "there is no unit 'zorkmid'; expected the SI unit of the variable, as m, N "
+                                      "or Pa");
+  expect_problem(dash("mA"), place + "no variable is in 'mA'; expected the SI unit of the variable, as m, N or Pa");
+  // the dimension is compared where the variables are known
+  EXPECT_EQ(variables_of(load_text(kPushed + dash("N m"), "test").devices, {}).at(0).unit, "N m");
+  // an output's numbers are what its other side takes
+  EXPECT_NO_THROW(static_cast<void>(
+      load_text(kPushed + "outputs:\n  Lamp: {type: switched, condition: Ball.position.y > 1 m}\ndevices:\n"
+                          "  Dash: {type: udp_out, send: 127.0.0.1:9, fields: [{name: a, output: Lamp, "
+                          "unit: mA}]}\n",
+                "test")));
+}
+
 TEST(DeviceSection, CanSignalsComeFromTheDatabaseAndStayInTheText) {
   const testing::TemporaryFolder folder("can_section");
   folder.write("machine.dbc",
@@ -210,6 +240,36 @@ TEST(DeviceSection, CanSignalsComeFromTheDatabaseAndStayInTheText) {
   EXPECT_EQ(
       problem_of("    - {signal: Panel.Lift, input: Input_Push}\n").find(":15:15: Panel.database: machine.dbc:3: "), 0u)
       << problem_of("    - {signal: Panel.Lift, input: Input_Push}\n");
+}
+
+TEST(DeviceSection, RecordedFilesAreInTheFolderOfTheScene) {
+  const testing::TemporaryFolder folder("recorded_files");
+  const auto stick = [](const std::string& path) {
+    return kPushed + "devices:\n  Stick: {type: joystick, path: " + path +
+           ", block: 2, axes: [{code: ABS_X, channel: 1, lowest: 0, centre: 1, highest: 2}]}\n";
+  };
+  const auto path_of = [&](const std::string& path) {
+    return load_file(folder.write("scene.yaml", stick(path)).string()).devices.joysticks.at(0).path;
+  };
+  folder.write("stick.events", "");
+  EXPECT_EQ(path_of("stick.events"), "stick.events");
+  EXPECT_EQ(path_of("/dev/input/is_plugged_in_later"), "/dev/input/is_plugged_in_later");
+  try {
+    static_cast<void>(path_of("stik.events"));
+    ADD_FAILURE() << "accepted";
+  } catch (const LoadError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("Stick.path: there is no file '" + (folder.path() / "stik.events").string() +
+                        "'; expected a file in the scene's folder"),
+              std::string::npos)
+        << text;
+  }
+  // a session's scene has names alone, and each machine its own folder
+  DevicesDef devices = load_text(stick("stik.events"), "session").devices;
+  place_recorded_files(devices, "there");
+  EXPECT_EQ(devices.joysticks.at(0).path, "there/stik.events");
+  place_recorded_files(devices, ".");
+  EXPECT_EQ(devices.joysticks.at(0).path, "there/stik.events");
 }
 
 TEST(OutputSection, QuantitiesMustFitEachOther) {

@@ -99,6 +99,8 @@ TEST(PlatformSection, APacketHasQuantitiesOfThePlatform) {
       kBall + platform(whole + "    fields: [{name: a, variable: Seat.leg1}, {name: b, variable: Seat.heave}]\n"),
       "test:17:14: Seat.a.variable: a motion platform has no quantity 'leg1'; expected leg_1 to leg_6, surge, "
       "sway, heave, roll, pitch, yaw, or another of docs/howto/motion-platform.md; did you mean 'leg_1'?");
+  expect_problem(kBall + platform(whole + "    fields: [{name: a, variable: Seat.heave, unit: rad}]\n"),
+                 "test:17:14: Seat.a.unit: 'Seat.heave' is in m, not in rad");
   expect_problem(kBall + platform(whole + "    fields: [{name: a, variable: Ball.position.x}]\n"),
                  "test:6:3: Seat: no field of the packet has a quantity of the platform; expected fields with "
                  "variables Seat.leg_1 to Seat.leg_6");

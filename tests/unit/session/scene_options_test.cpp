@@ -110,6 +110,30 @@ TEST_F(SceneOptionsTest, AnotherInputLeavesTheScriptsChangesOfParameters) {
   EXPECT_TRUE(scene::load_scene(options_).script.changes.empty());
 }
 
+TEST_F(SceneOptionsTest, ATableOfWhichNothingIsPlayedIsNamed) {
+  options_.file = std::string(SLEWRING_SOURCE_DIR) + "/scenes/tipper.yaml";
+  options_.duration = "2 s";
+  const auto warnings = [&](const std::string& rows) {
+    options_.input = "none";
+    const std::size_t own = scene::load_scene(options_).warnings.size();
+    options_.input = write("logged.csv", "time,Input_Tip\n" + rows);
+    std::vector<std::string> all = scene::load_scene(options_).warnings;
+    all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(own));
+    return all;
+  };
+  // a logger's milliseconds
+  const std::vector<std::string> found = warnings("0,0\n500,1\n1000,0\n");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0],
+            "--input " + options_.input +
+                ": Input_Tip: the input does not reach its point at 500 s: the run ends at 2 s; expected times "
+                "in s, or a longer duration");
+  // longer than the run; held; to its end
+  EXPECT_TRUE(warnings("0,0\n1,0.5\n500,1\n").empty());
+  EXPECT_TRUE(warnings("0,0.5\n500,0.5\n").empty());
+  EXPECT_TRUE(warnings("0,0\n2,1\n").empty());
+}
+
 TEST_F(SceneOptionsTest, AContinuedSessionMayHaveAnotherControllerOfAnInput) {
   options_.overrides = {"Input_Lift.controller=lockstep", "Input_Lift.controller_delay=3"};
   const scene::Scene saved = scene::load_scene(options_);
