@@ -16,7 +16,7 @@ constexpr double kStopPressure = 300e5;  // Pa, load pressure that may press the
 void check_chamber(const std::string& name, const CylinderParameters& c, char port, double area, double length,
                    const char* key, Problems& errors) {
   const double piston_area = 0.25 * std::numbers::pi * c.piston_diameter * c.piston_diameter;
-  const double compression = c.end_stiffness > 0 ? kStopPressure * piston_area / c.end_stiffness : 0;
+  const double compression = kStopPressure * piston_area / c.end_stiffness;
   const double volume = area * (length - compression) + c.dead_volume;
   if (volume > 0) return;
   errors.push_back({name + "." + key,
