@@ -94,9 +94,11 @@ IoConfig make_config(const scene::Scene& scene, std::string session_name, Record
     config.channels.push_back(std::move(channel));
   }
   if (!scene.script.tracks.empty()) config.sources.push_back(std::make_unique<ScriptSource>(scene));
+  const SimDuration step = scene.session.step_duration();
   for (const scene::ScriptChange& change : scene.script.changes) {
-    config.changes.push_back({SimTime{duration_of_seconds(change.at).ns},
-                              {0, change.set, change.value, duration_of_seconds(change.over).ns}});
+    const SimDuration over = scene::whole_steps(duration_of_seconds(change.over), step);
+    config.changes.push_back(
+        {start_of(scene::first_step_at(change.at, step), step), {0, change.set, change.value, over.ns}});
   }
   // std::function needs a copyable owner; the directory itself is built once
   const auto directory = std::make_shared<const scene::ParameterDirectory>(scene);

@@ -3,6 +3,8 @@
 //
 //   value(n) = from + (to - from) min(1, (n - begin + 1) / steps)
 //
+// A step has the value that the straight line reaches at its end: a ramp acts half a step early.
+//
 // A handle is the owner's number for a parameter. A new change of the same parameter replaces the current one and
 // begins at the value reached; so capacity for all parameters suffices for all changes. Only the constructor allocates.
 #pragma once
@@ -23,7 +25,7 @@ class ParameterRamps {
   // parameters: greatest number of different handles.
   explicit ParameterRamps(std::size_t parameters) { ramps_.reserve(parameters); }
 
-  // over: the target is reached after its whole steps, at least one.
+  // over: the target is reached after its whole steps, at least one; requests are rounded (scene::whole_steps).
   void begin(int handle, double from, double to, StepIndex n, SimDuration over, SimDuration step) noexcept {
     const Ramp ramp{handle, from, to, n, std::max<StepIndex>(1, over.ns / step.ns)};
     const auto under_way =

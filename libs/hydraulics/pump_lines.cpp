@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <utility>
+#include <set>
+#include <string>
 
 #include "hydraulics/oil.h"
 
@@ -16,27 +17,51 @@ constexpr double kBar = 1e5;
 PumpLines lines_of(const HydraulicsDef& def) {
   PumpLines lines{.oil_density = def.oil_density};
   for (const VolumeDef& volume : def.volumes) {
-    if (volume.fixed) lines.relieved.insert(volume.name);
+    if (volume.fixed) lines.held.insert(volume.name);
   }
   for (const auto& component : def.components) component->add_lines(lines);
   return lines;
 }
 
-// by what passes the pump's flow
-bool is_relieved(const PumpLines& lines, const PumpLines::Pump& pump) {
-  std::set<std::string> line = {pump.outlet};
-  std::vector<std::string> unvisited = {pump.outlet};
-  while (!unvisited.empty()) {
-    const std::string volume = std::move(unvisited.back());
-    unvisited.pop_back();
-    if (lines.relieved.contains(volume)) return true;
+using Volumes = std::set<std::string>;
+
+// Volumes whose pressure follows the pump's: a pilot needs no flow. A held volume passes no pressure on.
+Volumes pressurised(const PumpLines& lines, const PumpLines::Pump& pump) {
+  Volumes line = {pump.outlet};
+  const auto reach = [&](const std::string& from, const std::string& to) {
+    return line.contains(from) && !lines.held.contains(to) && line.insert(to).second;
+  };
+  for (bool grows = true; grows;) {
+    grows = false;
     for (const PumpLines::Connection& way : lines.open) {
-      const std::string* const next = way.a == volume ? &way.b : way.b == volume && !way.is_one_way ? &way.a : nullptr;
-      if (way.flow < pump.flow) continue;
-      if (next != nullptr && line.insert(*next).second) unvisited.push_back(*next);
+      if (!(way.flow > 0) || (!way.pilot.empty() && !line.contains(way.pilot))) continue;
+      grows |= reach(way.a, way.b) || (!way.is_one_way && reach(way.b, way.a));
+    }
+    for (const PumpLines::Divider& divider : lines.dividers) {
+      grows |= reach(divider.common, divider.branch_2) || reach(divider.common, divider.branch_3);
     }
   }
-  return false;
+  return line;
+}
+
+// by what passes the pump's flow: volumes from which it gets away, from those that take it back to those before them
+bool is_relieved(const PumpLines& lines, const PumpLines::Pump& pump) {
+  const Volumes pilots = pressurised(lines, pump);
+  Volumes relieved = lines.held;
+  relieved.insert(pump.inlet);
+  const auto leads = [&](const std::string& from, bool is_open) { return is_open && relieved.insert(from).second; };
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const PumpLines::Connection& way : lines.open) {
+      if (!(way.flow > 0) || way.flow < pump.flow || (!way.pilot.empty() && !pilots.contains(way.pilot))) continue;
+      grows |= leads(way.a, relieved.contains(way.b));
+      grows |= leads(way.b, !way.is_one_way && relieved.contains(way.a));
+    }
+    for (const PumpLines::Divider& divider : lines.dividers) {
+      grows |= leads(divider.common, relieved.contains(divider.branch_2) && relieved.contains(divider.branch_3));
+    }
+  }
+  return relieved.contains(pump.outlet);
 }
 
 }  // namespace
@@ -51,9 +76,10 @@ void find_unrelieved_pumps(const HydraulicsDef& def, Problems& warnings) {
                                 : std::string("rises without limit");
     warnings.push_back(
         {pump.name + "." + pump.key,
-         fmt::format("the pump's line has no relief valve: where '{}' is closed off, its pressure {}", pump.outlet,
-                     end),
-         fmt::format("a relief_valve on the line, set below {:g} bar", OilCompressibility::kHighest / kBar), ""});
+         fmt::format("no relief valve leads from the pump's line to a tank: where '{}' is closed off, its pressure {}",
+                     pump.outlet, end),
+         fmt::format("a relief_valve from the line to a tank, set below {:g} bar", OilCompressibility::kHighest / kBar),
+         ""});
   }
 }
 

@@ -4,10 +4,12 @@
 // A pump's line is its outlet and every volume connected to it at any control signal: through orifices, bleeds, laminar
 // restrictions, lines, filters, flow dividers, compensated orifices, four-way valves without gain, from the inlets of
 // shuttle valves to their outlet, past a priority valve, and through check valves, those of counterbalance and hose
-// burst valves too, in their free direction; by what has a nominal flow only if it passes the pump's flow below the end
-// of the oil law. It is relieved where a relief valve that is set below that end or a shock valve stands on it, or
-// where it reaches a fixed volume. Leaks do not count: they pass the pump's flow only at pressures far beyond any
-// limit. A pressure controller of the pump does not count either: it acts at its setting and after its delay.
+// burst valves too, in their free direction; through relief, shock and counterbalance valves that are set below the end
+// of the oil law, if their pilot is on the line; by what has a nominal flow only if it passes the pump's flow below
+// that end. The line is relieved where it reaches a fixed volume, a pressure source or the pump's own inlet. A flow
+// divider leads there if both of its branches do, or if the least opening of its spool passes the pump's flow. Leaks do
+// not count: they pass the pump's flow only at pressures far beyond any limit. A pressure controller of the pump does
+// not count either: it acts at its setting and after its delay.
 #pragma once
 
 #include <limits>
@@ -26,16 +28,22 @@ struct PumpLines {
     std::string a, b;                                       // volumes
     double flow = std::numeric_limits<double>::infinity();  // m3/s, the most that passes below the end of the oil's law
     bool is_one_way = false;                                // from a to b only
+    std::string pilot{};                                    // volume whose pressure opens it; empty: a
+  };
+  // From the common port into both branches, or into none.
+  struct Divider {
+    std::string common, branch_2, branch_3;  // volumes
   };
   struct Pump {
-    std::string name, outlet;    // component, volume
-    std::string key = "port_a";  // field that a warning names
-    double flow = 0;             // m3/s, the most that it delivers
-    double pressure = 0;         // Pa above tank, at which its controller ends; infinite: it has none
+    std::string name, outlet, inlet;  // component, volumes
+    std::string key = "port_a";       // field that a warning names
+    double flow = 0;                  // m3/s, the most that it delivers
+    double pressure = 0;              // Pa above tank, at which its controller ends; infinite: it has none
   };
-  double oil_density = 0;            // kg/m3
-  std::vector<Connection> open{};    // volumes that are connected whatever the signals
-  std::set<std::string> relieved{};  // by a valve on them, or held at a pressure
+  double oil_density = 0;          // kg/m3
+  std::vector<Connection> open{};  // volumes that are connected whatever the signals, by valves from a pressure on
+  std::vector<Divider> dividers{};
+  std::set<std::string> held{};  // volumes at a given pressure
   std::vector<Pump> pumps{};
 };
 

@@ -240,14 +240,17 @@ constexpr Field kScriptTrackFields[] = {
 };
 
 constexpr Field kScriptChangeFields[] = {
-    field<&ScriptChange::at>("at", {.dimension = Dimension::time,
-                                    .range = kDurationRange,
-                                    .presence = Presence::required,
-                                    .doc = "time of the change"}),
+    field<&ScriptChange::at>(
+        "at", {.dimension = Dimension::time,
+               .range = kDurationRange,
+               .presence = Presence::required,
+               .doc = "time of the change, which acts from the first step on that begins then or later"}),
     field<&ScriptChange::set>("set", {.presence = Presence::required, .doc = "live parameter, Element.key"}),
-    field<&ScriptChange::over>("over", {.dimension = Dimension::time,
-                                        .range = kRampRange,
-                                        .doc = "time over which the value is reached; without it the parameter's own"}),
+    field<&ScriptChange::over>("over",
+                               {.dimension = Dimension::time,
+                                .range = kRampRange,
+                                .doc = "time over which the value is reached, rounded to whole steps; without it the "
+                                       "parameter's own"}),
 };
 
 constexpr Field kRecordingFields[] = {

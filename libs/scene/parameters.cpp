@@ -17,6 +17,7 @@
 #include "multibody/model/parameters.h"
 #include "scene/field_reader.h"
 #include "scene/ports.h"
+#include "scene/script.h"
 #include "scene/sections.h"
 
 namespace slew::scene {
@@ -303,7 +304,7 @@ Assignment ParameterDirectory::check(std::string_view path, double value, std::o
   Assignment assignment;
   assignment.path = name;
   assignment.value = value;
-  assignment.over = over.value_or(duration_of_seconds(parameter->ramp));
+  assignment.over = whole_steps(over.value_or(duration_of_seconds(parameter->ramp)), session_.step_duration());
   return assignment;
 }
 

@@ -25,6 +25,7 @@
 #include "scene/place_map.h"
 #include "scene/ports.h"
 #include "scene/recorded_files.h"
+#include "scene/script.h"
 #include "scene/script_reader.h"
 #include "scene/sections.h"
 #include "scene/sensors.h"
@@ -98,7 +99,7 @@ class SceneReader {
     if (duration == nullptr || !(end > 0) || report_.is_override(duration->mark)) return;
     for (std::size_t i = 0; i < scene_.script.changes.size(); ++i) {
       const ScriptChange& change = scene_.script.changes[i];
-      if (change.at < end) continue;
+      if (first_step_at(change.at, scene_.session.step_duration()) < scene_.session.steps()) continue;
       add_warning(
           {fmt::format("script.parameters[{}]", i),
            fmt::format("the change of {} at {:g} s has no effect: the run ends at {:g} s", change.set, change.at, end),

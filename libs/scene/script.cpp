@@ -4,6 +4,16 @@
 #include <algorithm>
 
 namespace slew::scene {
+
+StepIndex first_step_at(double at, SimDuration step) noexcept {
+  return step.ns > 0 ? (duration_of_seconds(at).ns + step.ns - 1) / step.ns : 0;
+}
+
+SimDuration whole_steps(SimDuration over, SimDuration step) noexcept {
+  if (over.ns <= 0 || step.ns <= 0) return over;
+  return {step.ns * std::max<StepIndex>(1, (over.ns + step.ns / 2) / step.ns)};
+}
+
 ScriptPlayer::ScriptPlayer(const Scene& scene)
     : is_held_(scene.inputs.size()), tracks_(scene.inputs.size()), changes_(scene.script.changes) {
   for (std::size_t i = 0; i < scene.inputs.size(); ++i) {

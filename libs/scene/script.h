@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays a scene's script: the raw value of every input at any time of the session.
+// Plays a scene's script: the raw value of every input at any time of the session, and the steps in which changes of
+// parameters act.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,12 @@
 #include "scene/scene.h"
 
 namespace slew::scene {
+
+// Step with which a change at `at` [s] begins: the first one that does not begin before it.
+[[nodiscard]] StepIndex first_step_at(double at, SimDuration step) noexcept;
+
+// Time over which a change is spread, in steps: the nearest whole number of them, and at least one of a time above 0.
+[[nodiscard]] SimDuration whole_steps(SimDuration over, SimDuration step) noexcept;
 
 // At a point of the table the value is the table's, bit for bit. Between two points: a straight line, or the earlier
 // value (interpolation step, and every digital input: a switch has no values between). Of two points at one time the

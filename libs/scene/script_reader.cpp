@@ -13,6 +13,7 @@
 #include "lcm_log/input_table.h"
 #include "scene/csv_table.h"
 #include "scene/parameters.h"
+#include "scene/script.h"
 #include "scene/source.h"
 #include "scene/table_file.h"
 
@@ -74,6 +75,10 @@ class ScriptReader {
  private:
   void report_problem(const Mark& mark, std::string path, ValueProblem problem) {
     context_.report.add(mark, std::move(path), std::move(problem));
+  }
+
+  void add_warning(const Mark& mark, const std::string& path, ValueProblem problem) {
+    scene_.warnings.push_back(context_.report.at(mark, path, std::move(problem)).text());
   }
 
   void read_tracks(const Node& node) {
@@ -317,6 +322,27 @@ class ScriptReader {
     }
     scene_.script.changes.push_back(std::move(change));
     if (node.find("over") == nullptr) scene_.script.changes.back().over = directory().find(change_path_)->ramp;
+    warn_of_rounding(node, path);
+  }
+
+  // A change begins with a step and takes whole steps.
+  void warn_of_rounding(const Node& node, const std::string& path) {
+    const SimDuration step = scene_.session.step_duration();
+    const ScriptChange& change = scene_.script.changes.back();
+    const SimTime begin = start_of(first_step_at(change.at, step), step);
+    if (begin.ns != duration_of_seconds(change.at).ns) {
+      add_warning(node.find("at")->value.mark, path + ".at",
+                  {fmt::format("{:.9g} s is within a step of {:g} ms: the change acts from {:.9g} s on", change.at,
+                               1e3 * step.seconds(), begin.seconds()),
+                   "a multiple of session.step", ""});
+    }
+    const Node::Entry* given = node.find("over");
+    const SimDuration over = duration_of_seconds(change.over), taken = whole_steps(over, step);
+    if (given == nullptr || taken == over) return;
+    add_warning(given->value.mark, path + ".over",
+                {fmt::format("{:.9g} ms is no whole number of steps of {:g} ms: the change takes {:.9g} ms",
+                             1e3 * over.seconds(), 1e3 * step.seconds(), 1e3 * taken.seconds()),
+                 "a multiple of session.step", ""});
   }
 
   // The value in the parameter's dimension, when the parameter can be changed.
@@ -362,9 +388,8 @@ class ScriptReader {
                      [](const ScriptChange& a, const ScriptChange& b) { return a.at < b.at; });
     std::map<StepIndex, std::size_t> changes_in_step;
     for (const ScriptChange& change : scene_.script.changes) {
-      const StepIndex step =
-          duration_of_seconds(change.at).ns / std::max<std::int64_t>(1, scene_.session.step_duration().ns);
-      if (++changes_in_step[step] != kMaxScriptChangesPerStep + 1) continue;
+      if (++changes_in_step[first_step_at(change.at, scene_.session.step_duration())] != kMaxScriptChangesPerStep + 1)
+        continue;
       report_problem(mark, "script.parameters",
                      {fmt::format("more than {} changes in the step at {} s", kMaxScriptChangesPerStep, change.at),
                       fmt::format("at most {} in one step", kMaxScriptChangesPerStep), ""});

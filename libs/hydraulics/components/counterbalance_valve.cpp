@@ -142,6 +142,10 @@ void validate_counterbalance_valve(const HydraulicsDef&, const ComponentDef& com
 void CounterbalanceValveDef::add_lines(PumpLines& lines) const {
   const double drops = OilCompressibility::kHighest / check.nominal_pressure_drop;
   lines.open.push_back({.a = port_1, .b = port_2, .flow = check.nominal_flow * std::sqrt(drops), .is_one_way = true});
+  // opens at its setting without a pilot pressure
+  if (!(setting_pressure < OilCompressibility::kHighest)) return;
+  const double most = nominal_flow * std::sqrt(OilCompressibility::kHighest / nominal_pressure_drop);
+  lines.open.push_back({.a = port_2, .b = port_1, .flow = most, .is_one_way = true});
 }
 
 ComponentType counterbalance_valve_type() {

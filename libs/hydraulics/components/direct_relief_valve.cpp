@@ -131,7 +131,9 @@ class DirectReliefValve final : public HydraulicComponent {
 }  // namespace
 
 void DirectReliefValveDef::add_lines(PumpLines& lines) const {
-  if (crack_pressure < OilCompressibility::kHighest) lines.relieved.insert(port_1);
+  if (crack_pressure < OilCompressibility::kHighest) {
+    lines.open.push_back({.a = port_1, .b = port_2, .is_one_way = true});
+  }
 }
 
 ComponentType direct_relief_valve_type() {

@@ -7,6 +7,7 @@
 #include "hydraulics/component.h"
 #include "hydraulics/components/shared_fields.h"
 #include "hydraulics/components/spring_spool.h"
+#include "hydraulics/oil.h"
 #include "hydraulics/oil_properties.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
@@ -260,16 +261,24 @@ ComponentType divider_type(std::string_view name, std::span<const Field> fields,
 
 template <typename Def>
 void add_divider_lines(const Def& def, PumpLines& lines) {
-  lines.open.push_back({.a = def.port_1, .b = def.port_2});
-  lines.open.push_back({.a = def.port_1, .b = def.port_3});
+  lines.dividers.push_back({.common = def.port_1, .branch_2 = def.port_2, .branch_3 = def.port_3});
+  for (const std::string* branch : {&def.port_2, &def.port_3}) {
+    lines.open.push_back({.a = *branch, .b = def.port_1, .is_one_way = true});
+  }
 }
 
 }  // namespace
 
-// the spool never shuts a branch, the gears turn both ways
+// a branch that stands still leaves the other one its least opening
 void FlowDividerDef::add_lines(PumpLines& lines) const {
   add_divider_lines(*this, lines);
+  const double k_2 = spool_pressure_drop / metering_pressure_drop;
+  const double most = nominal_flow * std::sqrt(OilCompressibility::kHighest / metering_pressure_drop) * least_opening /
+                      std::sqrt(least_opening * least_opening + k_2);
+  lines.open.push_back({.a = port_1, .b = port_2, .flow = share * most, .is_one_way = true});
+  lines.open.push_back({.a = port_1, .b = port_3, .flow = (1 - share) * most, .is_one_way = true});
 }
+// a branch that stands still stops the shaft
 void GearFlowDividerDef::add_lines(PumpLines& lines) const {
   add_divider_lines(*this, lines);
 }

@@ -7,6 +7,7 @@
 #include "hydraulics/component.h"
 #include "hydraulics/components/l90ls_fields.h"
 #include "hydraulics/components/l90ls_laws.h"
+#include "hydraulics/oil.h"
 #include "hydraulics/oil_properties.h"
 #include "hydraulics/passages.h"
 #include "hydraulics/pump_lines.h"
@@ -288,7 +289,13 @@ void validate_valve(const HydraulicsDef& circuit, const ComponentDef& component,
 }  // namespace
 
 void L90lsValveDef::add_lines(PumpLines& lines) const {
-  lines.relieved.insert({port_a, port_b});
+  const double settings[] = {shock_pressure_a, shock_pressure_b};
+  for (const int side : {kA, kB}) {
+    if (!(settings[side] < OilCompressibility::kHighest)) continue;
+    const double drops = OilCompressibility::kHighest / (settings[side] + shock_pressure_rise);
+    lines.open.push_back(
+        {.a = side == kA ? port_a : port_b, .b = port_t, .flow = shock_flow * std::sqrt(drops), .is_one_way = true});
+  }
 }
 
 ComponentType l90ls_valve_type() {

@@ -211,6 +211,7 @@ void validate_pump(const HydraulicsDef& circuit, const ComponentDef& component, 
 void LsPumpDef::add_lines(PumpLines& lines) const {
   lines.pumps.push_back({.name = name,
                          .outlet = port_a,
+                         .inlet = port_b,
                          .flow = greatest_speed(drive, speed) * displacement * volumetric_coefficient,
                          .pressure = ls_port.empty() ? standby_pressure
                                                      : std::max(standby_pressure, maximum_ls_pressure + set_pressure)});

@@ -271,10 +271,14 @@ void validate_plain_pump(const HydraulicsDef& circuit, const ComponentDef& compo
 void PumpDef::add_lines(PumpLines& lines) const {
   const double flow = greatest_speed(drive, speed) * displacement * volumetric_coefficient;
   const double pressure = maximum_pressure > 0 ? maximum_pressure : std::numeric_limits<double>::infinity();
-  lines.pumps.push_back({.name = name, .outlet = port_a, .flow = flow, .pressure = pressure});
+  lines.pumps.push_back({.name = name, .outlet = port_a, .inlet = port_b, .flow = flow, .pressure = pressure});
   if (minimum_swash < 0) {
-    lines.pumps.push_back(
-        {.name = name, .outlet = port_b, .key = "port_b", .flow = -minimum_swash * flow, .pressure = pressure});
+    lines.pumps.push_back({.name = name,
+                           .outlet = port_b,
+                           .inlet = port_a,
+                           .key = "port_b",
+                           .flow = -minimum_swash * flow,
+                           .pressure = pressure});
   }
 }
 

@@ -121,7 +121,9 @@ class ReliefValve final : public HydraulicComponent {
 }  // namespace
 
 void ReliefValveDef::add_lines(PumpLines& lines) const {
-  if (setting_pressure < OilCompressibility::kHighest) lines.relieved.insert(port_1);
+  if (!(setting_pressure < OilCompressibility::kHighest)) return;
+  const double most = nominal_flow * std::sqrt(OilCompressibility::kHighest / nominal_pressure_drop);
+  lines.open.push_back({.a = port_1, .b = port_2, .flow = most, .is_one_way = true, .pilot = port_3});
 }
 
 ComponentType relief_valve_type() {

@@ -145,13 +145,14 @@ void FlowSourceDef::add_lines(PumpLines& lines) const {
   if (flow == 0 && flow_per_signal == 0) return;
   lines.pumps.push_back({.name = name,
                          .outlet = flow < 0 ? port_1 : port_2,
+                         .inlet = flow < 0 ? port_2 : port_1,
                          .key = "flow",
                          .flow = std::fabs(flow),
                          .pressure = std::numeric_limits<double>::infinity()});
 }
 
 void PressureSourceDef::add_lines(PumpLines& lines) const {
-  lines.relieved.insert(port_1);
+  lines.held.insert(port_1);
 }
 
 ComponentType flow_source_type() {

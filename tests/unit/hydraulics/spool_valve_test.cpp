@@ -176,8 +176,10 @@ TEST(FlowSource, without_a_relief_on_its_line_is_warned_about) {
   validate(def, errors, warnings);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].path, "Source.flow");
-  EXPECT_EQ(warnings[0].what,
-            "the pump's line has no relief valve: where 'Vessel' is closed off, its pressure rises without limit");
+  EXPECT_EQ(
+      warnings[0].what,
+      "no relief valve leads from the pump's line to a tank: where 'Vessel' is closed off, its pressure rises without "
+      "limit");
 }
 
 // C p' = G (p_s - p): the volume follows with the time constant C/G.

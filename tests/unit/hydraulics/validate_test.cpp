@@ -48,6 +48,16 @@ TEST(HydraulicsValidation, the_test_circuits_are_sound) {
   EXPECT_TRUE(findings(bench_circuit()).errors.empty()) << listing(findings(bench_circuit()).errors);
 }
 
+// a stop without stiffness is pressed in without end
+TEST(HydraulicsValidation, a_cylinder_has_stops_that_keep_its_piston_in_the_barrel) {
+  HydraulicsDef def = bench_circuit();
+  CylinderParameters& common = component<DoubleRodCylinderDef>(def, "Cylinder").common;
+  for (const double stiffness : {0.0, 1.0}) {
+    common.end_stiffness = stiffness;
+    EXPECT_FALSE(findings(def).errors.empty()) << stiffness;
+  }
+}
+
 // Sets every numeric field of the element to NaN and beyond each end of its range, one at a time.
 void expect_ranges_are_checked(const HydraulicsDef& def, const std::string& element, std::span<const Field> fields,
                                void* address) {
@@ -394,6 +404,83 @@ TEST(PumpLines, are_relieved_behind_a_shuttle_valve) {
     std::swap(is_first ? shuttle.port_1 : shuttle.port_2, shuttle.port_3);
     EXPECT_NE(what_at(findings(def).warnings, "Pump.port_a"), "");
   }
+}
+
+ReliefValveDef& relieve_into(HydraulicsDef& def, const char* from, const char* to) {
+  ReliefValveDef& relief = add<ReliefValveDef>(def, std::string("Relief_") + from + to);
+  relief.port_1 = from, relief.port_2 = to, relief.nominal_flow = 100.0 / 60000;
+  relief.setting_pressure = 200 * kBar;
+  return relief;
+}
+
+TEST(PumpLines, are_relieved_by_a_valve_that_their_pressure_opens) {
+  HydraulicsDef def = pump_on_a_block();
+  ReliefValveDef& relief = relieve_into(def, "Vol_P", "Vol_T");
+  EXPECT_EQ(what_at(findings(def).warnings, "Pump.port_a"), "");
+  relief.port_3 = "Vol_Q";  // no oil reaches the pilot
+  EXPECT_NE(what_at(findings(def).warnings, "Pump.port_a"), "");
+  // a pilot needs no flow
+  OrificeDef& pilot_line = connect(def, "Vol_P", "Vol_Q");
+  pilot_line.diameter = 0.5e-3;
+  EXPECT_EQ(what_at(findings(def).warnings, "Pump.port_a"), "");
+  pilot_line.port_1 = "Vol_T";  // a tank holds its pressure
+  EXPECT_NE(what_at(findings(def).warnings, "Pump.port_a"), "");
+}
+
+TEST(PumpLines, are_relieved_by_a_valve_whose_outlet_leads_to_a_tank) {
+  HydraulicsDef def = pump_on_a_block();
+  relieve_into(def, "Vol_P", "Vol_Q");
+  EXPECT_NE(what_at(findings(def).warnings, "Pump.port_a"), "");
+  OrificeDef& back = connect(def, "Vol_Q", "Vol_T");
+  EXPECT_EQ(what_at(findings(def).warnings, "Pump.port_a"), "");
+  back.diameter = 1e-3;
+  EXPECT_NE(what_at(findings(def).warnings, "Pump.port_a"), "");
+  relieve_into(def, "Vol_Q", "Vol_T");
+  EXPECT_EQ(what_at(findings(def).warnings, "Pump.port_a"), "");
+  // the pump's own inlet takes the oil, as in a closed loop
+  HydraulicsDef loop = pump_on_a_block();
+  relieve_into(loop, "Vol_P", "Vol_Q");
+  component<LsPumpDef>(loop, "Pump").port_b = "Vol_Q";
+  EXPECT_EQ(what_at(findings(loop).warnings, "Pump.port_a"), "");
+}
+
+template <typename Divider>
+Divider& divide(HydraulicsDef& def) {
+  add_volume(def, "Vol_R").rigid_volume = 1e-3;
+  Divider& divider = add<Divider>(def, "Divider");
+  divider.port_1 = "Vol_P", divider.port_2 = "Vol_Q", divider.port_3 = "Vol_R";
+  relieve(def, "Vol_R");
+  return divider;
+}
+
+// a branch that stands still stops the gears, and leaves the spool's other edge its least opening
+TEST(PumpLines, are_relieved_behind_a_flow_divider_whose_branches_both_are) {
+  HydraulicsDef gears = pump_on_a_block();
+  GearFlowDividerDef& gear = divide<GearFlowDividerDef>(gears);
+  gear.displacement_2 = gear.displacement_3 = 1e-6;
+  EXPECT_NE(what_at(findings(gears).warnings, "Pump.port_a"), "");
+  relieve_into(gears, "Vol_Q", "Vol_T");
+  EXPECT_EQ(what_at(findings(gears).warnings, "Pump.port_a"), "");
+  // at 1000 bar 0.5 0.02/sqrt(0.02^2 + 0.4) sqrt(200) = 0.224 of the nominal flow, for 94 l/min
+  HydraulicsDef spool = pump_on_a_block();
+  FlowDividerDef& divider = divide<FlowDividerDef>(spool);
+  divider.nominal_flow = 400.0 / 60000;
+  EXPECT_NE(what_at(findings(spool).warnings, "Pump.port_a"), "");
+  divider.nominal_flow = 440.0 / 60000;
+  EXPECT_EQ(what_at(findings(spool).warnings, "Pump.port_a"), "");
+  divider.nominal_flow = 100.0 / 60000;
+  relieve_into(spool, "Vol_Q", "Vol_T");
+  EXPECT_EQ(what_at(findings(spool).warnings, "Pump.port_a"), "");
+}
+
+TEST(PumpLines, are_relieved_by_a_counterbalance_valve_at_its_setting) {
+  HydraulicsDef def = pump_on_a_block();
+  CounterbalanceValveDef& valve = add<CounterbalanceValveDef>(def, "Valve");
+  valve.port_1 = "Vol_T", valve.port_2 = "Vol_P", valve.port_3 = "Vol_Q";
+  valve.setting_pressure = 100 * kBar, valve.nominal_flow = 100.0 / 60000, valve.check.nominal_flow = 100.0 / 60000;
+  EXPECT_EQ(what_at(findings(def).warnings, "Pump.port_a"), "");
+  valve.setting_pressure = 2700 * kBar;
+  EXPECT_NE(what_at(findings(def).warnings, "Pump.port_a"), "");
 }
 
 TEST(PumpLines, of_the_crane_have_their_relief_valve) {

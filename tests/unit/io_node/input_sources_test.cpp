@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "io_node/scene_config.h"
 #include "io_node/session_inputs.h"
+#include "scene/scene.h"
 
 namespace slew::io_node {
 namespace input_sources_test {
@@ -62,6 +64,47 @@ TEST(TimedChanges, BelongToTheStepInWhichTheyBegin) {
   EXPECT_EQ(changes_in(changes, {0}, {kStep.ns}).size(), 2u);
   EXPECT_EQ(changes_in(changes, {kStep.ns}, {2 * kStep.ns}).size(), 2u);
   EXPECT_TRUE(changes_in(changes, {2 * kStep.ns}, {3 * kStep.ns}).empty());
+}
+
+// step and time of each change in the ticks of 0.2 s
+std::vector<std::pair<StepIndex, SimDuration>> changes_of_script(const std::string& step, const std::string& change) {
+  IoConfig config = make_config(scene::load_text("session: {step: " + step +
+                                                     ", duration: 0.3 s}\n"
+                                                     "bodies:\n  Rod: {mass: 1 kg, inertia: [1, 1, 1]}\n"
+                                                     "joints:\n  Hinge: {type: revolute, body2: Rod}\n"
+                                                     "script: {parameters: [{set: Rod.mass, value: 2 kg, " +
+                                                     change + "}]}\n",
+                                                 "test"),
+                                "test", Recording::none);
+  const SimDuration H = config.session.step_duration();
+  SessionInputs inputs(config, {});
+  std::vector<std::pair<StepIndex, SimDuration>> found;
+  std::vector<wire::Command> changes;
+  for (StepIndex n = 0; start_of(n, H) < SimTime{} + milliseconds(200); ++n) {
+    inputs.advance(n, 0, changes);
+    for (const wire::Command& command : changes) found.emplace_back(n, SimDuration{command.over_ns});
+  }
+  return found;
+}
+
+TEST(SessionInputs, AChangeOfTheScriptActsFromTheFirstStepOnThatDoesNotBeginBeforeIt) {
+  using Changes = std::vector<std::pair<StepIndex, SimDuration>>;
+  EXPECT_EQ(changes_of_script("10 ms", "at: 0.109 s, over: 0 s"), (Changes{{11, {}}}));
+  EXPECT_EQ(changes_of_script("1 ms", "at: 0.1009 s, over: 0 s"), (Changes{{101, {}}}));
+  EXPECT_EQ(changes_of_script("1 ms", "at: 0.100000001 s, over: 0 s"), (Changes{{101, {}}}));
+  // at the begin of a step
+  EXPECT_EQ(changes_of_script("10 ms", "at: 0.11 s, over: 0 s"), (Changes{{11, {}}}));
+  EXPECT_EQ(changes_of_script("0.7 ms", "at: 0.1981 s, over: 0 s"), (Changes{{283, {}}}));
+}
+
+TEST(SessionInputs, AChangeTakesTheNearestNumberOfSteps) {
+  using Changes = std::vector<std::pair<StepIndex, SimDuration>>;
+  EXPECT_EQ(changes_of_script("10 ms", "at: 0.1 s, over: 14 ms"), (Changes{{10, milliseconds(10)}}));
+  EXPECT_EQ(changes_of_script("10 ms", "at: 0.1 s, over: 15 ms"), (Changes{{10, milliseconds(20)}}));
+  EXPECT_EQ(changes_of_script("10 ms", "at: 0.1 s, over: 27 ms"), (Changes{{10, milliseconds(30)}}));
+  EXPECT_EQ(changes_of_script("10 ms", "at: 0.1 s, over: 1 ms"), (Changes{{10, milliseconds(10)}}));
+  // the time of the parameter itself
+  EXPECT_EQ(changes_of_script("15 ms", "at: 0.09 s"), (Changes{{6, milliseconds(1005)}}));
 }
 
 TEST(SessionInputs, AHolderOfAChannelGoesBeforeItsSourceWhichGoesBeforeNeutral) {

@@ -49,6 +49,13 @@ TEST_F(Parameters, AnAssignmentGivesThePathTheSiValueAndTheRamp) {
   EXPECT_EQ(assignment.over, milliseconds(1000));
 }
 
+TEST_F(Parameters, AChangeIsSpreadOverWholeSteps) {
+  EXPECT_EQ(directory.check("Rod.mass", 2, microseconds(2500)).over, milliseconds(3));
+  EXPECT_EQ(directory.check("Rod.mass", 2, microseconds(2499)).over, milliseconds(2));
+  EXPECT_EQ(directory.check("Rod.mass", 2, microseconds(1)).over, milliseconds(1));
+  EXPECT_EQ(directory.check("Rod.mass", 2, SimDuration{}).over.ns, 0);
+}
+
 // a value in its own range may still make a machine that the loader refuses
 TEST_F(Parameters, AValueWithWhichTheLoaderWouldRefuseTheMachineIsRefusedWithItsSentence) {
   for (const double mass : {4.9e-324, 1e-300, 1e-200, 1e-100, 1e-13}) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -184,6 +185,40 @@ TEST(Script, AChangeWithoutTimeTakesTheParametersOwn) {
       load_text(kPendulum + "script:\n  parameters:\n    - {at: 1 s, set: Rod.mass, value: 3 kg}\n", "test");
   ASSERT_EQ(scene.script.changes.size(), 1u);
   EXPECT_EQ(scene.script.changes[0].over, 1.0);
+}
+
+TEST(Script, WarnsOfATimeThatIsRoundedToWholeSteps) {
+  const auto warnings = [](const std::string& times) {
+    return load_text(kPendulum + "session: {step: 10 ms}\nscript:\n  parameters:\n    - {set: Rod.mass, value: 3 kg, " +
+                         times + "}\n",
+                     "test")
+        .warnings;
+  };
+  const auto late = warnings("at: 0.109 s, over: 0 s");
+  ASSERT_EQ(late.size(), 1u);
+  EXPECT_NE(late[0].find("script.parameters[0].at: 0.109 s is within a step of 10 ms: the change acts from 0.11 s on; "
+                         "expected a multiple of session.step"),
+            std::string::npos)
+      << late[0];
+  const auto rounded = warnings("at: 0.1 s, over: 25 ms");
+  ASSERT_EQ(rounded.size(), 1u);
+  EXPECT_NE(rounded[0].find("script.parameters[0].over: 25 ms is no whole number of steps of 10 ms: the change takes "
+                            "30 ms; expected a multiple of session.step"),
+            std::string::npos)
+      << rounded[0];
+  EXPECT_TRUE(warnings("at: 0.11 s, over: 70 ms").empty());
+  EXPECT_TRUE(warnings("at: 0.11 s").empty());
+}
+
+TEST(Script, AChangeThatActsBehindTheEndOfTheRunHasNoEffect) {
+  const auto warnings = load_text(kPendulum +
+                                      "session: {step: 10 ms, duration: 1 s}\nscript:\n  parameters:\n"
+                                      "    - {at: 0.995 s, set: Rod.mass, value: 3 kg}\n",
+                                  "test")
+                            .warnings;
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+    return warning.find("the change of Rod.mass at 0.995 s has no effect") != std::string::npos;
+  }));
 }
 
 TEST(Script, MoreChangesInOneStepThanATickHoldsAreRefused) {
