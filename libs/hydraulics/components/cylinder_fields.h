@@ -101,7 +101,7 @@ constexpr auto cylinder_stroke_fields() {
           {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of leak_flow"}),
       cylinder_field<Def, &C::end_stiffness>(
           "end_stiffness",
-          {.dimension = Dimension::stiffness, .range = kPositive, .doc = "spring constant of the end dampers"}),
+          {.dimension = Dimension::stiffness, .range = kNotNegative, .doc = "spring constant of the end dampers"}),
       cylinder_field<Def, &C::end_damping>(
           "end_damping",
           {.dimension = Dimension::damping, .range = kNotNegative, .doc = "damping constant of the end dampers"}),

@@ -48,16 +48,6 @@ TEST(HydraulicsValidation, the_test_circuits_are_sound) {
   EXPECT_TRUE(findings(bench_circuit()).errors.empty()) << listing(findings(bench_circuit()).errors);
 }
 
-// a stop without stiffness is pressed in without end
-TEST(HydraulicsValidation, a_cylinder_has_stops_that_keep_its_piston_in_the_barrel) {
-  HydraulicsDef def = bench_circuit();
-  CylinderParameters& common = component<DoubleRodCylinderDef>(def, "Cylinder").common;
-  for (const double stiffness : {0.0, 1.0}) {
-    common.end_stiffness = stiffness;
-    EXPECT_FALSE(findings(def).errors.empty()) << stiffness;
-  }
-}
-
 // Sets every numeric field of the element to NaN and beyond each end of its range, one at a time.
 void expect_ranges_are_checked(const HydraulicsDef& def, const std::string& element, std::span<const Field> fields,
                                void* address) {
