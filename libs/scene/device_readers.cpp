@@ -3,12 +3,27 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "devices/udp_address.h"
+#include "scene/units.h"
 
 namespace slew::scene {
 namespace {
 
 constexpr std::size_t kMaxConditions = 8;
+
+// `unit: mm, scale: 0.001` of a variable: mm is the unit of the raw numbers, the variable's is m.
+void take_unit_of_raw_numbers(devices::LayoutFieldDef& f) {
+  if (f.variable.empty() || f.unit.empty()) return;
+  UnitSystem units;
+  const Unit* const unit = units.find(f.unit);
+  if (unit == nullptr || unit->has_other_base || (unit->scale == 1 && unit->offset == 0)) return;
+  const auto scale = static_cast<double>(unit->scale), offset = static_cast<double>(unit->offset);
+  if (std::fabs(f.scale - scale) <= 1e-9 * scale && std::fabs(f.offset - offset) <= 1e-9 * offset) {
+    f.unit = si_unit_of(unit->exponent);
+  }
+}
 
 }  // namespace
 
@@ -64,6 +79,7 @@ void check_conditions(const std::string& device, const std::vector<std::string>&
 }
 
 std::optional<devices::ByteLayout> read_layout(const std::string& name, devices::LayoutDef& def, Problems& problems) {
+  for (devices::LayoutFieldDef& f : def.fields) take_unit_of_raw_numbers(f);
   def.name = name;
   const std::size_t before = problems.size();
   validate(def, problems);

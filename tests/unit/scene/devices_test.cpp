@@ -187,6 +187,8 @@ TEST(DeviceSection, AFieldOfAVariableIsInItsSiUnit) {
                                       "there is no unit 'zorkmid'; expected the SI unit of the variable, as m, N "
                                       "or Pa");
   expect_problem(dash("mA"), place + "no variable is in 'mA'; expected the SI unit of the variable, as m, N or Pa");
+  // the unit of the raw numbers, as their scale states
+  EXPECT_EQ(load_text(kPushed + dash("mm, scale: 0.001"), "test").devices.udp_outs.at(0).layout.fields.at(0).unit, "m");
   // the dimension is compared where the variables are known
   EXPECT_EQ(variables_of(load_text(kPushed + dash("N m"), "test").devices, {}).at(0).unit, "N m");
   // an output's numbers are what its other side takes
