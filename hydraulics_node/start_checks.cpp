@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "core/display.h"
 #include "coupling/indicator.h"
 #include "coupling/own_past.h"
 #include "scene/deep_starts.h"
@@ -16,8 +17,9 @@ Status check_pressures(const scene::Scene& scene, const hydraulics::Circuit& cir
                        std::span<const double> W, std::span<const double> x) {
   const std::optional<hydraulics::StartDemand> demand = circuit.demand_beyond_limits(F, W, x);
   if (!demand) return Status::ok();
-  constexpr double kBar = 1e5, kKilo = 1e3;
+  constexpr double kBar = 1e5;
   const auto actuator = static_cast<std::size_t>(demand->actuator);
+  const scene::PortDef& port = scene.ports[actuator];
   std::string limit = "no oil has a pressure below 0";
   if (demand->pressure >= 0) {
     limit = demand->valve.empty()
@@ -27,9 +29,9 @@ Status check_pressures(const scene::Scene& scene, const hydraulics::Circuit& cir
   const std::string contacts = scene::deep_starts(scene);
   return Status::error(
       ExitCode::failed,
-      fmt::format("hydraulics.start: equilibrium requires {:.4g} bar in {} to hold {:.4g} kN on {}, but {}. {}",
-                  demand->pressure / kBar, circuit.volume_name(demand->volume), F[actuator] / kKilo,
-                  scene.ports[actuator].name, limit,
+      fmt::format("hydraulics.start: equilibrium requires {:.4g} bar in {} to hold {} on {}, but {}. {}",
+                  demand->pressure / kBar, circuit.volume_name(demand->volume),
+                  quantity_text(F[actuator], info(coupling::dimensions_of(port.unit).force).si_unit), port.name, limit,
                   contacts.empty() ? "Lighten the load or begin in another pose, or set hydraulics.start: table13"
                                    : contacts + ". Move these bodies apart, or set hydraulics.start: table13"));
 }

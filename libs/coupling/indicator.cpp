@@ -25,6 +25,12 @@ double scale_of(const Bucket& sum) {
   return std::max(sum.work, sum.stiffness > 0 ? force * force / (2 * sum.stiffness) : 0.0);
 }
 
+// (5), at a port of mobility W; infinite if its motion is prescribed
+double kinetic_energy(double v, double W) {
+  constexpr double kLeastMobility = 1e-12;  // 1/kg: rounding of a motion that no force changes
+  return W > kLeastMobility ? v * v / (2 * W) : std::numeric_limits<double>::infinity();
+}
+
 // rounded up, so that buckets of few steps do not shorten the window
 std::int64_t steps_per_bucket(std::int64_t bucket_ns, SimDuration step) {
   return (bucket_ns + step.ns - 1) / step.ns;
@@ -46,17 +52,17 @@ Indicator::Indicator(std::size_t ports, SimDuration communication_step)
       window_(ports),
       others_(ports),
       largest_(ports),
+      kinetic_(ports, 0),
       steps_below_alarm_(ports, 0),
-      defects_(ports),
-      kinetic_(ports, 0) {}
+      defects_(ports) {}
 
 void Indicator::reset() noexcept {
   for (auto& buckets : window_) buckets.fill(Bucket{});
   for (Bucket& others : others_) others = Bucket{};
   for (auto& largest : largest_) largest.fill(0);
+  for (double& energy : kinetic_) energy = 0;
   for (std::int64_t& steps : steps_below_alarm_) steps = 0;
   for (PortDefects& defects : defects_) defects = PortDefects{};
-  for (double& energy : kinetic_) energy = 0;
   steps_in_bucket_ = 0;
   current_ = 0;
   omega_H_ = 0;
@@ -110,7 +116,8 @@ double Indicator::without_largest(std::size_t port, double sum) const noexcept {
 
 void Indicator::evaluate(std::size_t port, Level level, double machine_scale) noexcept {
   const Bucket sum = window_sum(port);
-  const double own = scale_of(sum), scale = is_balanced(level) ? machine_scale : own;
+  const double own = std::max(scale_of(sum), std::isfinite(kinetic_[port]) ? kinetic_[port] : 0.0);
+  const double scale = is_balanced(level) ? machine_scale : own;
   const double residual = is_balanced(level) ? without_largest(port, sum.residual) : sum.residual;
   PortDefects& defects = defects_[port];
   defects.eta = scale > 0 ? residual / scale : 0.0;
@@ -135,12 +142,12 @@ void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& a
     defects.dE = actuators.work[i] - mechanism.work[i];
     defects.dE_star = defects.dE + actuators.F[i] * defects.e_x - 0.5 * springs * defects.e_x;
     Bucket& bucket = window_[i][current_];
+    kinetic_[i] = kinetic_energy(mechanism.v[i], mechanism.W[i * ports_ + i]);
     bucket.residual += std::fabs(defects.dE_star);
     bucket.net += defects.dE_star;
     bucket.work += std::fabs(mechanism.work[i]);
     bucket.force = std::max(bucket.force, std::fabs(actuators.F[i]));
     bucket.stiffness = std::max(bucket.stiffness, stiffness[i]);
-    kinetic_[i] = mechanism.v[i] * mechanism.v[i] / (2 * mechanism.W[i * ports_ + i]);
     machine_scale = std::max(machine_scale, scale_of(window_sum(i)));
   }
   for (std::size_t i = 0; i < ports_; ++i) evaluate(i, levels[i], machine_scale);
@@ -181,12 +188,13 @@ bool Indicator::creates_energy() const noexcept {
 
 double Indicator::own_residual(std::size_t port) const noexcept {
   const Bucket sum = window_sum(port);
-  const double own = std::max(scale_of(sum), kinetic_[port]);
+  const double own = scale_of(sum);
   return own > 0 ? sum.residual / own : 0.0;
 }
 
 bool Indicator::diverges(std::size_t port) const noexcept {
-  if (own_residual(port) > kDivergesAtOnce) return true;
+  const Bucket sum = window_sum(port);
+  if (sum.residual > kDivergesAtOnce * std::max(scale_of(sum), kinetic_[port])) return true;
   std::size_t diverging = 0;
   for (std::size_t i = 0; i < kBuckets; ++i) {
     const Bucket& bucket = window_[port][i];

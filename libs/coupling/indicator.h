@@ -6,7 +6,7 @@
 //   e_F = (F_n - K e_x) - F_used      hydraulics' force, moved to the true x, less mechanics' copy (2)
 //   dE  = W_hyd - W_mech              work of F over the finished step as each side saw it         (3)
 //   dE* = dE + F_n e_x - K e_x^2 / 2  after the work of the volume correction                      (4)
-//   own = max(sum |W_mech|, F^2 / (2 K)),  net = sum dE* / own, over 1 s                            (5)
+//   own = max(sum |W_mech|, F^2 / (2 K), v^2 / (2 W)),  net = sum dE* / own, over 1 s               (5)
 //   eta = sum |dE*| / own                            level hold and tlm
 //         sum |dE*| less its 3 largest 50 ms / largest own of all ports      linear and two        (5')
 //   omega_H = H sqrt(largest eigenvalue of W K)                                                    (6)
@@ -14,7 +14,8 @@
 //
 // Lamps: green below 5e-4, amber below 5e-3, red above (docs/coupling-alarm.md: what errors they stand for);
 // net < -3e-3 for 0.2 s: the coupling creates energy. The scale F^2 / (2 K) uses the largest |F| of the window,
-// at least 1 N.
+// at least 1 N; v^2 / (2 W) is the kinetic energy that the port can give back, at the last exchange: a port without
+// force that begins to move has no other scale. (5') takes the largest own of all ports without it.
 //
 // The error of a light port is judged against the machine's energy, since its own is too small a scale.
 //
@@ -22,9 +23,8 @@
 // the whole window and does no more. A coupling that diverges fails exchange after exchange. So a port diverges when
 //   sum |dE*| > 0.1 max(sum |W_mech|, F^2 / (2 K))                                                  (7)
 // within half of the window's buckets or more, each with its own work and its own largest |F|: a swing that grows
-// within the window does not hide the buckets before it; and at once when sum |dE*| > 4 max(own, v^2 / (2 W_ii)), more
-// than any jump of a sound run leaves. A port without force that others begin to move has done no work yet: its kinetic
-// energy stands in for it.
+// within the window does not hide the buckets before it; and at once when sum |dE*| > 4 own, more than any jump of a
+// sound run leaves, if forces can move the port at all (W > 0).
 #pragma once
 
 #include <array>
@@ -88,7 +88,7 @@ class Indicator {
   [[nodiscard]] const PortDefects& port(std::size_t i) const noexcept { return defects_[i]; }
   [[nodiscard]] double omega_H() const noexcept { return omega_H_; }  // of the last update [-]
   [[nodiscard]] bool creates_energy() const noexcept;
-  // sum |dE*| of the window over the port's own scale, or its kinetic energy of the last update where that is more [-]
+  // sum |dE*| of the window over the port's own scale [-]
   [[nodiscard]] double own_residual(std::size_t port) const noexcept;
   // (7), by the full buckets, or at once by own_residual. No allocation.
   [[nodiscard]] bool diverges(std::size_t port) const noexcept;
@@ -127,9 +127,9 @@ class Indicator {
   std::vector<std::array<Bucket, kBuckets>> window_;   // by port
   std::vector<Bucket> others_;                         // by port, sums of the window without the current bucket
   std::vector<std::array<double, kLeftOut>> largest_;  // by port, residuals of others_, falling
+  std::vector<double> kinetic_;                        // J, by port, v^2 / (2 W); infinite: no force moves it
   std::vector<std::int64_t> steps_below_alarm_;        // by port
   std::vector<PortDefects> defects_;
-  std::vector<double> kinetic_;  // by port, of the last update [J]; infinite for a port that nothing moves
   double omega_H_ = 0;
 };
 

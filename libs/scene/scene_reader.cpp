@@ -78,6 +78,7 @@ class SceneReader {
     check_content();
     find_changes_behind_the_end();
     if (report_.is_clean() && !lacks_files()) {
+      check_problems([&](Problems& errors, Problems&) { check_changes(scene_, errors); });
       check_problems([&](Problems&, Problems& warnings) {
         find_without_effect(scene_, warnings);
         find_unsettled_start(scene_, warnings);

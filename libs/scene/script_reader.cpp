@@ -364,7 +364,7 @@ class ScriptReader {
     if (context_.report.size() > problems) return false;
     change.choice = parameter->choice_of(change.value);
     // only for a scene without problems so far, whose mechanism can be built
-    if (context_.report.size() > 0 || parameter->is_choice()) return true;
+    if (context_.report.size() > 0) return true;
     const Status status = directory().check(change.set, change.value).status;
     if (!status.is_ok()) report_problem(node.mark, path + ".value", {status.text, "", ""});
     return status.is_ok();

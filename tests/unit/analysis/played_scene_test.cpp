@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "build_paths.h"
+#include "scene/scene.h"
+#include "session/direct_session.h"
 
 namespace slew::analysis {
 namespace played_scene_test {
@@ -83,6 +85,22 @@ TEST(PlayedScene, ParameterChangesOfTheScriptAreCarriedOut) {
   EXPECT_DOUBLE_EQ(value(played, "Rod.mass"), 2);
   advance_to(played, 0.03);
   EXPECT_DOUBLE_EQ(value(played, "Rod.mass"), 3);
+}
+
+// 1000 kg on an arm of 0.3 m: a torque, which no motor of 100 cc/rev holds below its relief valve
+TEST(DirectSession, RefusesAStartWithTheTorqueOfAMotorInItsUnit) {
+  const scene::Scene scene = scene::load_text(
+      "bodies:\n  W: {mass: 1000 kg, inertia: [1000, 1000, 1000], center_of_mass: [0.3 m, 0, 0]}\n"
+      "joints:\n  J: {type: revolute, body2: W}\n"
+      "forces:\n  R: {type: rotational, body1: Ground, f1: [1, 0, 0], g1: [0, 1, 0], body2: W, f2: [1, 0, 0]}\n"
+      "volumes:\n  T: {initial_pressure: 2 bar, fixed: true}\n  A: {rigid_volume: 0.2 l}\n  B: {rigid_volume: 0.2 l}\n"
+      "components:\n"
+      "  M: {type: hydraulic_motor, force: R, port_a: A, port_b: B, displacement: 100 cc/rev, gear_ratio: 1}\n"
+      "  RA: {type: relief_valve, port_1: A, port_2: T, nominal_flow: 100 l/min, setting_pressure: 320 bar}\n",
+      "winch");
+  session::DirectSession session(scene);
+  EXPECT_NE(session.start().text.find(" bar in A to hold 2.943 kN m on M, but RA opens fully at 329 bar."),
+            std::string::npos);
 }
 
 }  // namespace played_scene_test

@@ -25,6 +25,7 @@ Pair one_port() {
   pair.actuators.F[0] = 1e5;
   pair.actuators.K[0] = 1e8;
   pair.mechanism.F_used[0] = 1e5;
+  pair.mechanism.W[0] = 1e-3;
   return pair;
 }
 
@@ -101,6 +102,47 @@ TEST(Indicator, DisagreementBeyondAllThatThePortDidIsDivergenceAtOnce) {
     indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
   }
   EXPECT_EQ(steps, 7);
+}
+
+// 500 kg that are pushed from rest: the port's force and work are next to nothing, its motion is not
+TEST(Indicator, APortWithoutForceThatBeginsToMoveDoesNotDiverge) {
+  for (const double W : {1.0 / 500, 0.0}) {
+    Indicator indicator(1, milliseconds(1));
+    Pair pair = one_port();
+    pair.actuators.F[0] = pair.mechanism.F_used[0] = 0;
+    pair.mechanism.W[0] = W;
+    for (int i = 0; i < 300; ++i) indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
+    pair.mechanism.v[0] = 2.6e-3;
+    pair.actuators.work[0] = 1e-6;  // of 1.7e-3 J
+    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
+    EXPECT_GT(indicator.own_residual(0), 100);
+    EXPECT_FALSE(indicator.diverges(0)) << W;
+    // as much as the motion's own energy is no rounding
+    pair.actuators.work[0] = 1e-2;
+    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
+    EXPECT_EQ(indicator.diverges(0), W > 0);
+  }
+}
+
+// K = 1e7 N/m, 1500 kg at 0.1 m/s: of their 7.5 J half at least is in the motion or in the largest force so far
+TEST(Indicator, ALampOfTheFirstStepsHasTheScaleOfTheWholeSwing) {
+  for (const PortLevel level : {PortLevel::tlm, PortLevel::hold}) {
+    const PortLevels levels(Level::two, {{"Port", level}});
+    Indicator indicator(1, milliseconds(1));
+    Pair pair = one_port();
+    pair.mechanism.W[0] = 1.0 / 1500;
+    const double omega = std::sqrt(1e7 / 1500), H = 1e-3;
+    double most = 0;
+    for (int i = 1; i <= 40; ++i) {
+      pair.actuators.F[0] = pair.mechanism.F_used[0] = -1e7 * 0.1 / omega * std::sin(omega * i * H);
+      pair.mechanism.v[0] = 0.1 * std::cos(omega * i * H);
+      pair.actuators.work[0] = 0.01;
+      indicator.update(pair.mechanism, pair.actuators, PortArray{1e7}, levels);
+      most = std::max(most, indicator.port(0).eta / i);
+    }
+    EXPECT_GE(most, 0.01 / 7.5);
+    EXPECT_LE(most, 0.01 / 3.7);
+  }
 }
 
 TEST(Indicator, ASwingThatGrowsTenfoldInEveryBucketIsDivergence) {

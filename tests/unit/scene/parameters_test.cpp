@@ -237,6 +237,13 @@ components:
   EXPECT_EQ(directory.parse_assignment("CL.coupling=tlm").status.text, std::string("CL.coupling: CL: ") + why);
   EXPECT_FALSE(directory.parse_assignment("session.coupling=tlm").status.is_ok());
   EXPECT_TRUE(directory.parse_assignment("session.coupling=hold").status.is_ok());
+  // by the script
+  for (const std::string name : {"session", "CL"}) {
+    const std::string script = "script: {parameters: [{at: 1 s, set: " + name + ".coupling, value: tlm}]}\n";
+    EXPECT_NE(problems_of(shared + script).find("script.parameters[0].value: " + name + ".coupling: CL: " + why),
+              std::string::npos);
+    EXPECT_EQ(problems_of(text("Other") + script), "");
+  }
   // a fixed volume has no lines
   EXPECT_EQ(problems_of(text("Other"), {"session.coupling=tlm"}), "");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/script.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/parameters.h"
 #include "scene/scene.h"
 #include "scene_text.h"
 #include "temporary_folder.h"
@@ -219,6 +221,30 @@ TEST(Script, AChangeThatActsBehindTheEndOfTheRunHasNoEffect) {
   EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
     return warning.find("the change of Rod.mass at 0.995 s has no effect") != std::string::npos;
   }));
+}
+
+// rules between fields hold for the values that the script reaches, change after change
+TEST(Script, AChangeThatTheComponentsRulesRefuseIsRefused) {
+  const std::string circuit =
+      "volumes:\n  T: {fixed: true}\n  P: {rigid_volume: 1 l}\n  S: {rigid_volume: 1 l}\ncomponents:\n"
+      "  U: {type: unloading_valve, port_1: P, port_2: T, port_3: S, nominal_flow: 60 l/min, cut_out_pressure: 100 "
+      "bar, "
+      "cut_in_pressure: 80 bar}\n"
+      "script:\n  parameters:\n";
+  const auto change = [](const char* at, const char* key, const char* value) {
+    return fmt::format("    - {{at: {}, set: U.{}, value: {}}}\n", at, key, value);
+  };
+  const std::string refusal = problems_of(circuit + change("1 s", "cut_in_pressure", "120 bar"));
+  EXPECT_NE(refusal.find("script.parameters[0]: U.cut_in_pressure is refused: U.cut_in_pressure: the valve would shut "
+                         "above the pressure at which it opens; expected at most cut_out_pressure"),
+            std::string::npos)
+      << refusal;
+  const std::string out = change("1 s", "cut_out_pressure", "150 bar");
+  EXPECT_EQ(problems_of(circuit + out + change("2 s", "cut_in_pressure", "120 bar")), "");
+  EXPECT_EQ(problems_of(circuit + change("1 s", "cut_in_pressure", "120 bar") + out), "") << "in one step";
+  const Scene scene = load_text(circuit + out, "test");
+  EXPECT_EQ(load_text(scene.expanded_text, "test").expanded_text, scene.expanded_text);
+  EXPECT_EQ(ParameterDirectory(scene).find("U.cut_out_pressure")->value, 100e5);
 }
 
 TEST(Script, MoreChangesInOneStepThanATickHoldsAreRefused) {
