@@ -166,11 +166,15 @@ BlockLdl::BlockLdl(const BlockPattern& pattern) : nodes_(pattern.nodes), rank_(p
 void BlockLdl::plan(const BlockPattern& pattern) {
   Neighbours left = neighbours_of(pattern);
   std::vector<bool> is_done(nodes_.size());
-  std::vector<int> unclosed(nodes_.size());  // count of regular nodes that a closing node waits for
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (nodes_[i].kind == BlockKind::closing) unclosed[i] = static_cast<int>(left[i].size());
+  Neighbours before = left;  // by closing node: nodes that it waits for
+  for (const auto& [closing, node] : pattern.follows) {
+    SLEW_CHECK(nodes_[at(closing)].kind == BlockKind::closing && nodes_[at(node)].kind != BlockKind::closing);
+    before[at(closing)].insert(node);
   }
-  const Neighbours coupled = left;
+  std::vector<int> unclosed(nodes_.size());  // how many of them are left
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (nodes_[i].kind == BlockKind::closing) unclosed[i] = static_cast<int>(before[i].size());
+  }
   std::vector<std::vector<int>> columns;
   while (order_.size() < nodes_.size()) {
     int best = -1;
@@ -189,7 +193,9 @@ void BlockLdl::plan(const BlockPattern& pattern) {
         if (a != b) left[at(a)].insert(b);
       }
     }
-    for (const int a : coupled[at(best)]) --unclosed[at(a)];
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      if (nodes_[i].kind == BlockKind::closing && before[i].contains(best)) --unclosed[i];
+    }
   }
   for (std::size_t k = 0; k < columns.size(); ++k) {
     std::sort(columns[k].begin(), columns[k].end(), [&](int a, int b) { return rank_[at(a)] < rank_[at(b)]; });

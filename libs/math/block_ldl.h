@@ -9,9 +9,10 @@
 // earlier nodes: all nodes of a matrix that is positive definite as a whole. It is factorised by Cholesky, so that
 // stiff and soft unknowns may stand in one block. A `closing` node holds rows that close a loop. Nodes are eliminated
 // one after the other, K = L D L^T with D block-diagonal. The next node is the eligible node with the fewest
-// neighbours; a closing node follows all nodes that it closes. So the cost of a tree grows linearly with its size, and
-// a loop adds the fill along itself. (A body and its joint go together, not one after the other as in Baraff 1996: -G
-// M^-1 G^T alone would square the condition of M.)
+// neighbours; a closing node follows all nodes that it closes and those of `follows`: all unknowns by whose motion its
+// rows can be met, since rows that the nodes before it do not move seem redundant. So the cost of a tree grows linearly
+// with its size, and a loop adds the fill along itself. (A body and its joint go together, not one after the other as
+// in Baraff 1996: -G M^-1 G^T alone would square the condition of M.)
 //
 // Rows of a closing node that depend on rows eliminated before are found by the pivots of its block and left out: their
 // unknowns become zero, the others solve the rest exactly when the right-hand side is consistent. is_redundant() names
@@ -38,6 +39,7 @@ struct BlockNode {
 struct BlockPattern {
   std::vector<BlockNode> nodes;
   std::vector<std::pair<int, int>> couplings;  // pairs of different nodes, each once
+  std::vector<std::pair<int, int>> follows;    // closing node, node before it: beside those that it is coupled to
 };
 
 class BlockLdl {

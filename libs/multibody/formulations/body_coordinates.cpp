@@ -32,6 +32,28 @@ void couple_points(const Model& model, BodyModel& body) {
   }
 }
 
+// Nodes by whose motion the rows of a cut are met: the links of its loop, without the one where its sides meet, and
+// the modes that carry them. The fewest neighbours alone would take a cut before the inner links of its loop.
+void follow_loops(const Model& model, BodyModel& body) {
+  const auto follow = [&](int closing, int link) {
+    body.pattern.follows.emplace_back(closing, link - 1);
+    if (model.links[at(link)].joint != LinkJoint::node) return;
+    const int part = model.nodes[at(model.links[at(link)].node)].part;
+    for (const ModalBlock& block : body.modal) {
+      if (block.part == at(part)) body.pattern.follows.emplace_back(closing, block.node);
+    }
+  };
+  for (std::size_t i = model.links.size(); i < body.joints.size(); ++i) {
+    // links have higher numbers than their parents
+    int a = body.joints[i].link1, b = body.joints[i].link2;
+    while (a != b) {
+      int& outer = a > b ? a : b;
+      follow(static_cast<int>(i) - 1, outer);
+      outer = model.links[at(outer)].parent;
+    }
+  }
+}
+
 }  // namespace
 
 BodyModel build_body_model(const Model& model) {
@@ -80,6 +102,7 @@ BodyModel build_body_model(const Model& model) {
     for (const int link : links_of(model, model.gears[k])) body.pattern.couplings.emplace_back(node, link - 1);
   }
   body.modal = add_modal_blocks(model, math::BlockKind::regular, body.pattern);
+  follow_loops(model, body);
   return body;
 }
 

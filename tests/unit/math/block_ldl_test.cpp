@@ -143,6 +143,27 @@ TEST(BlockLdl, SolvesLoopsBranchesAndCoupledMasses) {
   expect_solved(system, 1e-10);
 }
 
+// Massless bodies 1, 2 and 3 stand on body 0, 2 and 3 are coupled, 1 is on the ground: its rows are met by the motion
+// of 0 alone, to which they are not coupled. With the fewest neighbours next they would come before it, as redundant.
+TEST(BlockLdl, TakesTheRowsOfALoopAfterItsInnerBodies) {
+  BlockPattern pattern;
+  pattern.nodes = {{6, BlockKind::regular},
+                   {12, BlockKind::regular},
+                   {12, BlockKind::regular},
+                   {12, BlockKind::regular},
+                   {5, BlockKind::closing}};
+  pattern.couplings = {{1, 0}, {2, 0}, {3, 0}, {3, 2}, {4, 1}};
+  pattern.follows = {{4, 0}, {4, 1}};
+  System system(pattern);
+  system.hang(0, 0, -1);
+  for (const int node : {1, 2, 3}) system.hang(node, 6, 0, 0.0);
+  system.close(4, 0, 5, 1);
+  Matrix coupling(12, 12);
+  coupling.put(0, 0, 0.1 * system.random(6, 6));
+  system.add(3, 2, coupling);
+  expect_solved(system, 1e-10);
+}
+
 TEST(BlockLdl, OfAChainHasABlockALink) {
   for (const int bodies : {10, 100}) EXPECT_EQ(BlockLdl(chain(bodies, 5)).coupling_count(), bodies - 1);
 }
