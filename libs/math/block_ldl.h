@@ -39,7 +39,7 @@ struct BlockNode {
 struct BlockPattern {
   std::vector<BlockNode> nodes;
   std::vector<std::pair<int, int>> couplings;  // pairs of different nodes, each once
-  std::vector<std::pair<int, int>> follows;    // closing node, node before it: beside those that it is coupled to
+  std::vector<std::pair<int, int>> follows{};  // closing node, node before it: beside those that it is coupled to
 };
 
 class BlockLdl {

@@ -61,7 +61,7 @@ class Search {
   void find_in(const InputDef& input) {
     if (input.scale == 0) warn(input.name + ".scale", "the input has no effect: its scale is 0", "another scale");
     const auto check_load = [&](const auto& load, double value, const Table& table, std::string_view key) {
-      if (load.name != input.primitive || value != 0 || !is_zero(table)) return;
+      if (load.name != input.primitive || value != 0 || !is_zero(table) || is_changed_live(load.name, key)) return;
       warn(input.name + ".primitive",
            fmt::format("the input has no effect: it is multiplied by the {0} of '{1}', which is 0", key, load.name),
            fmt::format("a {0} other than 0 or a {0}_table, which the input scales", key));
@@ -100,15 +100,16 @@ class Search {
          fmt::format("a scale up to the valve's maximum_control_signal, {:g}", most));
   }
 
-  [[nodiscard]] bool is_changed_live(const std::string& element, std::string_view key) const {
+  // by the scene's own script, to another value than 0
+  [[nodiscard]] bool is_changed_live(std::string_view element, std::string_view key) const {
     const std::string path = fmt::format("{}.{}", element, key);
     return std::any_of(scene_.script.changes.begin(), scene_.script.changes.end(),
-                       [&](const ScriptChange& change) { return change.set == path; });
+                       [&](const ScriptChange& change) { return change.set == path && change.value != 0; });
   }
 
   template <typename Load>
   void find_in(const Load& load, double value, const Table& table, std::string_view key) {
-    if (value != 0 || !is_zero(table) || referenced_.contains(load.name)) return;
+    if (value != 0 || !is_zero(table) || referenced_.contains(load.name) || is_changed_live(load.name, key)) return;
     warn(load.name, fmt::format("it has no effect: its {} is 0", key),
          fmt::format("a {0} other than 0 or a {0}_table", key));
   }
@@ -120,6 +121,10 @@ class Search {
         spring.end_spring_constant != 0 || spring.end_damping_constant != 0 || !is_zero(spring.spring_table) ||
         !is_zero(spring.damper_table)) {
       return;
+    }
+    for (const std::string_view key :
+         {"spring_constant", "damping_constant", "end_spring_constant", "end_damping_constant"}) {
+      if (is_changed_live(spring.name, key)) return;
     }
     warn(spring.name, fmt::format("it has no effect: without stiffness and damping it exerts no {}", exerted),
          "a spring_constant, damping_constant or tables, or an actuator that drives it");
@@ -134,7 +139,7 @@ class Search {
       const std::string key = std::string(kFriction) + std::string(speed.key.substr(kSpeed.size()));
       const auto friction = std::find_if(element.fields.begin(), element.fields.end(),
                                          [&](const Field& field) { return field.key == key; });
-      if (friction == element.fields.end() || number(*friction) != 0) continue;
+      if (friction == element.fields.end() || number(*friction) != 0 || is_changed_live(element.name, key)) continue;
       warn(fmt::format("{}.{}", element.name, speed.key), fmt::format("it has no effect: {} is 0", key),
            fmt::format("a {} above 0", key));
     }

@@ -159,7 +159,8 @@ void expect_ports_reduced_by_all_rows(const Mechanism& mechanism) {
         opening += part;
         scale += std::fabs(part);
       }
-      EXPECT_LE(std::fabs(opening), kTolerance * std::max(scale, 1e-6)) << port << ", " << k;
+      // below: the rounding of responses of about 1, at a port that can hardly move
+      EXPECT_LE(std::fabs(opening), kTolerance * std::max(scale, 1e-5)) << port << ", " << k;
     }
     for (std::size_t other = 0; other <= port; ++other) {
       double w = 0;

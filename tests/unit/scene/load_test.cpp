@@ -323,6 +323,17 @@ TEST(Load, WhatChangesNothingIsReportedAsAWarning) {
             std::string::npos);
   EXPECT_EQ(force(spring + ", free_length: 1 m, damping_constant: 1 Ns/m"), "");
   EXPECT_NE(force("type: point_force, body: Rod").find("F: it has no effect: its force is 0"), std::string::npos);
+
+  // unless the scene's own script switches it on
+  const auto scripted = [&](const std::string& keys, const std::string& change) {
+    return warnings(hinge + "session: {duration: 3 s}\nforces:\n  F: {" + keys +
+                    "}\nscript:\n  parameters:\n    - {at: 1 s, set: " + change + ", over: 1 s}\n");
+  };
+  EXPECT_EQ(scripted("type: point_force, body: Rod", "F.force, value: 10 N"), "");
+  EXPECT_EQ(scripted("type: point_torque, body: Rod", "F.torque, value: 10 Nm"), "");
+  EXPECT_EQ(scripted(spring + ", free_length: 1 m", "F.spring_constant, value: 10 N/m"), "");
+  EXPECT_NE(scripted("type: point_force, body: Rod", "F.force, value: 0 N").find("F: it has no effect"),
+            std::string::npos);
   EXPECT_EQ(force("type: point_force, body: Rod, force: 1 N"), "");
 }
 
