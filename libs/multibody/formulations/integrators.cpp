@@ -332,7 +332,9 @@ bool take_rule(const StageContext& at, const StepRule& rule, const RowForces& fo
 // projection onto the joints
 bool close(const StageContext& at) noexcept {
   State& joints = at.moving.joints;
-  if (at.moving.bodies != nullptr) return project(at.model, at.body, *at.moving.bodies, joints, at.ws, at.bws);
+  if (at.moving.bodies != nullptr) {
+    return project_softly(at.model, at.body, *at.moving.bodies, joints, at.ws, at.bws);
+  }
   if (!at.model.has_closing_rows()) return true;
   renew_matrix(at.model, joints.q, joints.u, at.ws);
   return project(at.model, joints.q, joints.u, at.ws);
