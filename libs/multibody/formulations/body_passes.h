@@ -40,6 +40,11 @@ void put_rows(const BodyModel& body, BodyWorkspace& bws, Value value) noexcept {
 [[nodiscard]] bool prepare(const Model& model, const BodyModel& body, const BodyState& state, State& joints,
                            Workspace& ws, BodyWorkspace& bws) noexcept;
 
+// project() with the factors of an implicit stage first, [M + tau D + tau sigma K  G^T; G  0]: a correction in the
+// metric of M alone strains stiff elements, which then swing.
+[[nodiscard]] bool project_softly(const Model& model, const BodyModel& body, BodyState& state, State& joints,
+                                  Workspace& ws, BodyWorkspace& bws) noexcept;
+
 // Writes into the right-hand side: minus the wrenches that the links and the dummies between them need, at the
 // accelerations that the motion holds, and minus b of the joints' rows.
 void put_bias(const Model& model, const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept;

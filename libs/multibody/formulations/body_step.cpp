@@ -60,12 +60,9 @@ void solve_violation(const BodyModel& body, BodyWorkspace& bws, Value value) noe
   bws.ldl.solve(bws.solution);
 }
 
-}  // namespace
-
-bool project(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,
-             BodyWorkspace& bws) noexcept {
-  // (3), both with the matrix at the start of the projection
-  const bool is_regular = prepare(model, body, state, joints, ws, bws);
+// (3), both with the present factors; needs the motion and the joints' rows. False: the joints were not closed.
+bool remove_violation(const Model& model, const BodyModel& body, BodyState& state, const State& joints, Workspace& ws,
+                      BodyWorkspace& bws) noexcept {
   const Extent extent = extent_of(ws);
   const double closed = kClosed * extent.length, steady = kClosed * extent.speed;
   Drift left = drift(bws);
@@ -83,8 +80,27 @@ bool project(const Model& model, const BodyModel& body, BodyState& state, State&
     evaluate_joints(model, body, joints, ws, bws);
     left = drift(bws);
   }
+  return left.position <= closed && left.rate <= steady;
+}
+
+}  // namespace
+
+bool project(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,
+             BodyWorkspace& bws) noexcept {
+  const bool is_regular = prepare(model, body, state, joints, ws, bws);
+  const bool is_closed = remove_violation(model, body, state, joints, ws, bws);
   find_joint_coordinates(model, ws, joints);
-  return is_regular && left.position <= closed && left.rate <= steady;
+  return is_regular && is_closed;
+}
+
+bool project_softly(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,
+                    BodyWorkspace& bws) noexcept {
+  if (bws.ldl.smallest_pivot() >= kNearSingular) {
+    update_body_motion(model, state, ws);
+    evaluate_joints(model, body, joints, ws, bws);
+    static_cast<void>(remove_violation(model, body, state, joints, ws, bws));
+  }
+  return project(model, body, state, joints, ws, bws);
 }
 
 bool project_step(const Model& model, const BodyModel& body, double h, BodyState& state, State& joints, Workspace& ws,

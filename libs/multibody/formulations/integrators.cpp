@@ -20,6 +20,8 @@ namespace {
 
 // Newton's method with a kept matrix gains one or two digits per correction; bisection to a jump takes more
 constexpr int kMostCorrections = 80;
+// correction from which on stops are looked at: one that keeps a stage from settling has changed by then
+constexpr int kFirstLook = 4;
 // ratio of a correction to the previous one above which the matrix is renewed
 constexpr double kSlowStage = 0.3;
 // rate of an impact times sub-step
@@ -79,6 +81,10 @@ bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) n
   for (int i = 0; i < kMostCorrections; ++i, ++s.iterations) {
     const bool is_closed = !is_near_singular || show_on_joints(at);
     find_residual(at, stage);
+    if (s.has_stops && i >= kFirstLook && !s.has_alternated) {
+      see_stops(at.model, at.ws, s.stops);
+      s.has_alternated = s.stops != s.stops_0;
+    }
     if (fresh < 0 || is_near_singular) {
       is_regular = factorize_stage(at, stage) && is_closed;
       is_near_singular = is_near_singular || at.bws.ldl.smallest_pivot() < kNearSingular;
@@ -146,10 +152,11 @@ void take_start(const StageContext& at) noexcept {
   }
 }
 
-// true if the contact state of a stop changed since the start, or a stop or a singular position prevented convergence
+// True if the contact state of a stop changed since the start, or did so in an iteration that it kept from settling.
+// Any other iteration without convergence is not a touch, and is reported.
 bool has_touched(const StageContext& at, bool has_settled) noexcept {
   see_stops(at.model, at.ws, at.stages.stops);
-  return at.stages.stops != at.stages.stops_0 || (!has_settled && (at.stages.has_stops || at.stages.is_near_singular));
+  return at.stages.stops != at.stages.stops_0 || (!has_settled && at.stages.has_alternated);
 }
 
 // a sub-step in which a stop is touched or left, repeated from its start
@@ -326,7 +333,9 @@ bool take_rule(const StageContext& at, const StepRule& rule, const RowForces& fo
 // projection onto the joints
 bool close(const StageContext& at) noexcept {
   State& joints = at.moving.joints;
-  if (at.moving.bodies != nullptr) return project(at.model, at.body, *at.moving.bodies, joints, at.ws, at.bws);
+  if (at.moving.bodies != nullptr) {
+    return project_softly(at.model, at.body, *at.moving.bodies, joints, at.ws, at.bws);
+  }
   if (!at.model.has_closing_rows()) return true;
   renew_matrix(at.model, joints.q, joints.u, at.ws);
   return project(at.model, joints.q, joints.u, at.ws);
@@ -405,7 +414,7 @@ bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Mo
   stages.iterations = 0;
   const StageContext at{model, body, moving, ws, bws, stages};
   const RowForces forces{h, mean, slope};
-  stages.is_near_singular = false;
+  stages.is_near_singular = stages.has_alternated = false;
   // an impulse and (3) need the mean force, the others begin with the force at the start
   const bool begins_at_start = rule.integrator == Integrator::trapezoidal || rule.integrator == Integrator::sdirk2;
   forces.put(begins_at_start ? 0 : 0.5 * h, stages.row_force);
