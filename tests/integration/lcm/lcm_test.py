@@ -357,7 +357,8 @@ def inside(source, build, slewring, is_long):
             require(f"%lo:{PORT}" in sockets, f"the bridge's socket is open to the network:\n{sockets}")
             targets = ("0.84", "0.88") if is_long else ("0.84",)
             close_the_loop(processes, f"{folder}/handler/lift_controller", folder, targets)
-            inputs = [data for channel, _, data in events_so_far(live) if channel == f"{PREFIX}_INPUT"]
+            inputs = wait_for("the handler's inputs in the log", lambda: [
+                data for channel, _, data in events_so_far(live) if channel == f"{PREFIX}_INPUT"])
             fall_silent(folder, slewring, inputs[0][:8])
             changed_at = request_parameters(f"{folder}/installed/share/slewring/slewring.lcm", folder, live)
             wrong = send_wrong_inputs(inputs[0][:8])
