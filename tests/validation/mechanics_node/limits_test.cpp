@@ -116,6 +116,27 @@ TEST_P(Limits, ThatOnlyDampHoldWhatFallsOntoThem) {
   EXPECT_NEAR(m.value("R.position"), -0.01, 1.5e-4);
 }
 
+// a load that covers the gap within the first step: the limit took part too late, and its spring gave what it never
+// held
+TEST_P(Limits, ThatALoadReachesFromRestReturnItsWork) {
+  const double load = 1e4;  // m/s2: 5 mm in the first step
+  if (GetParam().integrator == "semi_implicit_euler")
+    GTEST_SKIP() << "of order 1: falls twice as far in the first step";
+  for (const double k : {1e8, 1e10, 1e12}) {
+    for (const double gap : {0.5e-3, 2e-3, 4.5e-3}) {
+      SCOPED_TRACE("k = " + std::to_string(k) + ", gap = " + std::to_string(gap));
+      std::string text = scene_of(GetParam(), k, 0, gap, "-1e4");
+      text.replace(text.find("-4.43"), 5, "0");
+      MechanicsAlone m(scene::load_text(text, "limit"));
+      for (int n = 0; n < 60; ++n) {
+        m.step();
+        const double x = m.value("R.position"), v = m.value("R.velocity"), depth = std::max(0.0, -gap - x);
+        ASSERT_LT(0.5 * kMass * v * v + 0.5 * k * depth * depth + kMass * load * x, 0.01 * kMass * load * gap) << n;
+      }
+    }
+  }
+}
+
 // random masses, springs, dampers, gaps and speeds on a hinge under a load that presses: the energy of the motion, of
 // the spring and of the load never grows
 TEST(Limit, NeverGivesWhatWasNotThere) {
