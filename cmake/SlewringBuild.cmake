@@ -200,7 +200,7 @@ function(slewring_test name)
     slewring_precompile(${name} tests)
   endif()
   if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 120)
+    set(ARG_TIMEOUT 600)  # ends what hangs, in Debug beside other work too
   endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT}
                        RUN_SERIAL $<BOOL:${ARG_SERIAL}>)
