@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <type_traits>
 
@@ -150,6 +151,38 @@ OptionText text_of(CLI::Option& option) {
   text.takes_a_list = option.get_delimiter() != '\0';
   return text;
 }
+
+constexpr std::size_t kHelpWidth = 80;
+
+// Descriptions in lines that end at kHelpWidth; CLI11 indents what follows a line break.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_desc(const CLI::Option* option) const override { return in_lines(option->get_description()); }
+
+  std::string make_subcommand(const CLI::App* verb) const override {
+    std::ostringstream text;
+    CLI::detail::format_help(text, verb->get_display_name(true), in_lines(verb->get_description()), get_column_width());
+    return text.str();
+  }
+
+ private:
+  [[nodiscard]] std::string in_lines(const std::string& description) const {
+    std::string lines;
+    std::size_t length = 0;  // of the last line
+    for (const std::string& word : CLI::detail::split(description, ' ')) {
+      if (length > 0 && get_column_width() + length + 1 + word.size() > kHelpWidth) {
+        lines += '\n';
+        length = 0;
+      } else if (length > 0) {
+        lines += ' ';
+        ++length;
+      }
+      lines += word;
+      length += word.size();
+    }
+    return lines;
+  }
+};
 
 CommandText text_of(CLI::App& app) {
   CommandText text{app.get_name(), app.get_description(), app.get_footer(), {}, {}};
@@ -344,6 +377,7 @@ CommandText Command::text() const {
 Program::Program(const std::string& name, const std::string& description)
     : Command(nullptr, &chosen_action_), name_(name), root_(std::make_unique<CLI::App>(description, name)) {
   app_ = root_.get();
+  app_->formatter(std::make_shared<HelpFormatter>());
 }
 
 Program::~Program() = default;

@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <sstream>
+#include <string>
 
 #include "core/failure.h"
 
@@ -182,6 +185,22 @@ TEST_F(Environment, AWrongValueNamesItsVariable) {
 TEST_F(Environment, DoesNotEndAVerbThatHasNoUseForIt) {
   setenv("SLEWRING_TEST_DOMAIN", "500", 1);
   EXPECT_EQ(problem_of(program_, {"check"}), "");
+}
+
+TEST(Help, DescriptionsEndAtEightyColumns) {
+  Program program("test", "a test");
+  std::string way;
+  const std::string words = "one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen";
+  program.option("--way", way, words);
+  program.command("go", words);
+  std::istringstream lines(program.help());
+  std::string joined;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 80U) << line;
+    joined += ' ' + line.substr(std::min(line.size(), line.find_first_not_of(' ')));
+  }
+  EXPECT_NE(joined.find("--way TEXT                  " + words), std::string::npos) << joined;
+  EXPECT_NE(joined.find("go                          " + words), std::string::npos) << joined;
 }
 
 TEST(Value, MayBeReplacedByAnother) {
