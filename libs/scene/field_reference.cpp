@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <span>
@@ -123,6 +124,39 @@ class TypeTables {
   std::map<std::string, std::string> types_;  // by row: the type that shows it
 };
 
+constexpr std::size_t kLineWidth = 120;  // of prose in documents, in characters; tests/architecture/words_test.py
+
+// One line of prose in lines of kLineWidth, broken at spaces outside of code spans.
+std::string wrapped(std::string_view line) {
+  std::string text;
+  std::size_t width = 0, begin = 0;
+  bool is_code = false;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    if (i < line.size() && line[i] == '`') is_code = !is_code;
+    if (i < line.size() && (line[i] != ' ' || is_code)) continue;
+    const std::string_view word = line.substr(begin, i - begin);
+    const bool fits = width + 1 + word.size() <= kLineWidth;
+    if (begin > 0) text += fits ? ' ' : '\n';
+    text += word;
+    width = (begin > 0 && fits ? width + 1 : 0) + word.size();
+    begin = i + 1;
+  }
+  return text;
+}
+
+// Markdown with wrapped prose. Rows of tables and headings stay on one line.
+std::string with_wrapped_prose(std::string_view text) {
+  std::string result;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    result += line.starts_with('|') || line.starts_with('#') ? std::string(line) : wrapped(line);
+    if (end < text.size()) result += '\n';
+    begin = end + 1;
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string field_reference() {
@@ -156,7 +190,7 @@ std::string field_reference() {
   text +=
       fmt::format("\n### script\n\n{}\nAn entry of `parameters` (with `value`, in the parameter's dimension):\n\n{}\n",
                   table_of(script_fields(), &script), table_of(script_change_fields(), &change));
-  return text;
+  return with_wrapped_prose(text);
 }
 
 std::string flexible_field_reference() {
@@ -182,7 +216,7 @@ std::string flexible_field_reference() {
   add("elements", "A list; without it a chain through the nodes", flex::element_fields(), &element);
   add("matrices", "Files of another finite element code", flex::matrix_file_fields(), &body.matrices);
   add("reduction", "Reduction of the body", flex::reduction_fields(), &body.reduction);
-  return text;
+  return with_wrapped_prose(text);
 }
 
 std::string with_field_reference(const std::string& document) {

@@ -3,6 +3,7 @@
 """Finds words of people's talk where programs are meant: in comments, texts of C++ and TypeScript, and documents.
 
 words_test.py ROOT [PATH ...]: files or folders below ROOT; all tracked kinds of file without paths. Prints file:line: word.
+words_test.py ROOT --width [PATH ...]: finds lines of prose in documents that are longer than WIDTH characters instead.
 The glossary in docs/notation.md has the words to use: publish, report, receive, request, resend, acknowledge, reject.
 """
 import os
@@ -22,6 +23,8 @@ PEOPLE = re.compile(
 )
 # keys and values of JSON documents, which programs read
 CONTRACTS = ('"not heard"', '"heard"', '"asked"')
+WIDTH = 120  # tables, code and a line that is one link may be longer
+ONE_LINK = re.compile(r"\s*([-*+] |\d+\. )?!?\[[^]]*\](\([^)]*\)|: *\S+)[.,;:]?")
 SKIPPED = ("tests/scenes_negative", "tests/fuzz/corpus", "build", ".git", "docs/references.bib")
 
 
@@ -34,13 +37,19 @@ def texts_of_cpp(source):
             yield source.count("\n", 0, match.start()) + 1, match[0]
 
 
-def texts_of_markdown(source):
+def lines_of_markdown(source):
+    """Lines outside of code, with their numbers."""
     is_code = False
     for number, line in enumerate(source.split("\n"), 1):
         if line.lstrip().startswith("```"):
             is_code = not is_code
         elif not is_code and not line.startswith("    "):
-            yield number, re.sub(r"`[^`]*`|\]\([^)]*\)", "", line)
+            yield number, line
+
+
+def texts_of_markdown(source):
+    for number, line in lines_of_markdown(source):
+        yield number, re.sub(r"`[^`]*`|\]\([^)]*\)", "", line)
 
 
 def comments_after_hash(source):
@@ -62,6 +71,16 @@ def findings(path):
             yield number + text.count("\n", 0, match.start()), match[0]
 
 
+def long_lines(path):
+    if not path.endswith(".md"):
+        return
+    with open(path, encoding="utf-8") as file:
+        source = file.read()
+    for number, line in lines_of_markdown(source):
+        if len(line) > WIDTH and not line.lstrip().startswith("|") and not ONE_LINK.fullmatch(line):
+            yield number, f"{len(line)} characters, expected at most {WIDTH}: wrap the line"
+
+
 def files_below(root, path):
     full = os.path.join(root, path)
     if os.path.isfile(full):
@@ -74,12 +93,19 @@ def files_below(root, path):
 
 
 def main():
-    root = sys.argv[1]
+    root, paths = sys.argv[1], sys.argv[2:]
+    find = findings
+    if paths[:1] == ["--width"]:
+        find, paths = long_lines, paths[1:]
     count = 0
-    for path in sys.argv[2:] or ["."]:
-        for file in sorted(files_below(root, path)):
-            for number, word in findings(file):
-                print(f"{os.path.relpath(file, root)}:{number}: {word}")
+    for path in paths or ["."]:
+        files = sorted(files_below(root, path))
+        if not files:
+            print(f"{path}: no file to read; expected files or folders below {root}")
+            count += 1
+        for file in files:
+            for number, finding in find(file):
+                print(f"{os.path.relpath(file, root)}:{number}: {finding}")
                 count += 1
     sys.exit(1 if count else 0)
 

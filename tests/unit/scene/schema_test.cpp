@@ -104,6 +104,25 @@ TEST(FormatDocument, IsCurrent) {
       << "run `scene_format docs/scene-format.md` (target scene_format) and commit the result";
 }
 
+TEST(FormatDocument, WrapsProseAt120AndKeepsRowsAndCodeWhole) {
+  std::size_t wrapped = 0;
+  for (const std::string& document : {field_reference(), flexible_field_reference()}) {
+    std::istringstream lines(document);
+    std::string previous;
+    for (std::string line; std::getline(lines, line); previous = line) {
+      if (line.starts_with('|') || line.starts_with('#')) continue;
+      EXPECT_LE(line.size(), 120u) << line;
+      EXPECT_EQ(std::count(line.begin(), line.end(), '`') % 2, 0) << line;
+      // a line is as full as its words allow
+      if (line.empty() || previous.empty() || previous.starts_with('|')) continue;
+      const std::size_t end = line.find(' ', line.starts_with('`') ? line.find('`', 1) : 0);
+      EXPECT_GT(previous.size() + 1 + std::min(end, line.size()), 120u) << previous;
+      ++wrapped;
+    }
+  }
+  EXPECT_GT(wrapped, 10u);
+}
+
 TEST(FormatDocument, WithoutMarkersIsNotTouched) {
   EXPECT_EQ(with_field_reference("text"), "");
 }
