@@ -60,9 +60,8 @@ ContactModel build(const ContactDef& def) {
     built.normal = build(pair.normal);
     built.has_friction = pair.friction.has_value();
     if (pair.friction) built.friction = build(*pair.friction);
-    constexpr double kMatch = 0.1;
-    built.match_distance = kMatch * std::min(model.shapes_[built.shape_a].geometry.bounding_radius,
-                                             model.shapes_[built.shape_b].geometry.bounding_radius);
+    built.match_distance = kMatchShare * std::min(model.shapes_[built.shape_a].geometry.bounding_radius,
+                                                  model.shapes_[built.shape_b].geometry.bounding_radius);
     built.half_thickness =
         inner_radius(model.shapes_[built.shape_a].geometry) + inner_radius(model.shapes_[built.shape_b].geometry);
     model.pairs_.push_back(built);

@@ -36,6 +36,9 @@ struct ContactPoint {
   double share = 0;      // share of the pair's stiffness; the shares of a pair sum to 1
 };
 
+// match_distance over the bounding radius of the smaller shape
+inline constexpr double kMatchShare = 0.1;
+
 struct ContactPair {
   std::size_t shape_a = 0, shape_b = 0;
   NormalLaw normal;

@@ -48,6 +48,12 @@ class Sweeper {
     return meeting;
   }
 
+  [[nodiscard]] std::span<const ManifoldPoint> points_at_end(const Meeting& meeting, std::span<const Pose> to,
+                                                             ContactSet& set) const noexcept {
+    if (meeting.share < 1) model_.find_pair(pair_, to[a_.frame], to[b_.frame], set);
+    return {set.manifold_.begin(), set.manifold_.size()};
+  }
+
  private:
   [[nodiscard]] bool is_clear(std::span<const Pose> poses, const ContactSet& set) const noexcept {
     return model_.is_clear(pair_, poses[a_.frame], poses[b_.frame], set);
@@ -80,6 +86,11 @@ class Sweeper {
 Meeting sweep(const ContactModel& model, std::size_t pair, std::span<const Pose> from, std::span<const Pose> to,
               ContactSet& scratch) noexcept {
   return Sweeper(model, pair).run(from, to, scratch);
+}
+
+std::span<const ManifoldPoint> points_at_end(const ContactModel& model, std::size_t pair, const Meeting& meeting,
+                                             std::span<const Pose> to, ContactSet& scratch) noexcept {
+  return Sweeper(model, pair).points_at_end(meeting, to, scratch);
 }
 
 }  // namespace slew::contact

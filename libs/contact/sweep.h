@@ -29,4 +29,10 @@ struct Meeting {
 [[nodiscard]] Meeting sweep(const ContactModel& model, std::size_t pair, std::span<const Pose> from,
                             std::span<const Pose> to, ContactSet& scratch) noexcept;
 
+// Points of a pair at the end of the path of its meeting, which was the last search with this scratch. They are valid
+// until the next one.
+[[nodiscard]] std::span<const ManifoldPoint> points_at_end(const ContactModel& model, std::size_t pair,
+                                                           const Meeting& meeting, std::span<const Pose> to,
+                                                           ContactSet& scratch) noexcept;
+
 }  // namespace slew::contact

@@ -12,6 +12,7 @@
 
 namespace slew::multibody {
 
+using contact::ContactModel;
 using contact::ContactPair;
 using contact::ContactPoint;
 using contact::RememberedContact;
@@ -277,6 +278,76 @@ double parts_of_blow(const Model& model, double h, double met_rate, Workspace& w
 
 }  // namespace
 
+namespace {
+
+RateOf chosen_rate(StepKind kind) noexcept {
+  return kind == StepKind::implicit ? RateOf::springs : RateOf::all;
+}
+
+// Whether a point at the end of the path is not one of the present points, which stay with a shape or roll along with
+// it.
+bool is_new_point(const ContactPair& pair, const ContactModel& model, const ContactWorkspace& contacts, std::size_t of,
+                  Vec3 p_W) noexcept {
+  const double nearest2 = pair.match_distance * pair.match_distance;
+  for (const ContactPoint& point : contacts.set.points()) {
+    if (point.pair != of) continue;
+    for (const std::size_t shape : {pair.shape_a, pair.shape_b}) {
+      const std::size_t frame = model.frame_of(shape);
+      const contact::Pose &from = contacts.start_poses[frame], &to = contacts.ahead[frame];
+      const Vec3 arm = point.p_W - from.p_WF, arm_to = p_W - to.p_WF;
+      const Vec3 in_shape = transpose_multiply(to.R_WF, arm_to) - transpose_multiply(from.R_WF, arm);
+      if (std::min(dot(in_shape, in_shape), dot(arm_to - arm, arm_to - arm)) < nearest2) return false;
+    }
+  }
+  return true;
+}
+
+// Rate of the impacts of further corners of a touching pair at the end of the path.
+double rate_of_new_points(const Model& model, double h, std::size_t pair, const contact::Meeting& meeting,
+                          RateOf chosen, Workspace& ws) noexcept {
+  const ContactModel& contact_model = model.contact->model;
+  const ContactPair& shapes = contact_model.pairs()[pair];
+  ContactWorkspace& contacts = *ws.contact;
+  double rate = 0;
+  for (const auto& point : points_at_end(contact_model, pair, meeting, contacts.ahead, contacts.set)) {
+    if (!is_new_point(shapes, contact_model, contacts, pair, point.p_W)) continue;
+    const contact::Meeting corner{
+        .kind = contact::Meeting::Kind::found, .n_W = point.n_W, .p_W = point.p_W, .share = 1, .travel = 0};
+    if (approach_speed(model, ws, pair, corner) <= shapes.normal.smallest_impact_speed) continue;
+    rate = std::max(rate, impact_rate(model, ws, pair, corner, h, chosen));
+  }
+  return rate;
+}
+
+// Whether any common point of two shapes that touch at this one may move faster against the other than the smallest
+// impact speed.
+bool may_land(const ContactPair& pair, const Touch& touch) noexcept {
+  const Vec3 spin = touch.ws.motion[at(touch.elements.frames[touch.a].link)].w -
+                    touch.ws.motion[at(touch.elements.frames[touch.b].link)].w;
+  const double across = 2 * pair.match_distance / contact::kMatchShare;
+  return norm(touch.velocity()) + norm(spin) * across > pair.normal.smallest_impact_speed;
+}
+
+// A path twice as long as at the present speed has no corner missed that gains less than its own speed on the way.
+constexpr double kAheadOfLanding = 2;
+
+// The same for all touching pairs within the next h.
+double rate_of_landings(const Model& model, double h, StepKind kind, Workspace& ws) noexcept {
+  const ContactElements& elements = *model.contact;
+  ContactWorkspace& contacts = *ws.contact;
+  look_ahead(kAheadOfLanding * h, contacts);
+  double rate = 0;
+  std::size_t seen = contacts.was_touching.size();
+  for (const ContactPoint& point : contacts.set.points()) {
+    if (point.pair == seen || !may_land(elements.model.pairs()[point.pair], touch_of(elements, ws, point))) continue;
+    seen = point.pair;
+    rate = std::max(rate, rate_of_new_points(model, h, seen, {}, chosen_rate(kind), ws));
+  }
+  return rate;
+}
+
+}  // namespace
+
 ContactParts contact_parts(const Model& model, double h, ContactStep step, Workspace& ws) noexcept {
   if (model.contact == nullptr) return {};
   const ContactElements& elements = *model.contact;
@@ -290,9 +361,11 @@ ContactParts contact_parts(const Model& model, double h, ContactStep step, Works
     if (meeting.kind == contact::Meeting::Kind::none) continue;
     contacts.is_near = true;
     parts = std::max(parts, kPartsPerThickness * meeting.travel / elements.model.pairs()[pair].half_thickness);
-    const bool is_new = contacts.was_touching[pair] == 0 && meeting.kind == contact::Meeting::Kind::found;
-    const RateOf chosen = step.kind == StepKind::implicit ? RateOf::springs : RateOf::all;
-    if (is_new) met_rate = std::max(met_rate, impact_rate(model, ws, pair, meeting, h, chosen));
+    if (meeting.kind != contact::Meeting::Kind::found) continue;
+    const RateOf chosen = chosen_rate(step.kind);
+    met_rate =
+        std::max(met_rate, contacts.was_touching[pair] == 0 ? impact_rate(model, ws, pair, meeting, h, chosen)
+                                                            : rate_of_new_points(model, h, pair, meeting, chosen, ws));
   }
   if (!contacts.is_near) return {};
   parts = std::clamp(parts, 1.0, kMostParts);
@@ -305,12 +378,14 @@ ContactParts contact_parts(const Model& model, double h, ContactStep step, Works
 }
 
 ContactParts contact_parts_again(const Model& model, double h, int parts, ContactStep step, Workspace& ws) noexcept {
+  const double met_rate = rate_of_landings(model, h / parts, step.kind, ws);
   if (step.kind == StepKind::implicit) {
-    const double finer = parts_of_blow(model, h, 0, ws) / parts * (1 - kContactRounding);
+    const double finer = parts_of_blow(model, h, met_rate, ws) / parts * (1 - kContactRounding);
     return {.count = static_cast<int>(std::ceil(std::max(1.0, finer)))};
   }
-  const double needed = h * contact_rate(model, ws) / step.reach;
-  if (step.kind == StepKind::settling && needed > kWorthSettling * parts && !has_impact(model, ws)) {
+  const double needed = h * std::max(contact_rate(model, ws), met_rate) / step.reach;
+  const bool may_settle = step.kind == StepKind::settling && met_rate == 0;
+  if (may_settle && needed > kWorthSettling * parts && !has_impact(model, ws)) {
     return {.is_settling = true};
   }
   ws.contact->is_lost = ws.contact->is_lost || !(needed <= kMostStiffParts);

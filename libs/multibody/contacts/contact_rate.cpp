@@ -179,6 +179,18 @@ double contact_rate(const Model& model, Workspace& ws, RateOf chosen) noexcept {
   return rate;
 }
 
+double approach_speed(const Model& model, const Workspace& ws, std::size_t pair,
+                      const contact::Meeting& meeting) noexcept {
+  const contact::ContactPair& laws = model.contact->model.pairs()[pair];
+  const auto velocity_of = [&](std::size_t shape) {
+    const std::size_t frame = model.contact->model.frame_of(shape);
+    const Vec3 path = ws.contact->ahead[frame].p_WF - ws.contact->start_poses[frame].p_WF;
+    const LinkMotion& link = ws.motion[at(model.contact->frames[frame].link)];
+    return link.v + cross(link.w, meeting.p_W - path * meeting.share - link.p);
+  };
+  return -dot(meeting.n_W, velocity_of(laws.shape_a) - velocity_of(laws.shape_b));
+}
+
 double impact_rate(const Model& model, const Workspace& ws, std::size_t pair, const contact::Meeting& meeting, double h,
                    RateOf chosen) noexcept {
   const contact::ContactPair& laws = model.contact->model.pairs()[pair];
@@ -187,17 +199,13 @@ double impact_rate(const Model& model, const Workspace& ws, std::size_t pair, co
                                  model.contact->model.frame_of(laws.shape_b)};
   const Pushed pushed(model, ws, frames[0], frames[1]);
   ContactRates as_free[2] = {pushed.as_free(0), pushed.as_free(1)};
-  Vec3 apart;
   for (std::size_t i = 0; i < 2; ++i) {
     // their positions at the meeting
     const Vec3 displacement =
         (ws.contact->ahead[frames[i]].p_WF - ws.contact->start_poses[frames[i]].p_WF) * meeting.share;
     as_free[i].c_W = as_free[i].c_W + displacement;
-    const LinkMotion& link = ws.motion[at(pushed.links[i])];
-    const Vec3 v_W = link.v + cross(link.w, meeting.p_W - displacement - link.p);
-    apart = i == 0 ? v_W : apart - v_W;
   }
-  const double approach = std::max(meeting.travel / h, -dot(meeting.n_W, apart));
+  const double approach = std::max(meeting.travel / h, approach_speed(model, ws, pair, meeting));
   const contact::ContactPoint point{.pair = pair, .p_W = meeting.p_W, .n_W = meeting.n_W, .depth = 0, .share = 1};
   const Slopes slopes = slopes_of(laws, point, approach, {}, pushed.mass(as_free, meeting.p_W, meeting.n_W));
   double rate = 0;

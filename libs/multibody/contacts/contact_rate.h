@@ -32,6 +32,10 @@ inline constexpr double kPlastic = 0.05;
 [[nodiscard]] double impact_rate(const Model& model, const Workspace& ws, std::size_t pair,
                                  const contact::Meeting& meeting, double h, RateOf chosen = RateOf::all) noexcept;
 
+// Speed [m/s] at which the shapes approach each other at a meeting, with the motion of now.
+[[nodiscard]] double approach_speed(const Model& model, const Workspace& ws, std::size_t pair,
+                                    const contact::Meeting& meeting) noexcept;
+
 // True if a contact point (of a pair that `chosen` takes) closes or opens faster than the smallest impact speed of its
 // law.
 [[nodiscard]] bool has_impact(const Model& model, const Workspace& ws, RateOf chosen = RateOf::all) noexcept;

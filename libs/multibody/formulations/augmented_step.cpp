@@ -32,6 +32,9 @@ constexpr int kMostEdgeCorrections = 80, kMostOfADividedPart = 8;
 // parts of (11): the smallest one, the factor between two lengths, and the number of divisions before the rest of the
 // sub-step takes the implicit Euler rule
 constexpr int kSmallestParts = 1024, kDivision = 4, kMostDivisions = 32;
+// A link that moves otherwise by (11) than by (5), as a share of the mechanism's length, or rad: what (5) itself misses
+// in a second at 1 ms on the crane.
+constexpr double kMovedByEuler = 1e-6;
 constexpr double kClosedRate = 1e-12;  // m/s, 1/s, relative to the mechanism's speed
 
 math::Quaternion turned(Vec3 turn, const math::Quaternion& attitude) noexcept {
@@ -245,6 +248,21 @@ struct Parts {
     return step.close_positions(slope, most);
   }
 
+  // After find_end() by (5), to compare with the one by (11).
+  void keep_displacement() const noexcept {
+    for (std::size_t k = 0; k < pws.displacement.size(); ++k) {
+      pws.trapezoid_displacement[k] = pws.displacement[k] + pws.row_displacement[k];
+    }
+  }
+  [[nodiscard]] bool is_near_trapezoid() const noexcept {
+    double moved = 0, turned = 0;
+    for (std::size_t k = 0; k < 6 * (model.links.size() - 1); ++k) {
+      double& largest = k % 6 < 3 ? moved : turned;
+      largest = std::max(largest, std::fabs(pws.displacement[k] - pws.trapezoid_displacement[k]));
+    }
+    return moved <= kMovedByEuler * body.length && turned <= kMovedByEuler;
+  }
+
   // False: the joints are open.
   bool accept(double h) const noexcept {
     close_speeds(body, ws, pws);
@@ -272,8 +290,10 @@ Outcome take_part(const Parts& parts, double h, bool has_stops, bool may_divide)
   const Touch touch = has_settled ? touch_between(parts.model, pws.stops_0, pws.stops) : Touch::harsh;
   if (touch == Touch::none) return Outcome::settled;
   if (touch == Touch::harsh && may_divide) return Outcome::divide;
-  if (parts.find_end(h, Rule::euler, kMostEdgeCorrections)) return Outcome::settled;
-  return may_divide ? Outcome::divide : Outcome::unsettled;
+  parts.keep_displacement();
+  const bool has_settled_by_euler = parts.find_end(h, Rule::euler, kMostEdgeCorrections);
+  if (may_divide && !(has_settled_by_euler && parts.is_near_trapezoid())) return Outcome::divide;
+  return has_settled_by_euler ? Outcome::settled : Outcome::unsettled;
 }
 
 }  // namespace

@@ -76,7 +76,8 @@ PenaltyModel build_penalty_model(const Model& model, Formulation formulation, st
     if (!joint.rows.empty()) body.constraints.push_back(joint);
   }
   body.constraints.insert(body.constraints.end(), more.begin(), more.end());
-  const double length = penalty_length(model, body.constraints);
+  body.length = penalty_length(model, body.constraints);
+  const double length = body.length;
   const double alpha = model.penalty.factor * moving_mass(model);
   for (const Constraint& constraint : body.constraints) {
     body.first_row.push_back(static_cast<int>(body.alpha.size()));
@@ -121,8 +122,8 @@ PenaltyWorkspace::PenaltyWorkspace(const Model& model, const PenaltyModel& body)
   }
   factored_modal = modal;
   for (auto* by_row : {&target, &free_multipliers, &multipliers, &no_target, &rates}) by_row->resize(row_count);
-  for (auto* by_u :
-       {&force, &correction, &free, &udot, &end_udot, &displacement, &row_displacement, &last_correction}) {
+  for (auto* by_u : {&force, &correction, &free, &udot, &end_udot, &displacement, &row_displacement,
+                     &trapezoid_displacement, &last_correction}) {
     by_u->resize(speeds);
   }
   if (body.formulation == Formulation::penalty) determinants.resize(body.pattern.nodes.size());

@@ -40,6 +40,7 @@
 // By the mean of both ends, (5) makes energy of a one-sided force that begins or ends within the step (stops.h). Such a
 // step is divided until the part p in which that happens is short; p takes the implicit Euler rule,
 //   u_1 = u_0 + p u_1',  d = p u_1,   (7) with p^2 for h^2/4 and p for h/2                            (11)
+// (11) is of first order: it moves all links, touched or not, by p^2 u'/2 too far. p is divided until that is small.
 // The remainder of (5) in G u is removed in the metric of A_h, and u_1' of the next step comes from (3):
 //   u := u - A_h^-1 G^T alpha G u   until G u = 0                                                      (8)
 // (8) is the velocity projection, (3) the acceleration projection of the sources; both need no matrix of their own.
@@ -67,6 +68,7 @@ struct PenaltyModel {
   std::vector<Constraint> constraints;
   std::vector<int> first_row;  // by constraint, and the number of their rows at the end
   std::vector<double> alpha;   // by row [kg or kg m2]; those of gears come last
+  double length = 1;           // m, l of (1)
   math::BlockPattern pattern;  // node i - 1: link i; then modes
   std::vector<ModalBlock> modal;
   // by constraint: for a node's joint, start of m_k of its rows, and of the modes among the speeds
@@ -93,6 +95,7 @@ struct PenaltyWorkspace {
   std::vector<double> rates;                               // G u less the prescribed speeds, by row
   std::vector<double> qdot, udot, end_udot, displacement;  // values of a step
   std::vector<double> row_displacement;                    // d_r of (10)
+  std::vector<double> trapezoid_displacement;              // d + d_r of a part that (11) takes
   std::vector<double> last_correction;                     // by u
   std::vector<StopMotion> stops, stops_0;                  // one-sided forces at the end and the start of a part
   BodyState stage, sum;

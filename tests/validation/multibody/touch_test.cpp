@@ -164,6 +164,31 @@ INSTANTIATE_TEST_SUITE_P(In, Touch,
                          ::testing::Values(Kind::min_length, Kind::max_length, Kind::angle, Kind::rope, Kind::tyre),
                          [](const auto& tested) { return kNames[static_cast<int>(tested.param)]; });
 
+// A weak end spring is touched by a mass that gravity slows down far more: x'' = -g, then x'' = -g - k (x - gap). The
+// implicit Euler rule over the whole step would end g h^2/2 = 4e-6 m too low.
+TEST(TouchOfAWeakSpring, LeavesTheOtherForcesAlone) {
+  constexpr double kGravity = 8, kSpring = 1, kEnd = 0.03;
+  for (int phase = 0; phase < kPhases; ++phase) {
+    SCOPED_TRACE(phase);
+    const double gap = kGap + kStep * kSpeed * phase / kPhases;
+    MechanicsDef def = sliding(kMass, kSpeed);
+    def.gravity = {0, -kGravity, 0};
+    def.formulation = Formulation::augmented;
+    TranslationalForceDef& force = def.translational_forces.emplace_back(line());
+    force.max_length = kStart + gap;
+    force.end_spring_constant = kSpring;
+    Formulated body(def);
+    body.run(kEnd, kStep);
+    const double speed = std::sqrt(kSpeed * kSpeed - 2 * kGravity * gap), left = kEnd - (kSpeed - speed) / kGravity;
+    const double omega = std::sqrt(kSpring / kMass);
+    const double swing = speed / omega * std::sin(omega * left), fall = 1 - std::cos(omega * left);
+    const double right = kStart + gap + swing - kGravity / (omega * omega) * fall;
+    // 1e-6 of the mechanism's length (body_penalty.h), the body's radius of gyration about the origin of its joint
+    const double length = std::sqrt((3.0 + 2 * kMass * kStart * kStart) / (2 * kMass));
+    EXPECT_NEAR(body.pose("B").position[1], right, 1e-6 * length);
+  }
+}
+
 // A table that pushes on one side only, k h^2/m of 1e3 and 1e5 behind its knee: its force begins with the square of the
 // depth.
 TEST(TouchOfATable, GivesBackWhatItStored) {
