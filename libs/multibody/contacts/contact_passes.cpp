@@ -276,10 +276,6 @@ double parts_of_blow(const Model& model, double h, double met_rate, Workspace& w
   return std::min(needed, kMostStiffParts);
 }
 
-}  // namespace
-
-namespace {
-
 RateOf chosen_rate(StepKind kind) noexcept {
   return kind == StepKind::implicit ? RateOf::springs : RateOf::all;
 }

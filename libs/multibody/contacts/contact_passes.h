@@ -67,10 +67,10 @@ struct ContactParts {
 // Number of equal parts for a sub-step of h [s], after an evaluation at its start: one if no shapes touch and none meet
 // within h at the present speeds; there is then no search until the next start. What meets is resolved at the rate of
 // its impact: two shapes, or another corner of two that touch, faster than the smallest impact speed of their law.
-// Touching contacts are resolved at their
-// rate (contact_rate.h); contacts too fast for the shortest part set ws.contact->is_lost. `settling`: without an
-// impact, and if the explicit rule would need kWorthSettling times as many parts as contact_substep, the implicit rule
-// is used, which need not resolve the damping of a load. `implicit`: the contacts of impacts that rebound alone.
+// Touching contacts are resolved at their rate (contact_rate.h); contacts too fast for the shortest part set
+// ws.contact->is_lost. `settling`: without an impact, and if the explicit rule would need kWorthSettling times as many
+// parts as contact_substep, the implicit rule is used, which need not resolve the damping of a load. `implicit`: the
+// contacts of impacts that rebound alone.
 [[nodiscard]] ContactParts contact_parts(const Model& model, double h, ContactStep step, Workspace& ws) noexcept;
 
 // The same for one of `parts` of the sub-step, for contacts closed meanwhile and corners of touching pairs that land in
