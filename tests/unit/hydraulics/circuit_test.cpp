@@ -11,6 +11,7 @@
 
 #include "core/state_bytes.h"
 #include "hydraulics/circuit_integrator.h"
+#include "hydraulics/components/sources.h"
 #include "hydraulics/curve.h"
 #include "hydraulics/oil.h"
 #include "hydraulics/smooth.h"
@@ -635,6 +636,39 @@ TEST(CircuitIntegrator, a_saved_state_in_vapour_goes_on_with_the_same_bits) {
   restored.load(reader);
   ASSERT_TRUE(reader.finish("hydraulics").is_ok());
   EXPECT_EQ(move(integrator, -0.6, 150), move(restored, -0.6, 150));
+}
+
+// a rate in vapour is a flow over the capacity that the volume had at the floor
+TEST(CircuitIntegrator, the_capacity_of_a_volume_in_vapour_is_part_of_the_hash) {
+  HydraulicsDef def;
+  def.start = StartState::table13;
+  def.volumes = {{.name = "Suction", .initial_pressure = 5e5, .rigid_volume = 1e-4},
+                 {.name = "T", .initial_pressure = 1e5, .fixed = true}};
+  auto pump = std::make_unique<FlowSourceDef>();
+  pump->name = "Pump", pump->port_1 = "Suction", pump->port_2 = "T", pump->flow = 1e-3;
+  def.components.push_back(std::move(pump));
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  integrator.start({}, {}, {});
+  const auto hash_of = [](const CircuitIntegrator& one) {
+    StateHash hash;
+    one.add_to(hash);
+    return hash.digest();
+  };
+  const auto with_another_capacity = [&] {
+    const std::span<const double> capacities = circuit.vapour_capacities();
+    std::vector<double> C(capacities.begin(), capacities.end());
+    const std::vector<double> kept = C;
+    C[0] = std::nextafter(C[0], 1.0);
+    circuit.set_vapour_capacities(C);
+    const std::uint64_t hash = hash_of(integrator);
+    circuit.set_vapour_capacities(kept);
+    return hash;
+  };
+  EXPECT_EQ(with_another_capacity(), hash_of(integrator)) << "above the floor it has no effect";
+  for (int k = 0; k < 20; ++k) integrator.step(1e-3, HeldSpeed(0));
+  ASSERT_EQ(circuit.first_cavitating(integrator.state().data()), 0);
+  EXPECT_NE(with_another_capacity(), hash_of(integrator));
 }
 
 TEST(CircuitIntegrator, an_exhausted_budget_is_flagged_and_the_step_is_finished) {

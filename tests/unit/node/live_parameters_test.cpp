@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "mechanics_node/mechanics_subsystem.h"
 #include "scene/parameters.h"
 #include "scene/scene.h"
+#include "support/crane_pair.h"
 #include "support/mechanics_alone.h"
 
 namespace slew::testing {
@@ -107,6 +109,41 @@ TEST(LiveParameters, OfHydraulicsActInTheStepThatTheyAreGivenFor) {
       const double share = n < 5 ? 0 : std::min(1.0, (n - 5 + 1) / std::max(1.0, static_cast<double>(over)));
       EXPECT_NEAR(values[flow], 1e-3 * share, 1e-18) << n;
     }
+  }
+}
+
+// A mass that a cylinder lifts straight up: one kilogram more takes g newtons more, in the step of a change of gravity.
+TEST(LiveParameters, OfGravityActOnTheDemandOfThePayloadAsWell) {
+  const scene::Scene scene = scene::load_text(R"(
+mechanics: {gravity: [0, -10, 0]}
+bodies: {M: {position: [0, 1.6 m, 0], mass: 400 kg, inertia: [1, 1, 1]}}
+joints:
+  R: {type: prismatic, body2: M, point1: [0, 1.6 m, 0], orientation1: [-90 deg, 0, 0], orientation2: [-90 deg, 0, 0]}
+forces: {F: {type: translational, body1: Ground, body2: M}}
+hydraulics: {start: table13}
+volumes: {P: {initial_pressure: 10 bar, fixed: true}, T: {initial_pressure: 1 bar, fixed: true}}
+components:
+  C: {type: double_acting_cylinder, force: F, port_a: P, port_b: T, piston_diameter: 80 mm, rod_diameter: 40 mm,
+      piston_length: 0, chamber_length: 1 m, rod_length: 1.1 m, minimum_stroke: 20 mm, maximum_stroke: 980 mm}
+session: {step: 1 ms, duration: 1 s}
+)",
+                                              "lift");
+  CranePair lift(scene);
+  lift.start();
+  const auto demand = [&lift] {
+    const std::span<const ElementVariable> variables = lift.mechanics->variables();
+    std::vector<double> values(variables.size());
+    lift.mechanics->read_variables(values);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (variables[i].name == "C.static_force_per_kg") return values[i];
+    }
+    ADD_FAILURE() << "no such variable";
+    return 0.0;
+  };
+  for (int n = 0; n < 10; ++n) {
+    if (n == 5) ASSERT_TRUE(lift.mechanics->change_parameter(n, {"mechanics.gravity.y", -20, {}}));
+    lift.step({});
+    EXPECT_NEAR(demand(), n < 5 ? 10 : 20, 1e-9) << n;
   }
 }
 

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <set>
 #include <span>
 #include <vector>
 
 #include "support/crane_pair.h"
+#include "support/mechanics_alone.h"
 
 namespace slew::testing {
 namespace subsystem_hash_test {
@@ -193,6 +195,74 @@ session: {step: 1 ms, duration: 1 s}
     }
     hashes[stepped] = source.state_hash();
   }
+  EXPECT_NE(hashes[0], hashes[1]);
+}
+
+// A wheel that turns by 4 rad in a step: no step converges, and the excess of such steps ends the run. `steps` of them,
+// then the coordinates of the start: wheels of other `steps` differ in nothing but their count.
+std::unique_ptr<MechanicsAlone> fast_wheel(int steps) {
+  auto wheel = std::make_unique<MechanicsAlone>(
+      scene::load_text("mechanics: {formulation: recursive, max_substep: 1 ms}\n"
+                       "bodies: {Wheel: {mass: 1 kg, inertia: [1, 1, 1]}}\n"
+                       "joints: {Pin: {type: revolute, body2: Wheel, initial_velocity: 4000 rad/s}}\n"
+                       "session: {step: 1 ms, duration: 1 s}\n",
+                       "wheel"));
+  const multibody::State start = wheel->subsystem.state();
+  for (int i = 0; i < steps; ++i) {
+    wheel->step();
+    EXPECT_TRUE(wheel->report.has(StepFlag::not_converged)) << i;
+  }
+  wheel->subsystem.mutable_state() = start;
+  return wheel;
+}
+
+TEST(SubsystemHashOfAFastWheel, CountsTheStepsThatDidNotConverge) {
+  for (const int steps : {1, 10, mechanics_node::kMostUnconverged - 2}) {
+    const auto wheel = fast_wheel(steps), same = fast_wheel(steps), later = fast_wheel(steps + 1);
+    EXPECT_EQ(wheel->subsystem.state_hash(), same->subsystem.state_hash()) << steps;
+    EXPECT_NE(wheel->subsystem.state_hash(), later->subsystem.state_hash()) << steps;
+    // one step that the later one has less
+    while (!later->report.has_failed()) wheel->step(), later->step();
+    EXPECT_EQ(later->n, mechanics_node::kMostUnconverged);
+    EXPECT_FALSE(wheel->report.has_failed()) << steps;
+    wheel->step();
+    EXPECT_TRUE(wheel->report.has(StepFlag::ended)) << steps;
+  }
+}
+
+// The coupling's alarm alone ends it: the works that the mechanics state enter no pressure.
+TEST_F(SubsystemHash, OfHydraulicsHoldsThatTheAlarmHasEndedIt) {
+  CranePair ended(scene);
+  ended.start();
+  while (ended.n < crane.n) ended.step(CranePair::levers(ended.n));
+  while (ended.hydraulics->failure_text().empty()) {
+    ASSERT_EQ(ended.hydraulics->state_hash(), crane.hydraulics->state_hash()) << ended.n;
+    ASSERT_LT(ended.n, 1500);
+    for (double& work : ended.mechanics_now.mechanism.work) work += 1e4;
+    ended.step(CranePair::levers(ended.n));
+    crane.step(CranePair::levers(crane.n));
+  }
+  const std::span<const double> y = ended.hydraulics->integrator().state(),
+                                good = crane.hydraulics->integrator().state();
+  EXPECT_EQ(std::vector<double>(y.begin(), y.end()), std::vector<double>(good.begin(), good.end()));
+  EXPECT_NE(ended.hydraulics->state_hash(), crane.hydraulics->state_hash());
+}
+
+// The torque of the signal that acts is shown, and so is part of the state; coordinates and speeds are put back.
+TEST(SubsystemHashOfADrum, DependsOnTheSignalThatActs) {
+  std::uint64_t hashes[2] = {};
+  double torques[2] = {};
+  for (int full = 0; full < 2; ++full) {
+    MechanicsAlone drum("scenes/forces/operated.yaml");
+    const multibody::State start = drum.subsystem.state();
+    const double signal[] = {full == 1 ? 1.0 : 0.5};
+    drum.subsystem.step(0, {}, signal, drum.sample);
+    drum.subsystem.mutable_state() = start;
+    hashes[full] = drum.subsystem.state_hash();
+    torques[full] = drum.value("Motor.torque");
+  }
+  EXPECT_EQ(torques[0], 10);
+  EXPECT_EQ(torques[1], 20);
   EXPECT_NE(hashes[0], hashes[1]);
 }
 

@@ -2,6 +2,9 @@
 // A circuit that its solver no longer solves ends the session, with the name of the volume.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -167,6 +170,30 @@ TEST(ConvergenceWatch, IsSavedWithTheState) {
   EXPECT_EQ(first.hydraulics.state_hash(), second.hydraulics.state_hash());
   EXPECT_TRUE(second.play().has(StepFlag::ended));
   EXPECT_EQ(second.n, kMostUnsolved);
+}
+
+// Circuits with the same pressures that Euler has not solved for some steps: they differ in the number of these steps
+// alone, and the one with more of them ends earlier.
+TEST(ConvergenceWatch, IsPartOfTheHash) {
+  const scene::Scene scene =
+      scene::load_text(kVessel, "vessel", {"hydraulics.solver=implicit_euler", "hydraulics.substep_budget=1"});
+  const auto after = [&](int steps) {
+    auto run = std::make_unique<Played>(scene);
+    const std::span<double> state = run->hydraulics.integrator().mutable_state();
+    const std::vector<double> start(state.begin(), state.end());
+    for (int k = 0; k < steps; ++k) EXPECT_FALSE(run->step().has_failed()) << k;
+    std::copy(start.begin(), start.end(), state.begin());
+    return run;
+  };
+  for (const int steps : {1, 10, kMostUnsolved - 2}) {
+    const auto run = after(steps), same = after(steps), later = after(steps + 1);
+    EXPECT_EQ(run->hydraulics.state_hash(), same->hydraulics.state_hash()) << steps;
+    EXPECT_NE(run->hydraulics.state_hash(), later->hydraulics.state_hash()) << steps;
+    for (const auto& one : {run.get(), later.get()}) {
+      EXPECT_TRUE(one->play().has(StepFlag::ended)) << steps;
+      EXPECT_EQ(one->n, kMostUnsolved) << steps;
+    }
+  }
 }
 
 }  // namespace convergence_watch_test

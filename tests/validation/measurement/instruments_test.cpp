@@ -27,7 +27,8 @@ double value(const DirectSession& session, Role role, const std::string& name) {
 }
 
 // A rotor turns about the vertical at w from its motion: f = (-w^2 r, g, 0) at r along its x, rates (0, w, 0). A ball
-// falls freely: f = 0. A post stands: f = (0, g, 0).
+// falls freely: f = 0. A post stands: f = (0, g, 0). A mast turns as the rotor does, with its z axis upwards:
+// f = (-w^2 r, 0, g), rates (0, 0, w).
 const char* const kScene = R"(
 session: {step: 1 ms}
 mechanics: {gravity: [0, -10, 0]}
@@ -35,17 +36,21 @@ bodies:
   Rotor: {mass: 2 kg, inertia: [0.1, 0.1, 0.1]}
   Ball: {mass: 2 kg, inertia: [0.1, 0.1, 0.1], position: [0, 50 m, 0]}
   Post: {mass: 2 kg, inertia: [0.1, 0.1, 0.1], position: [0, 1 m, 5 m]}
+  Mast: {mass: 2 kg, inertia: [0.1, 0.1, 0.1], position: [9 m, 0, 0], orientation: [0, -90 deg, 0]}
 joints:
   Axle: {type: revolute, body2: Rotor, orientation1: [-90 deg, 0, 0],
          orientation2: [-90 deg, 0, 0]}
   Free: {type: floating, body2: Ball, point1: [0, 50 m, 0]}
   Foot: {type: fixed, body2: Post, point1: [0, 1 m, 5 m]}
+  Pole: {type: revolute, body2: Mast, point1: [9 m, 0, 0], orientation1: [-90 deg, 0, 0]}
 motions:
   Drive: {type: rotation_speed, joint: Axle, speed: 4 rad/s}
+  Turn: {type: rotation_speed, joint: Pole, speed: 4 rad/s}
 sensors:
   On_Rotor: {type: imu, body: Rotor, point: [0.5 m, 0, 0], acceleration_range: 80 m/s2, rate_range: 35 rad/s}
   On_Ball: {type: imu, body: Ball, point: [0, 0.2 m, 0], acceleration_range: 80 m/s2, rate_range: 35 rad/s}
   On_Post: {type: imu, body: Post, acceleration_range: 80 m/s2, rate_range: 35 rad/s}
+  On_Mast: {type: imu, body: Mast, point: [0.5 m, 0, 0], acceleration_range: 80 m/s2, rate_range: 35 rad/s}
   Weak: {type: imu, body: Rotor, point: [0.5 m, 0, 0], acceleration_range: 5 m/s2, rate_range: 1 rad/s, sample_time: 10 ms}
 )";
 
@@ -63,6 +68,11 @@ TEST(InertialMeasurementUnit, measures_what_a_turning_a_falling_and_a_standing_b
   for (const char* axis : {"x", "y", "z"}) EXPECT_NEAR(at(std::string("On_Ball.specific_force.") + axis), 0, 1e-9);
   EXPECT_NEAR(at("On_Post.specific_force.y"), 10, 1e-12);
   EXPECT_NEAR(at("On_Post.specific_force.x"), 0, 1e-12);
+  EXPECT_NEAR(at("On_Mast.specific_force.x"), -8, 1e-4);
+  EXPECT_NEAR(at("On_Mast.specific_force.z"), 10, 1e-9);
+  EXPECT_NEAR(at("On_Mast.rate.x"), 0, 1e-9);
+  EXPECT_NEAR(at("On_Mast.rate.y"), 0, 1e-9);
+  EXPECT_NEAR(at("On_Mast.rate.z"), 4, 1e-9);
   // at its range
   EXPECT_EQ(at("Weak.specific_force.x"), -5);
   EXPECT_EQ(at("Weak.specific_force.y"), 5);
