@@ -36,8 +36,13 @@ Symbol pump_symbol(const ComponentDef& def) {
   draw_pump(pen, 38);
   const bool is_over_centre = number_of(def, "minimum_swash") < 0;
   if (is_over_centre) pen.filled("M38 47L45 36L31 36Z");
-  if (is_set(def, "swash_per_signal") || is_set(def, "maximum_pressure") || is_set(def, "maximum_power")) {
+  const bool has_pilot = !text_of(def, "control_port").empty();
+  if (has_pilot || is_set(def, "swash_per_signal") || is_set(def, "maximum_pressure") || is_set(def, "maximum_power")) {
     pen.adjustable({20, 49}, {57, 6});
+  }
+  if (has_pilot) {
+    pen.dashed("M2 49L20 49");
+    add_pilot(symbol, def, "control_port", 2, {2, 49});
   }
   add_shaft(symbol, pen, def, 58);
   symbol.ports.push_back(straight(def, "port_a", Role::outlet, Side::top, 38, 0));

@@ -27,6 +27,7 @@ constexpr ReadBy kPumpReadByEngine[] = {{"engine", "an engine", [](const void* d
                                            return !static_cast<const PumpDef*>(def)->drive.engine.empty();
                                          }}};
 
+constexpr ReadBy kReadByControl[] = {read_by_set<&PumpDef::control_port>("control_port", "a control_port")};
 constexpr ReadBy kPumpReadByCase[] = {read_by_set<&PumpDef::port_c>("port_c", "a port_c")};
 constexpr Range kSwashRange{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
 constexpr Range kLeastSwash{.min = -1, .max = 0, .min_is_open = false, .max_is_open = false};
@@ -85,6 +86,20 @@ constexpr Field kPumpFields[] = {
                                                      .range = kNotNegative,
                                                      .change = Change::live,
                                                      .doc = "limit of the drive's power; 0: none"}),
+    field<&PumpDef::control_port>(
+        "control_port",
+        {.reference = "volume", .doc = "volume whose pressure sets the swash: negative or positive control"}),
+    field<&PumpDef::full_swash_pressure>("full_swash_pressure",
+                                         {.dimension = Dimension::pressure,
+                                          .range = kNotNegative,
+                                          .read_by = kReadByControl,
+                                          .doc = "pressure of control_port above port_b that gives the full swash"}),
+    field<&PumpDef::zero_swash_pressure>(
+        "zero_swash_pressure",
+        {.dimension = Dimension::pressure,
+         .range = kNotNegative,
+         .read_by = kReadByControl,
+         .doc = "pressure that gives no swash; above full_swash_pressure: negative control, below: positive"}),
     field<&PumpDef::leak_flow>("leak_flow", {.dimension = Dimension::volume_flow,
                                              .range = kNotNegative,
                                              .change = Change::live,
@@ -109,6 +124,7 @@ class Pump final : public HydraulicComponent {
         a_(builder.volume(def.port_a)),
         b_(builder.volume(def.port_b)),
         case_(def.port_c.empty() ? -1 : builder.volume(def.port_c)),
+        pilot_(def.control_port.empty() ? -1 : builder.volume(def.control_port)),
         control_(builder.add_control(def.name, SignalMoves::a_state)),
         alpha_(builder.add_state({.initial = def.swash, .scale = 1})),
         drive_(def.drive, def.displacement, def.mechanical_coefficient, def.volumetric_coefficient, builder) {
@@ -117,28 +133,34 @@ class Pump final : public HydraulicComponent {
   }
   // at the command's swash under the start pressures
   void start(double* y) const noexcept override {
-    y[alpha_] = limited(def_.swash, y[a_] - y[b_], drive_.at_start(def_.speed)).value;
+    y[alpha_] = limited(def_.swash, y[a_] - y[b_], drive_.at_start(def_.speed), by_pilot(y)).value;
   }
   void declare_dependencies(DependencyList& dependencies) const override {
     dependencies.add_restriction(a_, b_);
     if (case_ >= 0) dependencies.add_restriction(a_, case_), dependencies.add_restriction(b_, case_);
     for (const StateIndex port : {a_, b_}) dependencies.add(port, alpha_), dependencies.add(alpha_, port);
     dependencies.add(alpha_, alpha_);
+    if (pilot_ >= 0) dependencies.add(alpha_, pilot_);
     drive_.declare_dependencies(a_, b_, alpha_, dependencies);
   }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
-    rates.set_rate(alpha_, swash_rate(view, limited(command(view), rise(view), speed(view)).value).value);
+    rates.set_rate(alpha_, swash_rate(view, limited_at(view).value).value);
     rates.move(b_, a_, flow(view));
     drive_.add_load(view[alpha_], rise(view), view, rates);
     if (case_ < 0) return;
     for (const StateIndex port : {a_, b_}) rates.move(port, case_, G_case_ * (view[port] - view[case_]));
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    const Swash least = limited(command(view), rise(view), speed(view));
+    const Swash least = limited_at(view);
     const double rate = swash_rate(view, least.value).slope, d_rise = rate * least.over_rise;
     jacobian.add(alpha_, alpha_, -rate);
     jacobian.add(alpha_, a_, d_rise);
     jacobian.add(alpha_, b_, -d_rise);
+    if (pilot_ >= 0) {
+      const double d_pilot = rate * least.over_pilot;
+      jacobian.add(alpha_, pilot_, d_pilot);
+      jacobian.add(alpha_, b_, -d_pilot);
+    }
     const PumpDrive::Displaced displaced = drive_.displaced(view[alpha_], rise(view), view);
     const double G = G_leak_ - per_speed_ * speed(view) * view[alpha_] * displaced.over_rise;
     jacobian.move(b_, a_, alpha_, per_speed_ * speed(view) * displaced.value);
@@ -200,26 +222,43 @@ class Pump final : public HydraulicComponent {
     const double rate = def_.displacement * n;
     return def_.maximum_power > 0 && rate > 0 ? def_.mechanical_coefficient * def_.maximum_power / rate : 0;
   }
+  // (6) over the pressures y
+  [[nodiscard]] ValueSlope by_pilot(const double* y) const noexcept {
+    if (pilot_ < 0) return {1, 0};
+    const double per_pressure = 1 / (def_.zero_swash_pressure - def_.full_swash_pressure);
+    const double open = (def_.zero_swash_pressure - (y[pilot_] - y[b_])) * per_pressure;
+    const ValueSlope u = unit_clip(open, kSwashWidth);
+    return {u.value, -u.slope * per_pressure};
+  }
   struct Swash {
-    double value, over_rise, over_speed;
+    double value, over_rise, over_speed, over_pilot;
     double over_command = 1;
   };
-  // the command of (2) within its limits, with its slopes over the pressure rise p and the speed n
-  [[nodiscard]] Swash limited(double command, double p, double n) const noexcept {
-    const Swash forth = limited_above(command, p, n);
+  [[nodiscard]] Swash limited_at(const CircuitView& view) const noexcept {
+    return limited(command(view), rise(view), speed(view), by_pilot(view.y));
+  }
+  // the command of (2) within its limits, with its slopes over the pressure rise p, the speed n and the pilot pressure
+  [[nodiscard]] Swash limited(double command, double p, double n, ValueSlope pilot) const noexcept {
+    const Swash forth = limited_above(command, p, n, pilot);
     if (def_.minimum_swash == 0) return forth;
-    const Swash back = limited_above(-forth.value, -p, n);
+    const Swash back = limited_above(-forth.value, -p, n, pilot);
     return {-back.value, back.over_command * forth.over_rise + back.over_rise,
-            back.over_command * forth.over_speed - back.over_speed, 1};
+            back.over_command * forth.over_speed - back.over_speed,
+            back.over_command * forth.over_pilot - back.over_pilot, 1};
   }
   // for delivery out of port a
-  [[nodiscard]] Swash limited_above(double command, double p, double n) const noexcept {
-    Swash alpha{command, 0, 0};
+  [[nodiscard]] Swash limited_above(double command, double p, double n, ValueSlope pilot) const noexcept {
+    Swash alpha{command, 0, 0, 0};
     if (def_.maximum_pressure > 0) {
       const double gain = def_.controller_gain;
       const ValueSlope u = unit_clip(gain * (def_.maximum_pressure - p), kSwashWidth);
       const ValueSlope least = smooth_min(alpha.value, u.value, kSwashWidth);
-      alpha = {least.value, -(1 - least.slope) * u.slope * gain, 0, least.slope};
+      alpha = {least.value, -(1 - least.slope) * u.slope * gain, 0, 0, least.slope};
+    }
+    if (pilot_ >= 0) {
+      const ValueSlope least = smooth_min(alpha.value, pilot.value, kSwashWidth);
+      alpha = {least.value, least.slope * alpha.over_rise, 0, (1 - least.slope) * pilot.slope,
+               least.slope * alpha.over_command};
     }
     // below half of that rise the limit is far above the full swash
     const double full = full_power_rise(n);
@@ -227,7 +266,7 @@ class Pump final : public HydraulicComponent {
       const double u = full / p;
       const ValueSlope least = smooth_min(alpha.value, u, kSwashWidth);
       alpha = {least.value, least.slope * alpha.over_rise - (1 - least.slope) * u / p, -(1 - least.slope) * u / n,
-               least.slope * alpha.over_command};
+               least.slope * alpha.over_pilot, least.slope * alpha.over_command};
     }
     return alpha;
   }
@@ -243,7 +282,8 @@ class Pump final : public HydraulicComponent {
 
   PumpDef def_;
   StateIndex a_, b_;
-  StateIndex case_;  // -1: no case drain
+  StateIndex case_;   // -1: no case drain
+  StateIndex pilot_;  // -1: no control port
   int control_;
   StateIndex alpha_;  // swash minimum_swash..1
   PumpDrive drive_;
@@ -262,6 +302,10 @@ void validate_plain_pump(const HydraulicsDef& circuit, const ComponentDef& compo
   if (def.swash < def.minimum_swash) {
     errors.push_back({def.name + ".swash", fmt::format("the swash {:g} lies below its least one", def.swash),
                       "a swash of at least minimum_swash; below 0 for a pump over centre", ""});
+  }
+  if (!def.control_port.empty() && def.full_swash_pressure == def.zero_swash_pressure) {
+    errors.push_back({def.name + ".zero_swash_pressure", "the swash has no range of control pressures",
+                      "zero_swash_pressure above full_swash_pressure for negative control, below for positive", ""});
   }
   check_drive(circuit, def.name, def.drive, def.speed, errors);
 }
@@ -283,15 +327,16 @@ void PumpDef::add_lines(PumpLines& lines) const {
 }
 
 ComponentType pump_type() {
-  return {.name = "pump",
-          .fields = kPumpFields,
-          .doc = "pump of fixed or variable displacement with limits of pressure and power",
-          .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<PumpDef>(); },
-          .validate = validate_plain_pump,
-          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
-            return std::make_unique<Pump>(static_cast<const PumpDef&>(def), builder);
-          },
-          .has_control_signal = true};
+  return {
+      .name = "pump",
+      .fields = kPumpFields,
+      .doc = "pump of fixed or variable displacement with limits of pressure and power, negative or positive control",
+      .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<PumpDef>(); },
+      .validate = validate_plain_pump,
+      .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+        return std::make_unique<Pump>(static_cast<const PumpDef&>(def), builder);
+      },
+      .has_control_signal = true};
 }
 
 }  // namespace slew::hydraulics

@@ -12,14 +12,19 @@ def output(*arguments):
     return subprocess.run([SLEWRING, *arguments], check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
+def columns(recording):
+    """Columns of a recording by name in SI units."""
+    header, *rows = csv.reader(output("export", recording, "--csv").splitlines())
+    numbers = zip(*[[float(cell or "nan") for cell in row] for row in rows])
+    return {name.split(" ")[0]: column for name, column in zip(header, numbers)}
+
+
 def record(scene, folder, *options):
     """Output of a run, its recording, and its columns by name in SI units; the output is printed."""
     text = output("run", f"{PROJECT}/scenes/{scene}.yaml", "--pace", "free", "--out", folder, *options)
     print(text)
     recording = next(path.parent for path in pathlib.Path(folder).rglob("session.mcap"))
-    header, *rows = csv.reader(output("export", recording, "--csv").splitlines())
-    columns = zip(*[[float(cell or "nan") for cell in row] for row in rows])
-    return text, recording, {name.split(" ")[0]: column for name, column in zip(header, columns)}
+    return text, recording, columns(recording)
 
 
 def expect(statement, holds):

@@ -109,7 +109,7 @@ inline void add_actuators(HydraulicsDef& circuit) {
   jack.common.minimum_stroke = 0.05, jack.common.maximum_stroke = 0.6;
 }
 
-// A flow and a pressure source, a pump with both limits.
+// A flow and a pressure source, pumps with both limits, one of them under a control pressure.
 inline void add_sources(HydraulicsDef& circuit) {
   PumpDef& pump = add<PumpDef>(circuit, "Limited_Pump");
   pump.port_a = "Vol_C", pump.port_b = "Vol_T", pump.speed = 157, pump.displacement = 8e-6, pump.leak_flow = kLeak;
@@ -120,6 +120,10 @@ inline void add_sources(HydraulicsDef& circuit) {
   over_centre.volumetric_coefficient = 0.9;
   over_centre.minimum_swash = -1, over_centre.swash = -0.7, over_centre.swash_per_signal = 1e-3;
   over_centre.maximum_pressure = 190 * kBar, over_centre.maximum_power = 10e3;
+  PumpDef& controlled = add<PumpDef>(circuit, "Controlled_Pump");
+  controlled.port_a = "Vol_C", controlled.port_b = "Vol_T", controlled.speed = 157, controlled.displacement = 8e-6;
+  controlled.control_port = "Vol_A", controlled.full_swash_pressure = 10 * kBar, controlled.maximum_power = 10e3;
+  controlled.zero_swash_pressure = 250 * kBar, controlled.maximum_pressure = 190 * kBar;
   FlowSourceDef& flow = add<FlowSourceDef>(circuit, "Flow_Source");
   flow.port_1 = "Vol_T", flow.port_2 = "Vol_P", flow.flow = 1e-4, flow.flow_per_signal = 1e-7;
   PressureSourceDef& pressure = add<PressureSourceDef>(circuit, "Pressure_Source");

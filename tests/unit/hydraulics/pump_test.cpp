@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "hydraulics/circuit_integrator.h"
 #include "hydraulics/components/ls_pump.h"
@@ -102,6 +103,60 @@ TEST(Pump, the_cut_off_ends_the_flow_at_its_pressure) {
   }
 }
 
+// Negative control takes the swash back from 10 bar on, to none at 35 bar; positive control is the line the other way.
+TEST(Pump, its_control_pressure_sets_the_swash_by_a_straight_line) {
+  for (const auto& [bar, negative] : {std::pair{5.0, 1.0}, {15.0, 0.8}, {20.0, 0.6}, {30.0, 0.2}, {40.0, 0.0}}) {
+    for (const bool is_negative : {true, false}) {
+      CircuitRig rig;
+      add_tank(rig.def, "Line", 101 * kBar), add_tank(rig.def, "Tank", 1 * kBar),
+          add_tank(rig.def, "Pilot", (bar + 1) * kBar);
+      PumpDef& pump = add<PumpDef>(rig.def, "Pump");
+      pump.port_a = "Line", pump.port_b = "Tank", pump.speed = 150, pump.displacement = 1e-5, pump.time_constant = 0.05;
+      pump.control_port = "Pilot";
+      pump.full_swash_pressure = (is_negative ? 10 : 35) * kBar,
+      pump.zero_swash_pressure = (is_negative ? 35 : 10) * kBar;
+      rig.run(1);
+      EXPECT_NEAR(rig.variable("Pump.swash"), is_negative ? negative : 1 - negative, 1e-4) << bar;
+    }
+  }
+}
+
+TEST(Pump, the_lowest_of_command_control_pressure_cut_off_and_power_holds) {
+  for (const auto& [command, pilot_bar, power, swash] :
+       {std::tuple{0.4, 15.0, 0.0, 0.4}, {1.0, 25.0, 0.0, 0.4}, {1.0, 15.0, 8e3, 8.0 / 15}, {1.0, 25.0, 8e3, 0.4}}) {
+    CircuitRig rig;
+    add_tank(rig.def, "Line", 101 * kBar), add_tank(rig.def, "Tank", 1 * kBar),
+        add_tank(rig.def, "Pilot", (pilot_bar + 1) * kBar);
+    PumpDef& pump = add<PumpDef>(rig.def, "Pump");
+    pump.port_a = "Line", pump.port_b = "Tank", pump.speed = 150, pump.displacement = 1e-5, pump.swash = command;
+    pump.control_port = "Pilot", pump.full_swash_pressure = 10 * kBar, pump.zero_swash_pressure = 35 * kBar;
+    pump.maximum_power = power;
+    rig.run(2);
+    EXPECT_NEAR(rig.variable("Pump.swash"), swash, 1e-4);
+  }
+}
+
+// A pump whose flow runs through an orifice K into the tank, controlled by the pressure before it:
+// K sqrt(p) = Q_1 (p_0 - p)/(p_0 - p_1)
+TEST(Pump, in_negative_control_circulates_the_flow_at_which_orifice_and_control_agree) {
+  CircuitRig rig;
+  rig.def.orifice_transition = 10;
+  add_volume(rig.def, "Line").rigid_volume = 1e-3;
+  add_tank(rig.def, "Tank", 1 * kBar);
+  PumpDef& pump = add<PumpDef>(rig.def, "Pump");
+  pump.port_a = "Line", pump.port_b = "Tank", pump.speed = 150, pump.displacement = 1e-5, pump.control_port = "Line";
+  pump.full_swash_pressure = 10 * kBar, pump.zero_swash_pressure = 35 * kBar;
+  BleedDef& orifice = add<BleedDef>(rig.def, "Orifice");
+  orifice.port_1 = "Line", orifice.port_2 = "Tank", orifice.nominal_flow = 4e-4;
+  orifice.nominal_pressure_drop = 30 * kBar;
+  rig.run(3);
+  const double K = 4e-4 / std::sqrt(30 * kBar), slope = 1.5e-3 / (25 * kBar);
+  // slope x^2 + K x - slope p_0 = 0 for x = sqrt(p)
+  const double x = (-K + std::sqrt(K * K + 4 * slope * slope * 35 * kBar)) / (2 * slope);
+  EXPECT_NEAR(rig.variable("Line.pressure") - 1 * kBar, x * x, 1e-4 * x * x);
+  EXPECT_NEAR(rig.variable("Pump.flow"), K * x, 1e-4 * K * x);
+}
+
 // P eta_m eta_v / p = K sqrt(p) for the rise p
 TEST(Pump, at_its_power_limit_settles_where_the_orifice_takes_its_flow) {
   HydraulicsDef def;
@@ -195,6 +250,21 @@ TEST(Pump, leaks_into_its_case_from_both_ports) {
   pump.case_leak_flow = 2e-6;
   rig.run(0.01);
   EXPECT_NEAR(rig.variable("Pump.case_flow"), 2e-6 * (200 + 20) / 100, 1e-12);
+}
+
+TEST(Pump, a_control_pressure_without_a_range_is_refused) {
+  HydraulicsDef def;
+  add_tank(def, "A"), add_tank(def, "B");
+  PumpDef& pump = add<PumpDef>(def, "Pump");
+  pump.port_a = "A", pump.port_b = "B", pump.speed = 150, pump.displacement = 1e-5, pump.control_port = "A";
+  pump.full_swash_pressure = pump.zero_swash_pressure = 20 * kBar;
+  Problems errors, warnings;
+  validate(def, errors, warnings);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].path, "Pump.zero_swash_pressure");
+  pump.zero_swash_pressure = 30 * kBar, errors.clear();
+  validate(def, errors, warnings);
+  EXPECT_TRUE(errors.empty());
 }
 
 TEST(Pump, a_swash_below_its_least_one_is_refused) {
