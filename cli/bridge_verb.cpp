@@ -12,6 +12,7 @@
 #include "core/printable.h"
 #include "core/text_output.h"
 #include "node/driver.h"
+#include "program/add_session_options.h"
 #include "session/survey.h"
 
 namespace slew::cli {
@@ -84,7 +85,7 @@ void add_bridge(options::Command& program) {
   options::Command lcm =
       verb.command("lcm", "variables, health and signal lists to LCM; inputs and parameters from it");
   const auto options = std::make_shared<BridgeOptions>();  // lives as long as the command line's callbacks
-  node::add_session_options(lcm, options->session, false);
+  program::add_session_options(lcm, options->session, false);
   add_lcm_options(lcm, options->lcm);
   lcm.option("--url", options->lcm.url, "LCM's address; a ttl above 0 needs --insecure-lan")
       .value_name("URL")

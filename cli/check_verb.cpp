@@ -17,6 +17,7 @@
 #include "core/suggestion.h"
 #include "io_node/scene_config.h"
 #include "io_node/session_variables.h"
+#include "program/add_scene_options.h"
 #include "scene/canonical.h"
 #include "scene/name_pattern.h"
 #include "scene/scene_options.h"
@@ -138,7 +139,7 @@ ExitCode check(const CheckOptions& options) {
 void add_check(options::Command& program) {
   options::Command verb = program.command("check", "check a scene: file, models, start state");
   const auto options = std::make_shared<CheckOptions>();  // lives as long as the command line's callbacks
-  scene::add_scene_file(verb, "scene", options->scene).required();
+  program::add_scene_file(verb, "scene", options->scene).required();
   verb.option("--set", options->overrides, "change a value or a parameter of the scene; repeat for more")
       .value_name("PATH=VALUE")
       .one_value_each();

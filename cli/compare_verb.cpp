@@ -11,6 +11,7 @@
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/text_output.h"
+#include "program/add_scene_options.h"
 #include "scene/scene_options.h"
 #include "session/interrupts.h"
 
@@ -69,7 +70,7 @@ ExitCode run(const CompareOptions& options) {
 
 void add_what(options::Command& verb, CompareOptions& options) {
   analysis::ComparisonOptions& settings = options.settings;
-  scene::add_scene_file(verb, "scene", settings.scene.file).required();
+  program::add_scene_file(verb, "scene", settings.scene.file).required();
   const auto list = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
     verb.option(name, to, text).comma_separated().one_value_each().value_name(type);
   };

@@ -16,6 +16,7 @@
 #include "node/driver.h"
 #include "node/identity.h"
 #include "observer/observer.h"
+#include "program/add_session_options.h"
 #include "scene/canonical.h"
 #include "scene/scene.h"
 #include "session/survey.h"
@@ -242,7 +243,7 @@ void add_save_and_load(options::Command& verb, const std::shared_ptr<ControlOpti
   options::Command saving = verb.command("save", "write the session's whole state at the next step into a file");
   saving.option("file", options->file, "file to write").required().value_name("FILE");
   saving.flag("--force", options->may_replace, "replace a file that exists");
-  node::add_session_options(saving, options->session, false);
+  program::add_session_options(saving, options->session, false);
   saving.flag("--json", options->is_json, "for machines");
   saving.footer(
       "The session stands for some milliseconds and goes on. 'slewring run --from FILE' goes on from there.\n\n"
@@ -250,7 +251,7 @@ void add_save_and_load(options::Command& verb, const std::shared_ptr<ControlOpti
   saving.action([options] { return save(*options); });
   options::Command loading = verb.command("load", "put the session into the state of a file, saved of the same scene");
   loading.option("file", options->file, "file of 'control save'").required().value_name("FILE");
-  node::add_session_options(loading, options->session, false);
+  program::add_session_options(loading, options->session, false);
   loading.flag("--json", options->is_json, "for machines");
   loading.footer(
       "As after a reset all channels are free: controllers acquire them again. The script goes on at that time.\n\n"
@@ -275,7 +276,7 @@ void add_control(options::Command& program) {
           .value_name("N")
           .show_default();
     }
-    node::add_session_options(part, options->session, false);
+    program::add_session_options(part, options->session, false);
     part.flag("--json", options->is_json, "for machines");
     part.footer(
         fmt::format("Prints accepted(step), or refused with the reason and exit code 2.\n\n"

@@ -19,6 +19,7 @@
 #include "hydraulics/circuit.h"
 #include "multibody/model/model.h"
 #include "multibody/model/observe.h"
+#include "program/add_scene_options.h"
 #include "scene/ports.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
@@ -347,7 +348,7 @@ ExitCode show(const DescribeOptions& options) {
 void add_describe(options::Command& program) {
   options::Command verb = program.command("describe", "parts of a scene and the nodes it needs, with reasons");
   const auto options = std::make_shared<DescribeOptions>();  // lives as long as the command line's callbacks
-  scene::add_scene_file(verb, "scene", options->scene).required();
+  program::add_scene_file(verb, "scene", options->scene).required();
   verb.option("--set", options->overrides, "change a value of the scene; repeat for more")
       .value_name("PATH=VALUE")
       .one_value_each();

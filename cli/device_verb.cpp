@@ -23,6 +23,7 @@
 #include "device_node/input_device.h"
 #include "devices/layout_header.h"
 #include "node/driver.h"
+#include "program/add_scene_options.h"
 #include "scene/recorded_files.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
@@ -358,7 +359,7 @@ void add_device(options::Command& program) {
   const auto options = std::make_shared<DeviceOptions>();  // lives as long as the command line's callbacks
 
   options::Command listing = verb.command("list", "input devices of this machine, or the devices of a scene");
-  scene::add_scene_file(listing, "scene", options->scene);
+  program::add_scene_file(listing, "scene", options->scene);
   listing.flag("--json", options->is_json, "print JSON and nothing else");
   listing.action([options] { return list(*options); });
 
@@ -370,7 +371,7 @@ void add_device(options::Command& program) {
           "motion_platform send to an address of this machine")
       .value_name("DEVICE")
       .required();
-  scene::add_scene_file(monitoring, "--scene", options->scene, "scene file with the device");
+  program::add_scene_file(monitoring, "--scene", options->scene, "scene file with the device");
   monitoring.option("--duration", options->duration, "seconds; 0: until Ctrl-C").between(0.0, 1e9).value_name("S");
   monitoring.option("--every", options->every, "shortest time between two lines")
       .between(0.0, 60.0)
@@ -390,7 +391,7 @@ void add_device(options::Command& program) {
   calibrating.action([options] { return calibrate(*options); });
 
   options::Command layout = verb.command("layout", "write the C header of a device's packets, or a note for Simulink");
-  scene::add_scene_file(layout, "scene", options->scene).required();
+  program::add_scene_file(layout, "scene", options->scene).required();
   layout.option("device", options->device, "name of a udp_in, udp_out or motion_platform device")
       .value_name("DEVICE")
       .required();

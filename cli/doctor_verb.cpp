@@ -20,6 +20,7 @@
 #include "core/report_table.h"
 #include "node/identity.h"
 #include "node/open_transport.h"
+#include "program/add_session_options.h"
 #include "transport/network.h"
 
 namespace slew::cli {
@@ -160,7 +161,7 @@ ExitCode examine(const DoctorOptions& options) {
 void add_doctor(options::Command& program) {
   options::Command verb = program.command("doctor", "is this machine fit for a session?");
   const auto options = std::make_shared<DoctorOptions>();  // lives as long as the command line's callbacks
-  node::add_network_options(verb, options->network);
+  program::add_network_options(verb, options->network);
   verb.flag("--json", options->is_json, "for machines");
   verb.footer("Exit code 7 when a session cannot run here.\n\nExample:\n  slewring doctor --interface eth0");
   verb.action([options] { return examine(*options); });

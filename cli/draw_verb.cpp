@@ -17,6 +17,7 @@
 #include "core/text_output.h"
 #include "diagram/circuit_svg.h"
 #include "plotting/svg_text.h"
+#include "program/add_scene_options.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 
@@ -151,7 +152,7 @@ ExitCode draw(const DrawOptions& options) {
 void add_draw(options::Command& program) {
   options::Command verb = program.command("draw", "draw the mechanism and the hydraulic circuit of a scene");
   const auto options = std::make_shared<DrawOptions>();  // lives as long as the command line's callbacks
-  scene::add_scene_file(verb, "scene", options->scene).required();
+  program::add_scene_file(verb, "scene", options->scene).required();
   verb.option("-o,--output", options->output, "file to write: .svg, a picture, or .html, a page")
       .required()
       .value_name("FILE");

@@ -14,6 +14,7 @@
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/installation.h"
+#include "program/add_scene_options.h"
 #include "scene/scene_options.h"
 #include "session/interrupts.h"
 
@@ -60,7 +61,7 @@ void add_extremes(options::Command& program) {
       program.command("extremes", "hard cases of a scene: within their bounds, and how near the edge");
   const auto options = std::make_shared<ExtremesOptions>();  // lives as long as the command line's callbacks
   analysis::ExtremesOptions& settings = options->settings;
-  scene::add_scene_file(verb, "scene", options->scene);
+  program::add_scene_file(verb, "scene", options->scene);
   verb.flag("--suite", options->is_suite, "the repository's own machines instead of a scene");
   verb.option("--scenes", options->scenes, "folder of the suite's scenes").value_name("DIR").show_default();
   const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {

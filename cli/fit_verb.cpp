@@ -13,6 +13,7 @@
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/text_output.h"
+#include "program/add_scene_options.h"
 #include "scene/scene_options.h"
 #include "session/interrupts.h"
 
@@ -77,7 +78,7 @@ void add_fit(options::Command& program) {
   options::Command verb = program.command("fit", "values of a scene that bring its signals nearest to measured ones");
   const auto options = std::make_shared<FitOptions>();  // lives as long as the command line's callbacks
   analysis::FitOptions& settings = options->settings;
-  scene::add_scene_file(verb, "scene", settings.scene.file).required();
+  program::add_scene_file(verb, "scene", settings.scene.file).required();
   verb.option("--data", settings.data, "CSV file with a column 'time [s]' and columns such as 'p_A [bar]'")
       .value_name("FILE")
       .required();

@@ -13,6 +13,7 @@
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/text_output.h"
+#include "program/add_scene_options.h"
 #include "scene/scene_options.h"
 #include "session/interrupts.h"
 
@@ -70,7 +71,7 @@ void add_loadchart(options::Command& program) {
   options::Command verb = program.command("loadchart", "largest payload over the reach, and what limits it");
   const auto options = std::make_shared<ChartOptions>();  // lives as long as the command line's callbacks
   analysis::LoadChartOptions& settings = options->settings;
-  scene::add_scene_file(verb, "scene", settings.scene).required();
+  program::add_scene_file(verb, "scene", settings.scene).required();
   const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* value) {
     return verb.option(name, to, text).one_value_each().value_name(value);
   };

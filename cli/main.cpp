@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "node/node_program.h"
+#include "program/node_program.h"
 
 int main(int argc, char** argv) {
   using namespace slew;
@@ -45,5 +45,5 @@ int main(int argc, char** argv) {
     add(program);
   }
   cli::add_help(program);
-  return node::run_program(program, argc, argv);
+  return program::run_program(program, argc, argv);
 }

@@ -16,6 +16,8 @@
 #include "core/suggestion.h"
 #include "node/driver.h"
 #include "observer/observer.h"
+#include "program/add_scene_options.h"
+#include "program/add_session_options.h"
 #include "scene/field_reader.h"
 #include "scene/names.h"
 #include "scene/parameters.h"
@@ -239,7 +241,7 @@ using Do = ExitCode (*)(const ParamOptions&);
 options::Command add_part(options::Command& verb, const char* name, const char* doc, Do what,
                           const std::shared_ptr<ParamOptions>& options) {
   options::Command part = verb.command(name, doc);
-  node::add_session_options(part, options->session, false);
+  program::add_session_options(part, options->session, false);
   part.flag("--json", options->is_json, "for machines, values in SI");
   part.action([options, what] { return what(*options); });
   return part;
@@ -255,7 +257,7 @@ void add_param(options::Command& program) {
 
   options::Command list_part = add_part(verb, "list", "all parameters with value, range and meaning", list, options);
   list_part.option("patterns", options->words, "only these paths, with * and ?").value_name("PATH");
-  scene::add_scene_file(list_part, "--scene", options->scene, "of a scene file, without a session");
+  program::add_scene_file(list_part, "--scene", options->scene, "of a scene file, without a session");
   list_part.flag("--live", options->only_live, "only those that can be changed while the session runs");
   list_part.footer(
       "Of a running session: the present values.\n\nExample:\n  slewring param list 'Bag.*' --scene "
@@ -263,7 +265,7 @@ void add_param(options::Command& program) {
 
   options::Command get_part = add_part(verb, "get", "one parameter: its present value", get, options);
   get_part.option("path", options->words, "Element.key").required().values(1, 1).value_name("PATH");
-  scene::add_scene_file(get_part, "--scene", options->scene, "of a scene file, without a session");
+  program::add_scene_file(get_part, "--scene", options->scene, "of a scene file, without a session");
   get_part.footer(
       "Of a running session: the present value.\n\nExample:\n  slewring param get Bag.mass --session truck_crane");
 

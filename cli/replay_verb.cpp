@@ -14,6 +14,7 @@
 #include "core/printable.h"
 #include "node/driver.h"
 #include "node/identity.h"
+#include "program/add_session_options.h"
 #include "session/recorded.h"
 #include "session/replay.h"
 
@@ -212,7 +213,7 @@ void add_replay(options::Command& program) {
       .group("Going on");
   verb.flag("--in-process", options->run.is_in_process, "with --then-live: all nodes in this process")
       .group("Going on");
-  node::add_session_options(verb, options->run.session, false);
+  program::add_session_options(verb, options->run.session, false);
   add_running_options(verb, options->run);
   verb.footer(
       "Without --verify differences are counted and reported, and the exit code is 0.\n\n"

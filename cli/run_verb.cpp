@@ -17,6 +17,9 @@
 #include "core/node_names.h"
 #include "core/printable.h"
 #include "observer/observer.h"
+#include "program/add_scene_options.h"
+#include "program/add_session_options.h"
+#include "program/node_options.h"
 #include "session/recording_forecast.h"
 #include "session/run.h"
 #include "session/unrecorded.h"
@@ -204,7 +207,7 @@ void add_running_options(options::Command& verb, session::RunOptions& options) {
       .show_default();
   verb.option("--join-timeout", options.join_timeout,
               "seconds to wait for all nodes of the session, and for lockstep controllers; without it 10")
-      .between(node::kShortestJoin, node::kLongestJoin)
+      .between(program::kShortestJoin, program::kLongestJoin)
       .value_name("S")
       .group("Session");
   verb.flag("--rt", options.is_real_time, "real-time scheduling and locked memory for the nodes");
@@ -222,8 +225,8 @@ void add_running_options(options::Command& verb, session::RunOptions& options) {
 void add_run(options::Command& program) {
   options::Command verb = program.command("run", "run a scene: start its nodes, drive, record, plot");
   const auto options = std::make_shared<session::RunOptions>();  // lives as long as the command line's callbacks
-  scene::add_scene_options(verb, options->scene);
-  node::add_session_options(verb, options->session, false);
+  program::add_scene_options(verb, options->scene);
+  program::add_session_options(verb, options->session, false);
   verb.find("--session").description("name of the session; without it the scene's");
   verb.option("--remote", options->remote, "roles that are started elsewhere, separated by commas")
       .comma_separated()

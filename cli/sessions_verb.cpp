@@ -8,6 +8,7 @@
 #include "core/json.h"
 #include "core/report_table.h"
 #include "node/identity.h"
+#include "program/add_session_options.h"
 #include "session/survey.h"
 #include "transport/session_state.h"
 
@@ -94,7 +95,7 @@ ExitCode show(const SessionsOptions& options) {
 void add_sessions(options::Command& program) {
   options::Command verb = program.command("sessions", "list the sessions that run on a domain");
   const auto options = std::make_shared<SessionsOptions>();  // lives as long as the command line's callbacks
-  node::add_network_options(verb, options->network);
+  program::add_network_options(verb, options->network);
   verb.option("--time", options->seconds, "seconds to listen").between(0.1, 60.0).value_name("S").show_default();
   verb.flag("--json", options->is_json, "for machines");
   verb.footer("Example:\n  slewring sessions --interface eth0 --peer 192.168.1.20 --keys plant");

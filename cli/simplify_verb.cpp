@@ -13,6 +13,7 @@
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "program/add_scene_options.h"
 #include "scene/scene_options.h"
 #include "session/interrupts.h"
 
@@ -72,7 +73,7 @@ void add_simplify(options::Command& program) {
       program.command("simplify", "parts of a scene that may be left out while chosen variables stay as they are");
   const auto options = std::make_shared<SimplifyOptions>();  // lives as long as the command line's callbacks
   analysis::SimplifyOptions& settings = options->settings;
-  scene::add_scene_file(verb, "scene", settings.scene.file).required();
+  program::add_scene_file(verb, "scene", settings.scene.file).required();
   verb.option("--error", settings.errors,
               "a variable and by how much it may change: a quantity, or a part of its range in %; repeat for more; "
               "without it 1 mm of the position of each payload that the scene names")

@@ -14,6 +14,8 @@
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/text_output.h"
+#include "program/add_scene_options.h"
+#include "program/add_session_options.h"
 #include "scene/scene_options.h"
 #include "session/interrupts.h"
 
@@ -106,7 +108,7 @@ ExitCode run(StressOptions options) {
 
 void add_what(options::Command& verb, StressOptions& options) {
   analysis::StressOptions& settings = options.settings;
-  scene::add_scene_file(verb, "scene", settings.scene.file).required();
+  program::add_scene_file(verb, "scene", settings.scene.file).required();
   verb.option("--set", settings.scene.overrides, "change a value of the scene; repeat for more")
       .one_value_each()
       .value_name("PATH=VALUE");
@@ -173,7 +175,7 @@ void add_stress(options::Command& program) {
   add_what(verb, *options);
   add_cells(verb, *options);
   add_verdict(verb, *options);
-  node::add_network_options(verb, options->settings.session);
+  program::add_network_options(verb, options->settings.session);
   verb.option("--folder", options->settings.folder, "for recordings and files that come and go")
       .value_name("DIR")
       .show_default();

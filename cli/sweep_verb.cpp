@@ -14,6 +14,7 @@
 #include "core/json.h"
 #include "core/printable.h"
 #include "core/text_output.h"
+#include "program/add_scene_options.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 #include "session/interrupts.h"
@@ -109,7 +110,7 @@ ExitCode run_sweep_row(const SweepRowOptions& options) {
 
 void add_sweep_subject(options::Command& verb, SweepOptions& options) {
   analysis::ParameterSweepOptions& settings = options.settings;
-  scene::add_scene_file(verb, "scene", settings.job.scene.file).required();
+  program::add_scene_file(verb, "scene", settings.job.scene.file).required();
   verb.option("--vary", settings.variations,
               "a value of the scene as for --set, or a parameter, and its range, such as 'Bag.mass=200kg..1500kg:50', "
               "or its values, 'L=2m,3m'; repeat for more")

@@ -12,6 +12,7 @@
 #include "core/report_table.h"
 #include "node/driver.h"
 #include "node/open_transport.h"
+#include "program/add_session_options.h"
 #include "session/survey.h"
 #include "transport/roles.h"
 #include "transport/topics.h"
@@ -139,7 +140,7 @@ void add_topics(options::Command& program) {
   options::Command verb =
       program.command("topics", "rate, size and delay of the messages of a running session, by topic");
   const auto options = std::make_shared<TopicsOptions>();  // lives as long as the command line's callbacks
-  node::add_session_options(verb, options->session, false);
+  program::add_session_options(verb, options->session, false);
   verb.option("--time", options->seconds, "seconds to listen").between(0.1, 60.0).value_name("S").show_default();
   verb.flag("--json", options->is_json, "for machines, in SI units");
   verb.footer(

@@ -14,6 +14,7 @@
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/text_output.h"
+#include "program/add_scene_options.h"
 #include "scene/scene_options.h"
 #include "session/interrupts.h"
 
@@ -102,7 +103,7 @@ ExitCode run_row(const RowOptions& options) {
 
 void add_what(options::Command& verb, TradeoffOptions& options) {
   analysis::TradeoffOptions& settings = options.settings;
-  scene::add_scene_file(verb, "scene", settings.scene.file).required();
+  program::add_scene_file(verb, "scene", settings.scene.file).required();
   const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
     verb.option(name, to, text).one_value_each().value_name(type);
   };

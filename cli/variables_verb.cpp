@@ -10,6 +10,8 @@
 #include "core/failure.h"
 #include "core/report_table.h"
 #include "io_node/input_gate.h"
+#include "program/add_scene_options.h"
+#include "program/add_session_options.h"
 #include "scene/names.h"
 #include "scene/scene_options.h"
 #include "session/monolithic_session.h"
@@ -91,11 +93,11 @@ ExitCode list(const VariablesOptions& options) {
 void add_variables(options::Command& program) {
   options::Command verb = program.command("variables", "list the variables of a scene or of a running session");
   const auto options = std::make_shared<VariablesOptions>();  // lives as long as the command line's callbacks
-  scene::add_scene_file(verb, "scene", options->scene, "scene file; without it a running session");
+  program::add_scene_file(verb, "scene", options->scene, "scene file; without it a running session");
   verb.option("--only", options->patterns, "only these names, with * and ?; repeat for more")
       .value_name("PATTERN")
       .one_value_each();
-  node::add_session_options(verb, options->session, false);
+  program::add_session_options(verb, options->session, false);
   verb.flag("--json", options->is_json, "for machines");
   verb.footer("Example:\n  slewring variables scenes/truck_crane.yaml --only 'Cyl_*'");
   verb.action([options] { return list(*options); });

@@ -11,6 +11,7 @@
 #include "core/printable.h"
 #include "node/driver.h"
 #include "observer/observer.h"
+#include "program/add_session_options.h"
 #include "scene/name_pattern.h"
 #include "session/survey.h"
 
@@ -89,7 +90,7 @@ void add_watch(options::Command& program) {
   options::Command verb = program.command("watch", "print variables of a running session as they change");
   const auto options = std::make_shared<WatchOptions>();  // lives as long as the command line's callbacks
   verb.option("variables", options->variables, "names, or patterns with * and ?").required().value_name("VAR");
-  node::add_session_options(verb, options->session, false);
+  program::add_session_options(verb, options->session, false);
   verb.option("--every", options->interval, "seconds between two lines")
       .between(0.01, 3600.0)
       .value_name("S")

@@ -11,6 +11,7 @@
 #include "cli/window_process.h"
 #include "core/failure.h"
 #include "core/installation.h"
+#include "program/add_session_options.h"
 #include "scene/edited_scene.h"
 #include "session/interrupts.h"
 
@@ -100,7 +101,7 @@ void add_window(options::Command& program) {
       .group("Scene");
   verb.flag("--record,!--no-record", options->run.scene.is_recording, "with a scene: record it (default)")
       .group("Scene");
-  node::add_session_options(verb, options->run.session, false);
+  program::add_session_options(verb, options->run.session, false);
   add_running_options(verb, options->run);
   verb.flag("--json", options->window.is_json, "print the addresses as JSON");
   verb.footer(

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device_node/device_options.h"
 
+#include "program/add_session_options.h"
+
 namespace slew::device_node {
 
 void add_device_options(options::Command& app, DeviceOptions& options) {
-  node::add_session_options(app, options.session, false);
+  program::add_session_options(app, options.session, false);
   app.option("--devices", options.file, "file with sections devices and outputs, in the place of those of the scene")
       .value_name("FILE");
   app.option("--assets", options.assets,

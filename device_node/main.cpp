@@ -8,7 +8,7 @@
 #include "device_node/device_options.h"
 #include "device_node/device_run.h"
 #include "node/driver.h"
-#include "node/node_program.h"
+#include "program/node_program.h"
 
 int main(int argc, char** argv) {
   using namespace slew;
@@ -33,5 +33,5 @@ int main(int argc, char** argv) {
                                  : device_node::summary_text(summary));
     return static_cast<ExitCode>(node::stop_requested.load());
   });
-  return node::run_program(program, argc, argv);
+  return program::run_program(program, argc, argv);
 }

@@ -3,8 +3,10 @@
 #include "core/failure.h"
 #include "io_node/io_node.h"
 #include "io_node/session_scene.h"
-#include "node/node_program.h"
 #include "node/open_transport.h"
+#include "program/add_scene_options.h"
+#include "program/node_options.h"
+#include "program/node_program.h"
 #include "scene/scene_options.h"
 #include "transport/roles.h"
 
@@ -13,12 +15,12 @@ namespace {
 using namespace slew;
 
 struct IoOptions {
-  node::NodeOptions node;
+  program::NodeOptions node;
   scene::SceneOptions scene;
 };
 
 ExitCode run(const IoOptions& options) {
-  node::apply_real_time(options.node, "io_node");
+  program::apply_real_time(options.node, "io_node");
   const io_node::SessionScene session = io_node::load_session_scene(options.scene);
   const auto transport = node::open_transport(wire::Role::io, options.node.session);
   const auto recording = options.scene.is_recording ? io_node::Recording::required : io_node::Recording::none;
@@ -28,7 +30,7 @@ ExitCode run(const IoOptions& options) {
   const bool is_on_loopback = options.node.session.interface == node::SessionOptions{}.interface;
   config.controllers_clock = is_on_loopback ? node::WriterClock::same : node::WriterClock::other;
   io_node::IoNode node(*transport, std::move(config));
-  return node::run_node(node).value();  // io follows no session of another node
+  return program::run_node(node).value();  // io follows no session of another node
 }
 
 }  // namespace
@@ -43,9 +45,9 @@ int main(int argc, char** argv) {
       "--keys plant");
   IoOptions options;
   options.node.priority = transport::traits(wire::Role::io).priority;
-  scene::add_scene_options(program, options.scene);
-  node::add_node_options(program, options.node);
-  node::add_join_timeout(program, options.node);
+  program::add_scene_options(program, options.scene);
+  program::add_node_options(program, options.node);
+  program::add_join_timeout(program, options.node);
   program.action([&] { return run(options); });
-  return node::run_program(program, argc, argv);
+  return program::run_program(program, argc, argv);
 }

@@ -2,9 +2,10 @@
 // The program recorder_node: writes all messages of a session into one recording.
 #include <cstdio>
 
-#include "node/node_program.h"
 #include "node/open_transport.h"
 #include "node/subsystem_factory.h"
+#include "program/node_options.h"
+#include "program/node_program.h"
 #include "recorder_node/recorder_node.h"
 #include "transport/roles.h"
 
@@ -12,8 +13,8 @@ namespace {
 
 using namespace slew;
 
-std::optional<ExitCode> run(const node::NodeOptions& options, const std::string& runs, double keep_free_mb) {
-  node::apply_real_time(options, "recorder_node");
+std::optional<ExitCode> run(const program::NodeOptions& options, const std::string& runs, double keep_free_mb) {
+  program::apply_real_time(options, "recorder_node");
   const auto transport = node::open_transport(wire::Role::recorder, options.session);
   recorder_node::RecorderConfig config;
   config.runs_directory = runs;
@@ -28,7 +29,7 @@ std::optional<ExitCode> run(const node::NodeOptions& options, const std::string&
       if (!node.recording().empty()) std::printf("recording: %s\n", node.recording().c_str());
     }
   } const print_path{node};
-  return node::run_node(node);
+  return program::run_node(node);
 }
 
 }  // namespace
@@ -36,11 +37,11 @@ std::optional<ExitCode> run(const node::NodeOptions& options, const std::string&
 int main(int argc, char** argv) {
   options::Program program("recorder_node", "Recorder of a Slewring session: one .mcap file in a new folder of --out.");
   program.footer("Example:\n  slewring node recorder --session truck_crane --out /data/runs");
-  node::NodeOptions options;
+  program::NodeOptions options;
   options.priority = transport::traits(wire::Role::recorder).priority;
   std::string runs = "runs";
-  node::add_node_options(program, options);
-  node::add_finding_options(program, options);
+  program::add_node_options(program, options);
+  program::add_finding_options(program, options);
   program.option("--out", runs, "folder in which the session gets a folder of its own")
       .value_name("DIR")
       .show_default();
@@ -49,6 +50,6 @@ int main(int argc, char** argv) {
       .between(0.0, 1e9)
       .value_name("MB")
       .show_default();
-  program.action([&] { return node::run_until_in_session([&] { return run(options, runs, keep_free_mb); }); });
-  return node::run_program(program, argc, argv);
+  program.action([&] { return program::run_until_in_session([&] { return run(options, runs, keep_free_mb); }); });
+  return program::run_program(program, argc, argv);
 }

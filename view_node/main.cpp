@@ -7,7 +7,8 @@
 
 #include "core/printable.h"
 #include "node/driver.h"
-#include "node/node_program.h"
+#include "program/add_session_options.h"
+#include "program/node_program.h"
 #include "view_node/window.h"
 
 int main(int argc, char** argv) {
@@ -18,7 +19,7 @@ int main(int argc, char** argv) {
   view_node::WindowOptions options;
   program.option("recording", options.recording, "recording, or the folder of a run, in the place of a session")
       .value_name("REC");
-  node::add_session_options(program, options.session, false);
+  program::add_session_options(program, options.session, false);
   program.option("--session-timeout", options.session_timeout, "seconds to wait for the session")
       .between(0.1, 86400.0)
       .value_name("S")
@@ -42,5 +43,5 @@ int main(int argc, char** argv) {
       std::fflush(stdout);
     });
   });
-  return node::run_program(program, argc, argv);
+  return program::run_program(program, argc, argv);
 }

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Command-line options with which a node or a verb finds its session.
+// What a node or a verb needs to find its session: the session and its network, as options of the command line
+// (program/add_session_options.h) give it.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "node/session_member.h"
-#include "options/options.h"
 #include "transport/network.h"
-#include "transport/roles.h"
 
 namespace slew::node {
 
@@ -24,37 +22,7 @@ struct SessionOptions {
   std::string middleware = transport::kMiddlewares[0];
 };
 
-struct NodeOptions {
-  SessionOptions session;
-  bool is_real_time = false;
-  int priority = transport::kPhysicsPriority;  // SCHED_FIFO, 1..99
-  int cpu = -1;                                // processor to run on; -1: any
-  double added_work_us = 0;                    // CPU time that each step of a physics node burns beside its own
-  double join_timeout = 10;                    // s
-  // for nodes that look for their session
-  double session_timeout = 30;  // s
-  std::string session_id;       // 32 hexadecimal digits; empty: the first session of the name
-  std::string assets = ".";     // folder of the scene's assets
-
-  [[nodiscard]] node::JoinOptions join() const;
-};
-
-// --domain, --interface, --peer, --keys, --identity, --insecure-lan, --middleware.
-void add_network_options(options::Command& app, SessionOptions& options);
-// --session and the network; without a name the verb takes its scene's.
-void add_session_options(options::Command& app, SessionOptions& options, bool is_required);
-// The above and --rt, --priority, --cpu: for every node.
-void add_node_options(options::Command& app, NodeOptions& options);
-// Range of --join-timeout.
-inline constexpr double kShortestJoin = 0.1, kLongestJoin = 86400;  // s
-// --join-timeout: for a node that waits for others.
-void add_join_timeout(options::Command& app, NodeOptions& options);
-// --session-timeout, --session-id: for a node that looks for its session.
-void add_finding_options(options::Command& app, NodeOptions& options);
-// All of these, --assets and --add-work.
-void add_physics_node_options(options::Command& app, NodeOptions& options);
-
-// The same as command-line arguments, for a child process.
+// The options of the network as command-line arguments, for a child process.
 [[nodiscard]] std::vector<std::string> network_arguments(const SessionOptions& options);
 
 // Checks a session's name: 1 to 63 letters, digits, '_', '-', '.'. Empty when the name is valid, else the problem.

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options of `slewring run` and io_node for the scene of a session and its changes.
+// The scene of a session with its changes, as options of the command line (program/add_scene_options.h) give them.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "options/options.h"
 #include "scene/parameters.h"
 #include "scene/scene.h"
 
@@ -29,14 +28,6 @@ struct SceneOptions {
 // A scene file as it was given, or, where there is no such file, that of the installation: "truck_crane.yaml" and
 // "scenes/truck_crane.yaml" are found from any folder once Slewring is installed.
 [[nodiscard]] std::string find_scene(const std::string& file);
-
-// An option or argument whose value is a scene file, looked up by find_scene().
-options::Option add_scene_file(options::Command& app, const std::string& name, std::string& file,
-                               const std::string& description = "scene file");
-
-// SCENE or --from FILE and --assets, --set, --step, --duration, --pace, --input, --record, --no-record,
-// --record-steps.
-void add_scene_options(options::Command& app, SceneOptions& options);
 
 // The scene with every option applied: step, pace, duration and the input file become part of its text. Throws
 // scene::LoadError.

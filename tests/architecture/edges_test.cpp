@@ -165,16 +165,45 @@ std::vector<std::string> forbidden_links(const Edges& edges, const std::map<std:
   return found;
 }
 
-TEST(Architecture, LinksFollowTheListedEdges) {
-  const Edges edges = read_edges(fs::path(SLEWRING_SOURCE_DIR) / "tests/architecture/edges.txt");
+std::map<std::string, Linked> linked_by_all() {
   std::map<std::string, Linked> all;
   for (const fs::path& room : rooms()) {
     for (const auto& entry : fs::recursive_directory_iterator(room)) {
       if (entry.path().filename() == "CMakeLists.txt") all.merge(linked(entry.path(), room.filename()));
     }
   }
+  return all;
+}
+
+TEST(Architecture, LinksFollowTheListedEdges) {
+  const Edges edges = read_edges(fs::path(SLEWRING_SOURCE_DIR) / "tests/architecture/edges.txt");
+  const std::map<std::string, Linked> all = linked_by_all();
   EXPECT_GT(all.size(), 20u);
   for (const std::string& violation : forbidden_links(edges, all)) ADD_FAILURE() << violation;
+}
+
+// Every library that one links, itself included.
+std::set<std::string> closure(const std::map<std::string, Linked>& all, const std::string& library) {
+  std::set<std::string> found;
+  std::vector<std::string> open = {library};
+  while (!open.empty()) {
+    const std::string next = open.back();
+    open.pop_back();
+    if (!found.insert(next).second || !all.contains(next)) continue;
+    open.insert(open.end(), all.at(next).depends.begin(), all.at(next).depends.end());
+  }
+  return found;
+}
+
+// The command line is of the mains and the verbs; a program that only links a node needs none.
+TEST(Architecture, NodesAndSessionsLinkNoCommandLine) {
+  const std::map<std::string, Linked> all = linked_by_all();
+  for (const char* library : {"node", "scene", "mechanics_node", "hydraulics_node", "flex_node", "sensor_node",
+                              "io_node", "recorder_node", "device_node", "session", "analysis", "keys", "gateway"}) {
+    EXPECT_TRUE(all.contains(library)) << library;
+    EXPECT_FALSE(closure(all, library).contains("options")) << library;
+  }
+  EXPECT_TRUE(closure(all, "mechanics_node (program)").contains("options"));
 }
 
 TEST(Architecture, ScannerFindsAForbiddenLink) {

@@ -15,6 +15,7 @@
 #include "io_node/scene_config.h"
 #include "io_node/session_scene.h"
 #include "node/identity.h"
+#include "program/add_scene_options.h"
 
 namespace slew::session {
 namespace scene_options_test {
@@ -209,7 +210,7 @@ TEST_F(SceneOptionsTest, ArgumentsForAChildGiveTheSameScene) {
   options_.is_recording = false;
   options::Program program("child", "");
   scene::SceneOptions parsed;
-  scene::add_scene_options(program, parsed);
+  program::add_scene_options(program, parsed);
   program.parse(scene::scene_arguments(options_));
   EXPECT_FALSE(parsed.is_recording);
   EXPECT_EQ(scene::load_scene(parsed).expanded_text, load_scene(options_).expanded_text);

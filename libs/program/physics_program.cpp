@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "node/physics_program.h"
+#include "program/physics_program.h"
 
-#include "node/node_program.h"
 #include "node/open_transport.h"
 #include "node/physics_node.h"
+#include "program/node_program.h"
 #include "transport/roles.h"
 
-namespace slew::node {
+namespace slew::program {
 namespace {
 
 std::string name_of(wire::Role role) {
@@ -15,8 +15,9 @@ std::string name_of(wire::Role role) {
 
 std::optional<ExitCode> run(const PhysicsProgram& program, const NodeOptions& options) {
   apply_real_time(options, name_of(program.role));
-  const auto transport = open_transport(program.role, options.session);
-  PhysicsNode node(program.role, *transport, subsystem_factory(program.make, options.assets), options.join());
+  const auto transport = node::open_transport(program.role, options.session);
+  node::PhysicsNode node(program.role, *transport, node::subsystem_factory(program.make, options.assets),
+                         options.join());
   node.add_work(microseconds(static_cast<std::int64_t>(options.added_work_us)));
   return run_node(node);
 }
@@ -34,4 +35,4 @@ int run_physics_program(const PhysicsProgram& program, int argc, const char* con
   return run_program(frame, argc, argv);
 }
 
-}  // namespace slew::node
+}  // namespace slew::program

@@ -8,10 +8,10 @@
 
 #include "core/status.h"
 #include "node/node.h"
-#include "node/session_options.h"
 #include "options/options.h"
+#include "program/node_options.h"
 
-namespace slew::node {
+namespace slew::program {
 
 // Checks the processor, adds --version, parses, and runs the program's action: all that a main does. An exception of
 // the action becomes one line on standard error and an exit code. Failure: its own code; a scene's LoadError:
@@ -35,4 +35,4 @@ void apply_real_time(const NodeOptions& options, const std::string& program);
 // Makes and runs nodes with `run` until the session of one was not withdrawn.
 [[nodiscard]] ExitCode run_until_in_session(const std::function<std::optional<ExitCode>()>& run);
 
-}  // namespace slew::node
+}  // namespace slew::program

@@ -8,16 +8,16 @@
 #include "node/subsystem_factory.h"
 #include "transport/wire.h"
 
-namespace slew::node {
+namespace slew::program {
 
 struct PhysicsProgram {
   wire::Role role = wire::Role::mechanics;
   std::string description;  // text of --help
   std::string example;      // options of the command in --help
-  MakeSubsystem make;
+  node::MakeSubsystem make;
 };
 
 // The whole of main(); returns the exit code.
 [[nodiscard]] int run_physics_program(const PhysicsProgram& program, int argc, const char* const* argv) noexcept;
 
-}  // namespace slew::node
+}  // namespace slew::program

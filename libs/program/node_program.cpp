@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "node/node_program.h"
+#include "program/node_program.h"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -26,7 +26,7 @@
 #include "options/manual.h"
 #include "scene/diagnostic.h"
 
-namespace slew::node {
+namespace slew::program {
 namespace {
 
 int report(const std::string& program, const char* text, ExitCode code) noexcept {
@@ -148,7 +148,7 @@ void apply_real_time(const NodeOptions& options, const std::string& program) {
 
 std::optional<ExitCode> run_node(node::Node& node) {
   node::install_signal_handlers();
-  const ExitCode code = node::run_alone(node, heap_meter());
+  const ExitCode code = node::run_alone(node, node::heap_meter());
   if (node.member().is_withdrawn()) return std::nullopt;
   const std::string& reason = node.member().reason();
   // the end by a signal needs no message
@@ -163,4 +163,4 @@ ExitCode run_until_in_session(const std::function<std::optional<ExitCode>()>& ru
   }
 }
 
-}  // namespace slew::node
+}  // namespace slew::program
