@@ -26,7 +26,6 @@ FlexSubsystem::FlexSubsystem(const scene::Scene& scene)
     : levels_(scene::port_levels(scene)),
       exchange_(scene.session.flexible),
       H_(scene.session.step_duration().seconds()) {
-  std::size_t points = 0;
   for (const scene::FlexibleBody& model : scene.flexible_bodies) {
     const std::size_t modes = model.reduction->body.modes();
     bodies_.push_back({model.body, model.reduction, constant_.Q.size(), modes, constant_.K.size()});
@@ -36,13 +35,10 @@ FlexSubsystem::FlexSubsystem(const scene::Scene& scene)
     for (const double k : model.stiffness) constant_.K.push_back(k);
     for (const double d : model.damping) constant_.D.push_back(d);
     constant_.strain_energy.push_back(0);
-    points = std::max(points, model.reduction->recovery.points.size());
     list_variables(bodies_.back());
   }
   constant_.is_constant = exchange_ == ElasticExchange::once;
   published_ = constant_;
-  normal_.resize(points);
-  shear_.resize(points);
   saved_model_ =
       coupling::saved_model(variables_, {scene.session.step_duration().ns, static_cast<std::int64_t>(exchange_)});
 }
@@ -211,27 +207,25 @@ void FlexSubsystem::read_variables(std::span<double> values) const noexcept {
     const std::span<const double> q = modes_of(body);
     const flex::Recovery& recovery = body.model->recovery;
     const std::size_t points = recovery.points.size();
-    const std::span<double> normal = std::span(normal_).first(points), shear = std::span(shear_).first(points);
-    flex::stresses(recovery, q, normal, shear);
     values[at++] = body.strain_energy;
-    if (points > 0) {
-      // von Mises
-      std::size_t worst = 0;
-      double largest = 0;
-      for (std::size_t i = 0; i < points; ++i) {
-        const double square = normal[i] * normal[i] + 3 * shear[i] * shear[i];
-        if (square > largest) largest = square, worst = i;
-      }
-      values[at++] = std::sqrt(largest);
-      values[at++] = recovery.points[worst].element;
-    }
+    const std::size_t of_largest = at;
+    if (points > 0) at += 2;
     for (const flex::ReducedNode& node : body.model->body.nodes) {
       for (const double d : flex::deflection(node, q).array()) values[at++] = d;
     }
+    // von Mises
+    std::size_t worst = 0;
+    double largest = 0;
     for (std::size_t i = 0; i < points; ++i) {
-      values[at++] = normal[i];
-      if (recovery.points[i].has_shear) values[at++] = shear[i];
+      const auto [normal, shear] = flex::stress_at(recovery, i, q);
+      const double square = normal * normal + 3 * shear * shear;
+      if (square > largest) largest = square, worst = i;
+      values[at++] = normal;
+      if (recovery.points[i].has_shear) values[at++] = shear;
     }
+    if (points == 0) continue;
+    values[of_largest] = std::sqrt(largest);
+    values[of_largest + 1] = recovery.points[worst].element;
   }
 }
 

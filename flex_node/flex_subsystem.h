@@ -68,8 +68,7 @@ class FlexSubsystem final : public coupling::Subsystem {
   coupling::ElasticSample published_;
   coupling::ModeArray q_, u_;
   std::vector<ElementVariable> variables_;
-  mutable std::vector<double> normal_, shear_;  // Pa, by point: scratch of read_variables()
-  std::uint64_t saved_model_ = 0;               // digest of the model of saved states
+  std::uint64_t saved_model_ = 0;  // digest of the model of saved states
 };
 
 [[nodiscard]] std::unique_ptr<coupling::Subsystem> make_flex_subsystem(const scene::Scene& scene);

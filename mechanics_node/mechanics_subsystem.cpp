@@ -63,8 +63,9 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
       sensed_bodies_(sensed_bodies(scene, model())),
       ramps_(multibody::parameter_count(model())),
       divergence_(model()),
-      payload_(model(), payload_of(mechanism_.def(), model()), ratios(port_problem_.ports())),
-      variables_(model(), port_problem_.ports(), payload_.payload(), partner_.is_free_running()),
+      observing_(std::make_unique<MechanicsVariables::Work>(
+          model(), PayloadSensitivity(model(), payload_of(mechanism_.def(), model()), ratios(port_problem_.ports())))),
+      variables_(model(), port_problem_.ports(), observing_->payload.payload(), partner_.is_free_running()),
       last_good_(state()),
       row_force_(model().rows.size()),
       saved_model_(coupling::saved_model(
@@ -77,7 +78,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
 
 void MechanicsSubsystem::reset() {
   mechanism_.reset();
-  payload_.copy(model());
+  observing_->payload.copy(model());
   last_good_ = state();
   partner_.reset();
   port_problem_.reset();
@@ -112,7 +113,7 @@ Status MechanicsSubsystem::start(const coupling::PartnerSamples& partners, coupl
   if (partners.elastic != nullptr) {
     Status status = modal_.begin(mechanism_.def(), *partners.elastic, mechanism_.change_model());
     if (!status.is_ok()) return status;
-    payload_.copy(model());
+    observing_->payload.copy(model());
   }
   coupling::resize(sample.mechanism, ports);
   publish(sample);
@@ -125,21 +126,21 @@ void MechanicsSubsystem::apply_ramps(StepIndex n) noexcept {
   if (ramps_.empty()) return;
   ramps_.apply(n, [this](int handle, double value) {
     multibody::set_parameter(mechanism_.change_model(), parameter_of(handle), value);
-    multibody::set_parameter(payload_.model(), parameter_of(handle), value);
+    multibody::set_parameter(observing_->payload.model(), parameter_of(handle), value);
   });
   port_problem_.forget_trends();
 }
 
 void MechanicsSubsystem::apply_signals(std::span<const double> controls) noexcept {
   if (!mechanism_.set_signals(controls)) return;
-  payload_.copy_signals(model());
+  observing_->payload.copy_signals(model());
   port_problem_.forget_trends();
 }
 
 // Elastic forces that the flex node publishes at every step. A sample of other sizes leaves those of the step before.
 void MechanicsSubsystem::take_elastic_forces(const coupling::ElasticSample* sample, StepReport& report) noexcept {
   if (sample == nullptr || modal_.is_empty()) return;
-  if (modal_.apply(*sample, mechanism_.change_model()) && modal_.apply(*sample, payload_.model())) {
+  if (modal_.apply(*sample, mechanism_.change_model()) && modal_.apply(*sample, observing_->payload.model())) {
     modal_.take_places(*sample, model(), mechanism_.change_state());
   } else {
     report.raise(StepFlag::clamp_active);
@@ -298,7 +299,7 @@ std::uint64_t MechanicsSubsystem::state_hash() const noexcept {
 }
 
 void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept {
-  variables_.read({mechanism_, port_problem_.ports(), published_.mechanism, row_force_, partner_.age()}, payload_,
+  variables_.read({mechanism_, port_problem_.ports(), published_.mechanism, row_force_, partner_.age()}, *observing_,
                   values);
 }
 

@@ -104,8 +104,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   std::vector<int> sensed_bodies_;  // of the model, in the order of PoseSample
   coupling::ParameterRamps ramps_;
   DivergenceWatch divergence_;
-  mutable PayloadSensitivity payload_;    // mutable: its payload's mass is scratch of read_variables()
-  mutable MechanicsVariables variables_;  // mutable: contains scratch of read_variables()
+  const std::unique_ptr<MechanicsVariables::Work> observing_;  // what read_variables() computes in
+  MechanicsVariables variables_;
   multibody::State last_good_;
   std::vector<double> row_force_;  // by row, at the published instant, on the row's own coordinate
   coupling::OwnSample published_;

@@ -25,9 +25,7 @@ MechanicsVariables::MechanicsVariables(const multibody::Model& model, const std:
     : list_(multibody::variables(model)),
       of_model_(list_.size()),
       payload_(payload),
-      has_partner_age_(has_partner_age),
-      workspace_(model),
-      reactions_(model.joints.size()) {
+      has_partner_age_(has_partner_age) {
   for (ElementVariable& variable : multibody::reaction_variables(model)) list_.push_back(std::move(variable));
   of_reactions_ = list_.size() - of_model_;
   for (const Port& port : ports) {
@@ -44,18 +42,22 @@ MechanicsVariables::MechanicsVariables(const multibody::Model& model, const std:
   }
 }
 
-void MechanicsVariables::read(const Instant& instant, PayloadSensitivity& payload, std::span<double> values) noexcept {
+MechanicsVariables::Work::Work(const multibody::Model& model, PayloadSensitivity sensitivity)
+    : payload(std::move(sensitivity)), workspace(model), reactions(model.joints.size()) {}
+
+void MechanicsVariables::read(const Instant& instant, Work& work, std::span<double> values) const noexcept {
   const multibody::Model& model = instant.mechanism.model();
   const multibody::State& state = instant.mechanism.state();
   multibody::read_variables(model, state, instant.mechanism.workspace(), instant.row_force, values.first(of_model_));
-  multibody::joint_reactions(model, state, workspace_, instant.row_force, reactions_);
-  multibody::read_reactions(model, workspace_, instant.row_force, reactions_, values.subspan(of_model_, of_reactions_));
+  multibody::joint_reactions(model, state, work.workspace, instant.row_force, work.reactions);
+  multibody::read_reactions(model, work.workspace, instant.row_force, work.reactions,
+                            values.subspan(of_model_, of_reactions_));
   std::size_t k = of_model_ + of_reactions_;
   const std::size_t m = instant.ports.size();
   const double mass = payload_ > 0 ? mass_of(model, payload_) : 0;
   coupling::PortArray slopes;
   slopes.resize(m);
-  payload.read(state, mass, workspace_, slopes.span());
+  work.payload.read(state, mass, work.workspace, slopes.span());
   const coupling::PortArray static_force = holding_forces(instant.published, m);
   for (std::size_t i = 0; i < m; ++i) {
     values[k++] = instant.published.F_line[i];

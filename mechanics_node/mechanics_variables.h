@@ -32,16 +32,21 @@ class MechanicsVariables {
     std::span<const double> row_force;
     StepIndex partner_age;
   };
-  // payload: with the mechanism's parameters.
-  void read(const Instant& instant, PayloadSensitivity& payload, std::span<double> values) noexcept;
+  // What read() computes in.
+  struct Work {
+    // Allocates.
+    Work(const multibody::Model& model, PayloadSensitivity sensitivity);
+    PayloadSensitivity payload;  // with the mechanism's parameters
+    multibody::Workspace workspace;
+    std::vector<multibody::JointReaction> reactions;  // by joint of the scene
+  };
+  void read(const Instant& instant, Work& work, std::span<double> values) const noexcept;
 
  private:
   std::vector<ElementVariable> list_;
   std::size_t of_model_ = 0, of_reactions_ = 0;  // number of variables
   int payload_;                                  // body of the model, 0: none
   bool has_partner_age_;
-  multibody::Workspace workspace_;                   // scratch
-  std::vector<multibody::JointReaction> reactions_;  // scratch, by joint of the scene
 };
 
 }  // namespace slew::mechanics_node

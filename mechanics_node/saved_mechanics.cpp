@@ -79,7 +79,7 @@ Status MechanicsSubsystem::load(std::span<const std::byte> state, coupling::OwnS
 
 // Computes what follows from the state, as the end of a step leaves it.
 void MechanicsSubsystem::show_loaded() noexcept {
-  payload_.copy(model());
+  observing_->payload.copy(model());
   multibody::copy_state(state(), last_good_);
   mechanism_.evaluate();
   mechanism_.observe();

@@ -63,19 +63,15 @@ Recovery select(const Recovery& recovery, std::span<const int> ordinals) {
   return out;
 }
 
-void stresses(const Recovery& recovery, std::span<const double> q, std::span<double> normal,
-              std::span<double> shear) noexcept {
-  SLEW_ASSERT(q.size() == recovery.modes && normal.size() == recovery.points.size() && shear.size() == normal.size());
+PointStress stress_at(const Recovery& recovery, std::size_t point, std::span<const double> q) noexcept {
+  SLEW_ASSERT(q.size() == recovery.modes && point < recovery.points.size());
   const std::size_t m = recovery.modes;
-  for (std::size_t i = 0; i < recovery.points.size(); ++i) {
-    double sigma = 0, tau = 0;
-    for (std::size_t k = 0; k < m; ++k) {
-      sigma += recovery.normal[i * m + k] * q[k];
-      tau += recovery.shear[i * m + k] * q[k];
-    }
-    normal[i] = sigma;
-    shear[i] = tau;
+  PointStress stress;
+  for (std::size_t k = 0; k < m; ++k) {
+    stress.normal += recovery.normal[point * m + k] * q[k];
+    stress.shear += recovery.shear[point * m + k] * q[k];
   }
+  return stress;
 }
 
 }  // namespace slew::flex

@@ -34,8 +34,10 @@ struct Recovery {
 // The same with some of the modes, as select() of reduced_body.h.
 [[nodiscard]] Recovery select(const Recovery& recovery, std::span<const int> ordinals);
 
-// Stresses [Pa] by point; sizes: q modes, normal and shear points. No allocation.
-void stresses(const Recovery& recovery, std::span<const double> q, std::span<double> normal,
-              std::span<double> shear) noexcept;
+struct PointStress {
+  double normal = 0, shear = 0;  // Pa
+};
+// Stress at a point. Size of q: modes. No allocation.
+[[nodiscard]] PointStress stress_at(const Recovery& recovery, std::size_t point, std::span<const double> q) noexcept;
 
 }  // namespace slew::flex
