@@ -24,6 +24,7 @@
 #include "session/direct_session.h"
 #include "session/recording_forecast.h"
 #include "session/unrecorded.h"
+#include "transport/roles.h"
 
 namespace slew::cli {
 namespace {
@@ -41,7 +42,7 @@ struct CheckOptions {
 // what they are compared with.
 void check_variables(const scene::Scene& scene, const session::DirectSession& session) {
   std::vector<std::string> names, units;
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (session.subsystem(role) == nullptr) continue;
     for (const ElementVariable& variable : session.subsystem(role)->variables()) {
       names.push_back(variable.name);

@@ -20,6 +20,7 @@
 #include "scene/canonical.h"
 #include "scene/scene.h"
 #include "session/survey.h"
+#include "transport/roles.h"
 
 namespace slew::cli {
 namespace {
@@ -103,7 +104,7 @@ class ReceivedStates final : public observer::Receiver {
 
 std::vector<wire::Role> roles_with_state(const wire::SessionDescription& session) {
   std::vector<wire::Role> roles = {wire::Role::io};
-  for (const wire::Role role : wire::kPhysicsRoles) {
+  for (const wire::Role role : transport::physics_roles()) {
     if ((session.required_roles & wire::bit(role)) != 0) roles.push_back(role);
   }
   return roles;

@@ -15,6 +15,7 @@
 #include "core/printable.h"
 #include "node/identity.h"
 #include "scene/names.h"
+#include "transport/roles.h"
 
 namespace slew::cli {
 namespace {
@@ -133,7 +134,7 @@ void StatusText::measure(const observer::SessionView& view, std::int64_t now_ns)
 
 std::string StatusText::nodes_text(const observer::SessionView& view) {
   std::string nodes;
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     if ((view.session().required_roles & bit(role)) == 0) continue;
     const wire::NodeState state = view.node(role).status.state;
     const bool is_usual = view.node(role).is_known && (state == wire::NodeState::running ||

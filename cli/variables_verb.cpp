@@ -16,6 +16,7 @@
 #include "scene/scene_options.h"
 #include "session/monolithic_session.h"
 #include "session/survey.h"
+#include "transport/roles.h"
 
 namespace slew::cli {
 namespace {
@@ -42,7 +43,7 @@ std::vector<Named> of_scene(const std::string& file) {
       all.push_back({input.name + variable.quantity, variable.unit, "io"});
     }
   }
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     const auto subsystem = family.make(role, scene);
     if (subsystem == nullptr) continue;
     const std::string owner(node::to_text(role));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io_node/io_node.h"
+#include "transport/roles.h"
 
 #include <algorithm>
 #include <utility>
@@ -204,7 +205,7 @@ bool IoNode::advance_initialising(std::int64_t now_ns) {
 
 std::string IoNode::not_ready_text() const {
   std::string text;
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     if (role == Role::io) continue;
     const node::Peer& peer = member_.peer(role);
     if (!member_.requires_role(role) || (peer.is_known && peer.status.state >= NodeState::ready)) continue;

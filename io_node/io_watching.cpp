@@ -21,7 +21,7 @@ bool IoNode::hold_role(Role role, std::int64_t now_ns) {
 // The node that ended first: by its step, then in the order of roles.
 const node::Peer* IoNode::first_ended() const noexcept {
   const node::Peer* first = nullptr;
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     if (role == Role::io || !member_.requires_role(role) || keeper_.is_held(role)) continue;
     const node::Peer& peer = member_.peer(role);
     if (!peer.is_known || peer.status.state < NodeState::ended) continue;

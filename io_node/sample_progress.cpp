@@ -38,14 +38,14 @@ StepIndex SampleProgress::needed(Role role, StepIndex n) const noexcept {
 }
 
 std::optional<Role> SampleProgress::missing(StepIndex n) const noexcept {
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (is_required(role) && newest(role) < needed(role, n)) return role;
   }
   return std::nullopt;
 }
 
 StepIndex SampleProgress::complete_up_to(StepIndex n) const noexcept {
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (is_required(role) && !transport::traits(role).is_follower) n = std::min(n, newest(role));
   }
   return n;
@@ -55,7 +55,7 @@ std::uint64_t SampleProgress::request_missing(StepIndex n, std::int64_t now_ns, 
   if (!resend_.is_due(now_ns)) return 0;
   resend_.requested(now_ns);
   std::uint64_t requests = 0;
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     const StepIndex last = needed(role, n);
     if (!is_required(role) || newest(role) >= last) continue;
     wire::ResendRequest request;

@@ -10,6 +10,7 @@
 
 #include "core/failure.h"
 #include "node/identity.h"
+#include "transport/roles.h"
 
 namespace slew::io_node {
 namespace {
@@ -63,7 +64,7 @@ SessionScene load_session_scene(const scene::SceneOptions& options) {
                                            "; nothing was started; choose a longer --duration, or 0");
   }
   check_input_times(options, saved.time(), scene);
-  for (const wire::Role role : wire::kStateRoles) {
+  for (const wire::Role role : transport::state_roles()) {
     const bool is_needed = (required_roles(scene, Recording::none) & bit(role)) != 0;
     if (!is_needed || saved.find(role) != nullptr) continue;
     throw Failure(ExitCode::bad_input, options.from + ": the file has no state of " + std::string(node::to_text(role)) +

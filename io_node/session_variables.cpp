@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io_node/session_variables.h"
+#include "transport/roles.h"
 
 namespace slew::io_node {
 
@@ -55,7 +56,7 @@ std::vector<wire::VariableEntry> own_variables(std::span<const std::string> inpu
     }
   }
   for (const SessionVariable& variable : kSessionVariables) entries.push_back({variable.name, variable.unit});
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if ((roles & bit(role)) == 0) continue;
     for (const SessionVariable& variable : kNodeVariables) {
       entries.push_back({std::string(to_text(role)) + variable.name, variable.unit});
@@ -114,7 +115,7 @@ void SessionVariables::add_timing(StepIndex n, std::int64_t now_ns) {
         count(timing_.transitions), seconds(timing_.input_latency.max())}) {
     block_.values.push_back(value);
   }
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (!member_.requires_role(role)) continue;
     const wire::Health& node = healths_[static_cast<std::size_t>(role)];
     for (const double value :

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "node/sample_exchange.h"
+#include "transport/roles.h"
 
 namespace slew::io_node {
 
@@ -110,7 +111,7 @@ void StateKeeper::begin_collecting(StepIndex n, std::int64_t now_ns) {
 
 // first role whose state has not been received
 std::optional<Role> StateKeeper::unsaved() const noexcept {
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (member_.requires_role(role) && kept(role).find(saving_->step) == nullptr) return role;
   }
   return std::nullopt;
@@ -140,7 +141,7 @@ StateKeeper::Progress StateKeeper::advance_saving(StepIndex n, std::int64_t now_
   }
   if (!saving_->resend.is_due(now_ns)) return {};
   saving_->resend.requested(now_ns);
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (!member_.requires_role(role) || kept(role).find(saving_->step) != nullptr) continue;
     wire::ResendRequest request;
     request.header = member_.header(Phase::running, saving_->step);
@@ -157,7 +158,7 @@ void StateKeeper::publish_saved() {
   node::Checkpoint own;
   inputs_.save(saving_->step, own);
   node::send_checkpoint(member_, Topic::state, Role::io, own, request);
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (!member_.requires_role(role)) continue;
     node::send_checkpoint(member_, Topic::state, role, *kept(role).find(saving_->step), request);
   }
@@ -169,7 +170,8 @@ void StateKeeper::publish_saved() {
 void StateKeeper::receive_upload(std::span<const std::byte> bytes) {
   if (!member_.decode(bytes, part_)) return;
   const bool is_for_this = part_.header.session == member_.session().header.session && part_.request != 0;
-  const bool has_state = part_.role == Role::io || (is_physics(part_.role) && member_.requires_role(part_.role));
+  const bool has_state =
+      part_.role == Role::io || (transport::is_physics(part_.role) && member_.requires_role(part_.role));
   if (!is_for_this || part_.header.role != Role::observer || !has_state) return;
   if (upload_.request != part_.request) {
     if (is_loading()) return;  // one at a time
@@ -204,7 +206,7 @@ std::optional<ControlAnswer> StateKeeper::advance_loading(bool is_running, StepI
   if (!is_running) return refuse("the session is not running any more");
   if (is_holding()) return refuse(held_text() + kRepeatLater);
   const node::Checkpoint& own = upload_.parts[static_cast<std::size_t>(Role::io)].checkpoint();
-  for (const Role role : wire::kStateRoles) {
+  for (const Role role : transport::state_roles()) {
     const node::CheckpointParts& parts = upload_.parts[static_cast<std::size_t>(role)];
     if (!member_.requires_role(role)) continue;
     if (!parts.is_whole()) {
@@ -266,7 +268,7 @@ bool StateKeeper::are_bound(Role role, Role other) const noexcept {
 // of the step that it has reached, and can send its own samples from the step on at which it began.
 bool StateKeeper::is_suitable(Role role, StepIndex step, StepIndex n, const SampleProgress& samples) const noexcept {
   if (step % config_.exchange_unit != 0) return false;
-  for (const Role other : wire::kPhysicsRoles) {
+  for (const Role other : transport::physics_roles()) {
     if (other == role || !member_.requires_role(other) || !are_bound(role, other)) continue;
     // two replacements begin at the same step
     if (has_no_process(other)) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "recorder_node/recorder_node.h"
+#include "transport/roles.h"
 
 namespace slew::recorder_node {
 
@@ -91,7 +92,7 @@ void RecorderNode::expect_states(StepIndex step) {
   wants_states_ = false;
   counts_[static_cast<std::size_t>(Topic::state)].lost += missing_states_.size();
   missing_states_.clear();
-  for (const Role role : wire::kStateRoles) {
+  for (const Role role : transport::state_roles()) {
     if (member_.requires_role(role)) missing_states_[role];
   }
 }

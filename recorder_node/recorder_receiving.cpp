@@ -185,7 +185,7 @@ void RecorderNode::begin_streams(StepIndex from) {
   missing_states_.clear();
   states_step_ = streams_.begin;
   if (from >= 0) expect_states(from);
-  for (const Role role : wire::kStateRoles) {
+  for (const Role role : transport::state_roles()) {
     if (!member_.requires_role(role) || transport::traits(role).is_follower) continue;
     streams_.steps.try_emplace({transport::traits(role).sample, role}, make_stream(streams_.begin));
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "node/identity.h"
+#include "transport/roles.h"
 
 namespace slew::bridge {
 namespace {
@@ -113,7 +114,7 @@ void Outgoing::publish_directory(StepIndex step) {
 }
 
 void Outgoing::publish_health(const observer::SessionView& view, StepIndex step) {
-  for (const wire::Role role : wire::kNodeRoles) {
+  for (const wire::Role role : transport::node_roles()) {
     const observer::NodeView& node = view.node(role);
     if (!node.is_known) continue;
     slewring::health_t message;

@@ -8,6 +8,7 @@
 
 #include "gateway/gateway.h"
 #include "node/identity.h"
+#include "transport/roles.h"
 
 namespace slew::gateway {
 namespace {
@@ -125,7 +126,7 @@ std::shared_ptr<const std::string> Gateway::body_of(Channel& channel) {
 
 std::string Gateway::session_body() const {
   Json nodes = Json::array();
-  for (const wire::Role role : wire::kNodeRoles) {
+  for (const wire::Role role : transport::node_roles()) {
     const observer::NodeView& node = view_->node(role);
     if (!node.is_known) continue;
     nodes.push_back({{"role", node::to_text(role)},

@@ -13,7 +13,7 @@ constexpr const char* kWindow = "window";
 // Names of the nodes of which a role's topics have this one.
 Json nodes_with(std::uint32_t roles, wire::Topic topic, transport::TopicSet transport::RoleTraits::*topics) {
   Json ids = Json::array();
-  for (const wire::Role role : wire::kNodeRoles) {
+  for (const wire::Role role : transport::node_roles()) {
     if ((roles & bit(role)) != 0 && (transport::traits(role).*topics).contains(topic))
       ids.push_back(node::to_text(role));
   }

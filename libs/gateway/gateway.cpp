@@ -9,6 +9,7 @@
 
 #include "gateway/foxglove_schemas.h"
 #include "node/identity.h"
+#include "transport/roles.h"
 
 namespace slew::gateway {
 namespace {
@@ -207,9 +208,9 @@ void Gateway::watch_nodes(const observer::SessionView& view) {
     if (!is_other_time) add_event(LogLevel::info, "io", is_paused ? "the session is paused" : "the session goes on");
   }
   std::uint32_t roles = 0;
-  for (const wire::Role role : wire::kNodeRoles) roles |= view.node(role).is_known ? bit(role) : 0;
+  for (const wire::Role role : transport::node_roles()) roles |= view.node(role).is_known ? bit(role) : 0;
   if (roles != std::exchange(seen_.roles, roles)) publish_graph();
-  for (const wire::Role role : wire::kNodeRoles) {
+  for (const wire::Role role : transport::node_roles()) {
     const observer::NodeView& node = view.node(role);
     wire::NodeState& state = seen_.states[static_cast<std::size_t>(role)];
     if (!node.is_known || node.status.state == state) continue;

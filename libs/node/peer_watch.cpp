@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "node/session_member.h"
+#include "transport/roles.h"
 
 namespace slew::node {
 
@@ -22,7 +23,7 @@ void SessionMember::on_health(std::span<const std::byte> bytes, std::int64_t now
 }
 
 bool SessionMember::may_be_replaced(Role role) const noexcept {
-  return is_physics(role) && session_.rejoin_ns > 0;
+  return transport::is_physics(role) && session_.rejoin_ns > 0;
 }
 
 void SessionMember::excuse_peers(std::int64_t now_ns) noexcept {
@@ -84,7 +85,7 @@ PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
   excuse_peers(now_ns);
   const bool looks_for_processes = now_ns - processes_ns_ >= kProcessLook.ns;
   if (looks_for_processes) processes_ns_ = now_ns;
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     if (role == role_ || !requires_role(role)) continue;
     Peer& peer = peers_[static_cast<std::size_t>(role)];
     if (!peer.is_known || peer.status.state >= NodeState::ended) continue;
@@ -96,7 +97,7 @@ PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
 }
 
 std::optional<Role> SessionMember::silent_peer() const noexcept {
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     const Peer& peer = this->peer(role);
     if (requires_role(role) && peer.is_silent && !peer.is_lost && peer.status.state < NodeState::ended) return role;
   }

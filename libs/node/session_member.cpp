@@ -194,7 +194,7 @@ std::vector<std::string> SessionMember::take_warnings() {
 }
 
 bool SessionMember::all_required(NodeState at_least) const noexcept {
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     if (role == role_ || !requires_role(role)) continue;
     const Peer& peer = peers_[static_cast<std::size_t>(role)];
     // a peer that is gone or never joined counts as ended
@@ -230,8 +230,8 @@ bool SessionMember::has_acknowledged(Role reader, Topic topic) const noexcept {
 }
 
 bool SessionMember::is_acknowledged_on(Topic topic) const noexcept {
-  return std::all_of(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles),
-                     [&](Role reader) { return !must_read(reader, topic) || has_acknowledged(reader, topic); });
+  return std::ranges::all_of(transport::node_roles(),
+                             [&](Role reader) { return !must_read(reader, topic) || has_acknowledged(reader, topic); });
 }
 
 bool SessionMember::is_acknowledged_by_all() const noexcept {
@@ -256,14 +256,14 @@ std::string SessionMember::found_writers(Topic topic) {
 
 std::string SessionMember::join_failure_text(SimDuration within) {
   std::string text;
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     if (role != role_ && requires_role(role) && !peer(role).is_known) {
       text += (text.empty() ? "" : "; ") + std::string("no ") + std::string(to_text(role)) +
               " node has joined session '" + session_.name + "'" + found_writers(transport::traits(role).sample);
     }
   }
   for (const Topic topic : step_topics_) {
-    for (const Role reader : wire::kNodeRoles) {
+    for (const Role reader : transport::node_roles()) {
       if (!peer(reader).is_known || !must_read(reader, topic) || has_acknowledged(reader, topic)) continue;
       text += (text.empty() ? "" : "; ") + describe_peer(reader) + " has not received topic '" +
               std::string(to_text(topic)) + "' from " + std::string(to_text(role_));

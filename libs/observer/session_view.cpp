@@ -6,6 +6,7 @@
 #include "core/status.h"
 #include "transport/cdr/codec.h"
 #include "transport/message_object.h"
+#include "transport/roles.h"
 #include "transport/session_state.h"
 
 namespace slew::observer {
@@ -272,7 +273,7 @@ const wire::ControllerLease* SessionView::lease(const std::string& controller, c
 
 bool SessionView::has_whole_directory() const noexcept {
   if (!session_) return false;
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     const auto index = static_cast<std::size_t>(role);
     if (role == Role::recorder || (session_->required_roles & bit(role)) == 0) continue;
     if (!has_directory_[index] || named_[index] < variables_[index].size()) return false;

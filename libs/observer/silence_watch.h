@@ -7,6 +7,7 @@
 
 #include "core/time.h"
 #include "observer/session_view.h"
+#include "transport/roles.h"
 
 namespace slew::observer {
 
@@ -17,7 +18,7 @@ class SilenceWatch {
   // True: the session has fallen silent since the last call, or publishes again. now_ns: monotonic.
   [[nodiscard]] bool has_changed(const SessionView& view, std::int64_t now_ns) noexcept {
     std::uint64_t healths = 0;
-    for (const wire::Role role : wire::kNodeRoles) healths += view.node(role).healths;
+    for (const wire::Role role : transport::node_roles()) healths += view.node(role).healths;
     if (healths != healths_ || received_ns_ == 0) received_ns_ = now_ns;
     healths_ = healths;
     const bool is_silent = now_ns - received_ns_ > kSilentSession.ns;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "node/identity.h"
+#include "transport/roles.h"
 
 namespace slew::session {
 
@@ -27,7 +28,7 @@ void hand_over(PartnerSamples& partners, Topic topic, const coupling::OwnSample&
 
 DirectSession::DirectSession(const scene::Scene& scene, SampleAges ages)
     : rules_(node::exchange_rules(scene)), ages_(std::move(ages)) {
-  for (const Role role : wire::kPhysicsRoles) parts_[index(role)] = family_.make(role, scene);
+  for (const Role role : transport::physics_roles()) parts_[index(role)] = family_.make(role, scene);
   if (ages_ || rules_.port_every > 1) {
     history_.resize(
         std::max(ages_ ? static_cast<std::size_t>(kKeptSamples) : 1, static_cast<std::size_t>(rules_.port_every)));
@@ -47,7 +48,7 @@ PartnerSamples DirectSession::partners_at_start(Role role) const noexcept {
 
 Status DirectSession::start() {
   reports_ = {};
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (part(role) != nullptr) static_cast<void>(part(role)->first_sample(next_[index(role)]));
   }
   init_hash_ = state_hash(Role::mechanics);
@@ -60,14 +61,14 @@ Status DirectSession::start() {
 }
 
 void DirectSession::reset() {
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (part(role) != nullptr) part(role)->reset();
   }
 }
 
 Status DirectSession::load(std::span<const io_node::SavedState> states) {
   reports_ = {};
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (part(role) == nullptr) continue;
     const auto found = std::find_if(states.begin(), states.end(),
                                     [role](const io_node::SavedState& state) { return state.role == role; });
@@ -83,7 +84,7 @@ Status DirectSession::load(std::span<const io_node::SavedState> states) {
 }
 
 Status DirectSession::can_save() const {
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (part(role) == nullptr) continue;
     if (Status status = part(role)->can_save(); !status.is_ok()) return status;
   }
@@ -92,7 +93,7 @@ Status DirectSession::can_save() const {
 
 std::vector<io_node::SavedState> DirectSession::save(StepIndex n) const {
   std::vector<io_node::SavedState> states;
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (part(role) == nullptr) continue;
     const bool is_follower = transport::traits(role).is_follower;
     const StepReport last = is_follower ? StepReport{} : report(role);
@@ -141,12 +142,12 @@ void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
   }
   // a follower's sample is that of its partner's new one
   for (const bool is_follower : {false, true}) {
-    for (const Role role : wire::kPhysicsRoles) {
+    for (const Role role : transport::physics_roles()) {
       const transport::RoleTraits& traits = transport::traits(role);
       if (part(role) == nullptr || traits.is_follower != is_follower || !has_sample(role, n + 1)) continue;
       advance(role, n, commands, controls);
     }
-    for (const Role role : wire::kPhysicsRoles) {
+    for (const Role role : transport::physics_roles()) {
       if (transport::traits(role).is_follower == is_follower && has_sample(role, n + 1)) {
         now_[index(role)] = next_[index(role)];
       }
@@ -185,12 +186,12 @@ std::int64_t DirectSession::step_time_ns(Role role) const noexcept {
 }
 
 std::string DirectSession::failure() const {
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (part(role) != nullptr && report(role).has_failed() && !part(role)->failure_text().empty()) {
       return std::string(part(role)->failure_text());
     }
   }
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (part(role) == nullptr || !report(role).has_failed()) continue;
     const std::string_view offender = part(role)->offender_name(report(role).offender);
     return std::string(offender.empty() ? "the state" : offender) + " is not finite";

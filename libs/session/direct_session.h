@@ -85,7 +85,7 @@ class DirectSession {
 
   static constexpr std::size_t index(wire::Role role) noexcept { return static_cast<std::size_t>(role); }
   [[nodiscard]] coupling::Subsystem* part(wire::Role role) const noexcept {
-    return is_physics(role) ? parts_[index(role)].get() : nullptr;
+    return transport::is_physics(role) ? parts_[index(role)].get() : nullptr;
   }
   [[nodiscard]] coupling::PartnerSamples partners_at_start(wire::Role role) const noexcept;
   [[nodiscard]] coupling::PartnerSamples partners_in_step(wire::Role role, StepIndex n) const noexcept;

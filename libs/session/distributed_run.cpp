@@ -22,6 +22,7 @@
 #include "session/interrupts.h"
 #include "session/node_output.h"
 #include "session/node_programs.h"
+#include "transport/roles.h"
 #include "transport/session_state.h"
 
 namespace slew::session {
@@ -137,7 +138,7 @@ class Supervisor {
 
   void start_others() {
     are_others_started_ = true;
-    for (const Role role : wire::kNodeRoles) {
+    for (const Role role : transport::node_roles()) {
       if (role != Role::io && programs_.is_ours(role)) start(role);
     }
     for (const std::string& name : device_names_) devices_.start(name, programs_.device_arguments(name));
@@ -158,7 +159,7 @@ class Supervisor {
     const NodeView& io = observer_->view().node(Role::io);
     const bool runs =
         io.is_known && io.status.state >= wire::NodeState::running && !observer_->view().is_over() && interrupts() == 0;
-    return rejoin_.ns > 0 && is_physics(node.role) && runs && deadline_ns_ == 0;
+    return rejoin_.ns > 0 && transport::is_physics(node.role) && runs && deadline_ns_ == 0;
   }
 
   // Processes of the role that io has given up: it holds the place of the last one.

@@ -36,7 +36,7 @@ class InProcessRun {
     roles_ = config.required_roles;
     io_ = std::make_unique<io_node::IoNode>(endpoint(Role::io), std::move(config));
     nodes_.push_back(io_.get());
-    for (const Role role : wire::kPhysicsRoles) add_physics(role);
+    for (const Role role : transport::physics_roles()) add_physics(role);
     if (options.scene.is_recording) add_recorder();
     observer_ = std::make_unique<observer::Observer>(
         node::open_observer_with_samples(bus_),

@@ -11,6 +11,7 @@
 #include "core/real_time_thread.h"
 #include "io_node/scene_config.h"
 #include "node/identity.h"
+#include "transport/roles.h"
 
 namespace slew::session {
 
@@ -37,9 +38,7 @@ NodePrograms::NodePrograms(const RunOptions& options, const scene::Scene& scene)
   const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
   require(scene::parse_cpu_places(places, cpus_));
   for (const scene::CpuPlace& place : cpus_) {
-    const auto role = std::find_if(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles),
-                                   [&](Role of_place) { return node::to_text(of_place) == place.role; });
-    if (role != std::end(wire::kNodeRoles)) check_place(*role, place);
+    if (const auto role = transport::role_of(place.role)) check_place(*role, place);
   }
 }
 
@@ -66,7 +65,7 @@ std::unique_ptr<ChildProcess> NodePrograms::start(Role role, const std::string& 
     arguments.insert(arguments.end(), {"--join-timeout", fmt::format("{}", *options_.join_timeout)});
   }
   arguments.insert(arguments.end(), {"--session", options_.session.session});
-  if (is_physics(role)) {
+  if (transport::is_physics(role)) {
     arguments.insert(arguments.end(), {"--assets", options_.assets()});
   }
   if (!session_id.empty()) arguments.insert(arguments.end(), {"--session-id", session_id});
@@ -79,7 +78,7 @@ std::unique_ptr<ChildProcess> NodePrograms::start(Role role, const std::string& 
   for (const scene::CpuPlace& place : cpus_) {
     if (place.role == node::to_text(role)) arguments.insert(arguments.end(), {"--cpu", std::to_string(place.cpu)});
   }
-  if (is_physics(role) && options_.added_work_us > 0) {
+  if (transport::is_physics(role) && options_.added_work_us > 0) {
     arguments.insert(arguments.end(), {"--add-work", fmt::format("{}", options_.added_work_us)});
   }
   const std::string name(node::to_text(role));

@@ -8,6 +8,7 @@
 #include "io_node/scene_config.h"
 #include "io_node/session_variables.h"
 #include "node/subsystem_factory.h"
+#include "transport/roles.h"
 #include "transport/wire.h"
 
 namespace slew::session {
@@ -73,7 +74,7 @@ RecordedNumbers recorded_numbers(const scene::Scene& scene, const DirectSession&
     numbers.variables += static_cast<double>(variables);
     numbers.blocks += std::ceil(static_cast<double>(variables) / static_cast<double>(wire::kMaxVariablesPerBlock));
   };
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     if (session.subsystem(role) != nullptr) add(node::published_variables(scene, *session.subsystem(role)).size());
   }
   std::vector<std::string> inputs;

@@ -22,6 +22,7 @@
 #include "session/recorded.h"
 #include "session/recorded_epochs.h"
 #include "transport/cdr/codec.h"
+#include "transport/roles.h"
 
 namespace slew::session {
 namespace {
@@ -325,7 +326,7 @@ class Replay {
   }
 
   void keep_hashes() {
-    for (const Role role : wire::kPhysicsRoles) {
+    for (const Role role : transport::physics_roles()) {
       if (session_.subsystem(role) == nullptr) continue;
       Hashes& of_role = hashes_[index(role)];
       of_role.computed.push_back(session_.state_hash(role));

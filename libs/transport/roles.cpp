@@ -114,6 +114,16 @@ constexpr bool is_in_order() {
 }
 static_assert(is_in_order(), "the table is indexed by role");
 
+// by need
+constexpr std::array kNodes = [] {
+  std::array<Role, static_cast<std::size_t>(Needed::never)> nodes{};
+  for (const RoleTraits& row : kRoles) {
+    if (row.needed != Needed::never) nodes[static_cast<std::size_t>(row.needed)] = row.role;
+  }
+  return nodes;
+}();
+static_assert(kNodes.front() == Role::io && kNodes.back() == Role::recorder, "between them are the physics nodes");
+
 }  // namespace
 
 std::span<const RoleTraits> roles() noexcept {
@@ -129,6 +139,22 @@ std::optional<Role> role_of(std::string_view name) noexcept {
   return found == kRoles.end() ? std::nullopt : std::optional(found->role);
 }
 
+std::span<const Role> node_roles() noexcept {
+  return kNodes;
+}
+
+std::span<const Role> state_roles() noexcept {
+  return node_roles().first(kNodes.size() - 1);
+}
+
+std::span<const Role> physics_roles() noexcept {
+  return state_roles().subspan(1);
+}
+
+bool is_physics(Role role) noexcept {
+  return std::ranges::find(physics_roles(), role) != physics_roles().end();
+}
+
 TopicSet topics_readable(Role role) noexcept {
   return traits(role).reads | traits(role).reads_on_request;
 }
@@ -137,7 +163,7 @@ TopicSet topics_readable(Role role) noexcept {
 constexpr std::array kWriters = [] {
   std::array<std::uint32_t, wire::kTopics> writers{};
   for (std::size_t topic = 0; topic < wire::kTopics; ++topic) {
-    for (const Role role : wire::kNodeRoles) {
+    for (const Role role : kNodes) {
       const RoleTraits& traits = kRoles[static_cast<std::size_t>(role)];
       if (traits.writes.contains(static_cast<Topic>(topic))) writers[topic] |= bit(role);
     }
@@ -151,7 +177,7 @@ std::uint32_t writers_of(Topic topic) noexcept {
 
 std::uint32_t readers_of(Topic topic) noexcept {
   std::uint32_t bits = 0;
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : node_roles()) {
     if (traits(role).reads.contains(topic)) bits |= bit(role);
   }
   return bits;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The roles of a session, one row each. A new role is an enumerator in idl/slewring.idl and wire.h, its row here, and
-// the folder of its program; a node is in the lists beside the enumerator too.
+// the folder of its program.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ inline constexpr int kIoPriority = 30;  // the clock goes before the nodes that 
 inline constexpr int kPhysicsPriority = 20;
 inline constexpr int kRecorderPriority = 10;  // in `real` pace no node waits for it: it compresses behind the physics
 
-// What a session must have so that a role is required.
+// What a session must have so that a role is required, one for each node: io, the physics nodes, the recorder.
 enum class Needed : std::uint8_t {
   always,
   with_mechanics,
@@ -43,6 +43,11 @@ struct RoleTraits {
 [[nodiscard]] std::span<const RoleTraits> roles() noexcept;
 [[nodiscard]] const RoleTraits& traits(wire::Role role) noexcept;
 [[nodiscard]] std::optional<wire::Role> role_of(std::string_view name) noexcept;
+// The nodes, in the order of Needed; those with a state; those with a subsystem.
+[[nodiscard]] std::span<const wire::Role> node_roles() noexcept;
+[[nodiscard]] std::span<const wire::Role> state_roles() noexcept;
+[[nodiscard]] std::span<const wire::Role> physics_roles() noexcept;
+[[nodiscard]] bool is_physics(wire::Role role) noexcept;
 // Topics that keys let a role read.
 [[nodiscard]] TopicSet topics_readable(wire::Role role) noexcept;
 // One bit for each node that writes a topic.

@@ -6,11 +6,9 @@
 // applied.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -45,16 +43,6 @@ using SessionId = std::array<std::uint8_t, 16>;
 
 enum class Role : std::uint8_t { io, mechanics, hydraulics, flex, recorder, observer, controller, sensor };
 inline constexpr std::size_t kRoles = 8;
-
-inline constexpr Role kNodeRoles[] = {Role::io,   Role::mechanics, Role::hydraulics,
-                                      Role::flex, Role::sensor,    Role::recorder};
-inline constexpr Role kStateRoles[] = {Role::io, Role::mechanics, Role::hydraulics, Role::flex,
-                                       Role::sensor};                                                   // have a state
-inline constexpr Role kPhysicsRoles[] = {Role::mechanics, Role::hydraulics, Role::flex, Role::sensor};  // subsystems
-
-[[nodiscard]] constexpr bool is_physics(Role role) noexcept {
-  return std::find(std::begin(kPhysicsRoles), std::end(kPhysicsRoles), role) != std::end(kPhysicsRoles);
-}
 
 [[nodiscard]] constexpr std::uint32_t bit(Role role) noexcept {
   return 1u << static_cast<unsigned>(role);

@@ -16,6 +16,7 @@
 #include "support/crane_pair.h"
 #include "transport/cdr/codec.h"
 #include "transport/in_process/in_process_bus.h"
+#include "transport/roles.h"
 
 namespace slew::testing {
 namespace node_allocation_test {
@@ -34,7 +35,7 @@ class LockStep {
     config.session.duration = static_cast<double>(warm_up + 1000) * config.session.step;
     const std::uint32_t roles = config.required_roles;
     io_.emplace(endpoint(Role::io), std::move(config));
-    for (const Role role : wire::kPhysicsRoles) {
+    for (const Role role : transport::physics_roles()) {
       if ((roles & bit(role)) == 0) continue;
       const auto factory =
           node::subsystem_factory([role](const scene::Scene& s) { return session::SubsystemFamily().make(role, s); },

@@ -12,6 +12,7 @@
 #include "node/node.h"
 #include "transport/cdr/codec.h"
 #include "transport/in_process/in_process_bus.h"
+#include "transport/roles.h"
 #include "transport/wire.h"
 
 namespace slew::testing {
@@ -153,7 +154,7 @@ class PlayedSession {
     publish(wire::Topic::session, session);
     node.poll(now_ns);
     const wire::Header own = node.member().header(wire::Phase::join, kJoinStep);
-    for (const wire::Role role : wire::kNodeRoles) {
+    for (const wire::Role role : transport::node_roles()) {
       const bool is_played = role != own.role && (session.required_roles & wire::bit(role)) != 0;
       if (is_played) acknowledge(role, state, own, topics);
     }

@@ -10,6 +10,7 @@
 #include "core/failure.h"
 #include "scene/name_pattern.h"
 #include "session/direct_session.h"
+#include "transport/roles.h"
 
 namespace slew::analysis {
 namespace {
@@ -116,7 +117,7 @@ class Comparer {
     const session::DirectSession session(base_);
     std::vector<std::string> names;
     std::vector<std::string> units;
-    for (const Role role : wire::kPhysicsRoles) {
+    for (const Role role : transport::physics_roles()) {
       if (session.subsystem(role) == nullptr) continue;
       for (const ElementVariable& variable : session.subsystem(role)->variables()) {
         names.push_back(variable.name);

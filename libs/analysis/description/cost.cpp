@@ -18,6 +18,7 @@
 #include "multibody/model/observe.h"
 #include "scene/ports.h"
 #include "transport/cdr/codec.h"
+#include "transport/roles.h"
 
 namespace slew::analysis {
 namespace {
@@ -129,7 +130,7 @@ class Measurement {
         const std::span<const double> y = hydraulics->integrator().state();
         circuit_states_.push_back({{y.begin(), y.end()}, {played.controls().begin(), played.controls().end()}});
       }
-      for (const Role role : wire::kPhysicsRoles) {
+      for (const Role role : transport::physics_roles()) {
         const coupling::Subsystem* subsystem = played.session().subsystem(role);
         if (subsystem != nullptr) time_exchange(*subsystem);
       }

@@ -2,6 +2,7 @@
 #include "analysis/parameter_sweep/variable_values.h"
 
 #include "io_node/input_gate.h"
+#include "transport/roles.h"
 
 namespace slew::analysis {
 namespace {
@@ -13,7 +14,7 @@ constexpr std::size_t kMeasuredOfInput = 3;
 
 std::vector<ElementVariable> variables_of_run(const scene::Scene& scene, const session::DirectSession& session) {
   std::vector<ElementVariable> all;
-  for (const wire::Role role : wire::kPhysicsRoles) {
+  for (const wire::Role role : transport::physics_roles()) {
     if (session.subsystem(role) == nullptr) continue;
     const std::span<const ElementVariable> own = session.subsystem(role)->variables();
     all.insert(all.end(), own.begin(), own.end());
@@ -28,7 +29,7 @@ std::vector<ElementVariable> variables_of_run(const scene::Scene& scene, const s
 
 VariableValues::VariableValues(const PlayedScene& played) : played_(played) {
   std::size_t size = played.inputs().size() * kMeasuredOfInput;
-  for (const wire::Role role : wire::kPhysicsRoles) {
+  for (const wire::Role role : transport::physics_roles()) {
     const coupling::Subsystem* subsystem = played.session().subsystem(role);
     if (subsystem != nullptr) size += subsystem->variables().size();
   }
@@ -37,7 +38,7 @@ VariableValues::VariableValues(const PlayedScene& played) : played_(played) {
 
 std::span<const double> VariableValues::read() {
   std::span<double> rest = values_;
-  for (const wire::Role role : wire::kPhysicsRoles) {
+  for (const wire::Role role : transport::physics_roles()) {
     const coupling::Subsystem* subsystem = played_.session().subsystem(role);
     if (subsystem == nullptr) continue;
     const std::size_t count = subsystem->variables().size();

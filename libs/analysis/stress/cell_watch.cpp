@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/stress/cell_watch.h"
+#include "transport/roles.h"
 
 #include <time.h>
 
@@ -36,7 +37,7 @@ StepIndex slices_of(const YardstickRules& rules, StepIndex steps) {
 void SessionWork::look(const observer::SessionView& view, StepIndex step) noexcept {
   Looked& at = first_.step == kJoinStep ? first_ : last_;
   at.step = step;
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     const observer::NodeView& node = view.node(role);
     at.cpu_ns[static_cast<std::size_t>(role)] = node.is_known ? process_cpu_ns(node.status.pid) : 0;
   }

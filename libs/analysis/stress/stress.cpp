@@ -57,7 +57,7 @@ std::vector<YardstickLoop> loops_of(Scheduling scheduling, std::uint32_t roles, 
   std::vector<scene::CpuPlace> all;
   require(scene::parse_cpu_places(places, all));
   std::vector<YardstickLoop> loops;
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     if ((roles & bit(role)) == 0) continue;
     YardstickLoop& loop = loops.emplace_back();
     loop.role = role;
@@ -170,7 +170,8 @@ void run_cell(const StressOptions& options, const io_node::SessionScene& session
   cell.devices = outcome.devices;
   cell.step = scene.session.step;
   if (outcome.view.has_session()) cell.roles = outcome.view.session().required_roles;
-  for (const Role role : wire::kNodeRoles) cell.nodes[static_cast<std::size_t>(role)] = outcome.view.node(role).health;
+  for (const Role role : transport::node_roles())
+    cell.nodes[static_cast<std::size_t>(role)] = outcome.view.node(role).health;
   const std::string of_session = io_node::problem_of_books(outcome.view.node(Role::io).health, rules.step());
   if (has_stepped(cell) && !of_session.empty()) cell.books = "session: " + of_session;
   std::error_code ignored;

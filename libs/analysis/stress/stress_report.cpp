@@ -10,6 +10,7 @@
 #include "core/report_table.h"
 #include "node/identity.h"
 #include "plotting/html_plot.h"
+#include "transport/roles.h"
 
 namespace slew::analysis {
 namespace {
@@ -183,7 +184,7 @@ Json json_of(const StressCell& cell, const StressBounds& bounds) {
                    {"problem", cell.books}};
   json["devices"] = session::to_json(cell.devices);
   json["nodes"] = Json::object();
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     if (role == Role::io || (cell.roles & bit(role)) == 0) continue;
     json["nodes"][std::string(node::to_text(role))] = node_of(cell.nodes[static_cast<std::size_t>(role)]);
   }

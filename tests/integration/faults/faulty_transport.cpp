@@ -7,6 +7,7 @@
 
 #include "node/identity.h"
 #include "transport/cdr/codec.h"
+#include "transport/roles.h"
 
 namespace slew::testing {
 namespace {
@@ -77,10 +78,7 @@ FaultPlan FaultPlan::drawn(std::uint64_t seed, const std::vector<Role>& roles, s
   // the session lasts for 0.4 s
   for (std::int64_t i = between(random, 1, 3); i > 0; --i) {
     Kill kill{role(), begin_ns + between(random, 0, 500 * kMs)};
-    while (std::find(std::begin(wire::kPhysicsRoles), std::end(wire::kPhysicsRoles), kill.role) ==
-           std::end(wire::kPhysicsRoles)) {
-      kill.role = role();
-    }
+    while (!transport::is_physics(kill.role)) kill.role = role();
     plan.kills.push_back(kill);
   }
   return plan;

@@ -17,6 +17,7 @@
 #include "node/identity.h"
 #include "node/open_transport.h"
 #include "node/subsystem_factory.h"
+#include "transport/roles.h"
 
 namespace slew::testing {
 namespace {
@@ -115,10 +116,7 @@ VirtualSession::VirtualSession(const scene::Scene& scene, const std::string& run
   io_ = io_node.get();
   places_.back().node = std::move(io_node);
   for (const Role role : roles_of(scene)) {
-    if (std::find(std::begin(wire::kPhysicsRoles), std::end(wire::kPhysicsRoles), role) !=
-        std::end(wire::kPhysicsRoles)) {
-      add_physics(role);
-    }
+    if (transport::is_physics(role)) add_physics(role);
   }
   recorder_node::RecorderConfig recording;
   recording.runs_directory = runs;
@@ -131,7 +129,7 @@ VirtualSession::VirtualSession(const scene::Scene& scene, const std::string& run
 std::vector<Role> VirtualSession::roles_of(const scene::Scene& scene) {
   const std::uint32_t required = io_node::required_roles(scene, io_node::Recording::required);
   std::vector<Role> roles;
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     if ((required & wire::bit(role)) != 0) roles.push_back(role);
   }
   return roles;

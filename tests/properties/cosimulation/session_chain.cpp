@@ -9,6 +9,7 @@
 #include "core/state_hash.h"
 #include "node/identity.h"
 #include "scene/parameters.h"
+#include "transport/roles.h"
 
 namespace slew::testing {
 namespace {
@@ -80,7 +81,7 @@ void SessionChain::step() {
 
 SavedParts SessionChain::save() const {
   SavedParts saved;
-  for (const wire::Role role : wire::kPhysicsRoles) {
+  for (const wire::Role role : transport::physics_roles()) {
     if (part(role) == nullptr) continue;
     EXPECT_TRUE(part(role)->can_save().is_ok());
     part(role)->save(saved[role]);
@@ -102,7 +103,7 @@ void SessionChain::go_on(const SavedParts& saved, const SessionChain& from) {
 }
 
 bool SessionChain::is_same_as(const SessionChain& other) const {
-  for (const wire::Role role : wire::kPhysicsRoles) {
+  for (const wire::Role role : transport::physics_roles()) {
     const coupling::Subsystem* const mine = part(role);
     const coupling::Subsystem* const theirs = other.part(role);
     if (mine == nullptr) continue;

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <set>
+#include <vector>
 
 #include "core/node_names.h"
 
@@ -22,10 +24,23 @@ TEST(Roles, HaveNamesOfTheirOwnByWhichTheyAreFound) {
     EXPECT_EQ(role_of(role.name), role.role);
   }
   EXPECT_EQ(role_of("absent"), std::nullopt);
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : node_roles()) {
     EXPECT_NE(std::find(std::begin(kNodeNames), std::end(kNodeNames), traits(role).name), std::end(kNodeNames));
     EXPECT_NE(traits(role).needed, Needed::never) << traits(role).name;
   }
+}
+
+// messages and reports name the nodes in this order
+TEST(Roles, AreListedByWhatASessionHasThem) {
+  const std::vector<Role> nodes(node_roles().begin(), node_roles().end());
+  EXPECT_EQ(nodes,
+            (std::vector{Role::io, Role::mechanics, Role::hydraulics, Role::flex, Role::sensor, Role::recorder}));
+  for (const RoleTraits& role : roles()) {
+    EXPECT_EQ(std::count(nodes.begin(), nodes.end(), role.role), role.needed == Needed::never ? 0 : 1) << role.name;
+  }
+  EXPECT_EQ(std::vector(state_roles().begin(), state_roles().end()), std::vector(nodes.begin(), nodes.end() - 1));
+  EXPECT_EQ(std::vector(physics_roles().begin(), physics_roles().end()),
+            std::vector(nodes.begin() + 1, nodes.end() - 1));
 }
 
 TEST(Roles, EverySampleHasOneWriterAndAReader) {
@@ -42,7 +57,7 @@ TEST(Roles, EverySampleHasOneWriterAndAReader) {
 
 // io reads the samples of a physics node, for which it waits
 TEST(Roles, IoReadsTheSamplesThatItWaitsFor) {
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : physics_roles()) {
     EXPECT_TRUE(is_physics(role));
     EXPECT_TRUE(is_sample(traits(role).sample));
     EXPECT_TRUE(traits(role).writes.contains(traits(role).sample));
@@ -56,7 +71,7 @@ TEST(Roles, IoReadsTheSamplesThatItWaitsFor) {
 
 // a joining node must be seen, and its messages must be available again
 TEST(Roles, EveryNodePublishesItsStatusAndRequestsMissingMessages) {
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : node_roles()) {
     for (const Topic topic : {Topic::node_status, Topic::health, Topic::resend}) {
       EXPECT_TRUE(traits(role).writes.contains(topic)) << traits(role).name;
       EXPECT_TRUE(traits(role).reads.contains(topic)) << traits(role).name;
