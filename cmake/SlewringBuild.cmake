@@ -188,10 +188,10 @@ function(slewring_program name)
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
 endfunction()
 
-# slewring_test(NAME LABEL unit SOURCES ... DEPENDS lib ... LINK target ... TIMEOUT s)
-# One GoogleTest program; every case in it becomes one ctest entry with the label.
+# slewring_test(NAME LABEL unit SOURCES ... DEPENDS lib ... LINK target ... TIMEOUT s LOCK resource)
+# One GoogleTest program; every case in it becomes one ctest entry with the label. LOCK: what one of them at a time uses.
 function(slewring_test name)
-  cmake_parse_arguments(ARG "SERIAL" "LABEL;TIMEOUT" "SOURCES;DEPENDS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL" "LABEL;TIMEOUT;LOCK" "SOURCES;DEPENDS;LINK" ${ARGN})
   slewring_program(${name} SOURCES ${ARG_SOURCES} DEPENDS ${ARG_DEPENDS}
                    LINK ${ARG_LINK} slewring_build_paths GTest::gtest_main)
   slewring_compile_as_test(${name})
@@ -202,6 +202,10 @@ function(slewring_test name)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 600)  # ends what hangs, in Debug beside other work too
   endif()
+  set(lock "")
+  if(ARG_LOCK)
+    set(lock RESOURCE_LOCK ${ARG_LOCK})
+  endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT}
-                       RUN_SERIAL $<BOOL:${ARG_SERIAL}>)
+                       RUN_SERIAL $<BOOL:${ARG_SERIAL}> ${lock})
 endfunction()
