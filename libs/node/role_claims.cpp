@@ -28,8 +28,10 @@ bool is_ready_state(NodeState state) {
 void SessionMember::forget_given_up(std::int64_t now_ns) {
   for (const wire::GivenUp& gone : session_.given_up) {
     const auto index = static_cast<std::size_t>(gone.role);
-    if (index >= wire::kRoles || !peers_[index].is_known || peers_[index].incarnation != gone.incarnation) continue;
-    peers_[index] = Peer{};
+    if (index >= wire::kRoles || !peers_[gone.role].is_known || peers_[gone.role].incarnation != gone.incarnation) {
+      continue;
+    }
+    peers_[gone.role] = Peer{};
     if (const auto claimant = std::exchange(claimants_[index], std::nullopt)) {
       static_cast<void>(take_status(*claimant, now_ns));
     }
@@ -65,7 +67,7 @@ Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t n
   const auto index = static_cast<std::size_t>(role);
   if (index >= wire::kRoles) return Status::ok();
   if (role == role_) return on_own_role(status);
-  Peer& peer = peers_[index];
+  Peer& peer = peers_[role];
   if (is_given_up(role, status.header.incarnation)) {
     ++refusals_.unexpected_writer;
     return Status::ok();
@@ -114,8 +116,9 @@ bool SessionMember::may_hold(const wire::NodeStatus& status, const Peer& peer) c
 // io has published its choice: peers that it has not chosen are dropped.
 Status SessionMember::follow_choice(std::int64_t now_ns) {
   for (std::size_t index = 0; index < wire::kRoles; ++index) {
-    const std::optional<std::uint32_t> chosen = holder(static_cast<Role>(index));
-    Peer& peer = peers_[index];
+    const auto role = static_cast<Role>(index);
+    const std::optional<std::uint32_t> chosen = holder(role);
+    Peer& peer = peers_[role];
     if (!chosen || !peer.is_known || peer.is_lost || peer.incarnation == *chosen) continue;
     peer = Peer{};
     if (const auto claimant = std::exchange(claimants_[index], std::nullopt))

@@ -58,7 +58,7 @@ Status SessionMember::adopt(const wire::SessionDescription& session, std::int64_
   epoch_ = session.header.epoch;
   // the description identifies its owner, so that the end of the owner is noticed even without a further message
   if (role_ != Role::io) {
-    Peer& io = peers_[static_cast<std::size_t>(Role::io)];
+    Peer& io = peers_[Role::io];
     io.is_known = true;
     io.incarnation = session.header.incarnation;
     io.last_received_ns = now_ns;
@@ -106,7 +106,7 @@ bool SessionMember::is_in_session(const wire::Header& header) const noexcept {
 // The writer holds its role, and the role writes the topic.
 bool SessionMember::is_writer(const wire::Header& header, Topic topic) const noexcept {
   if ((transport::writers_of(topic) & bit(header.role)) == 0) return false;
-  const Peer& peer = peers_[static_cast<std::size_t>(header.role)];
+  const Peer& peer = peers_[header.role];
   return peer.is_known && peer.incarnation == header.incarnation;
 }
 
@@ -196,7 +196,7 @@ std::vector<std::string> SessionMember::take_warnings() {
 bool SessionMember::all_required(NodeState at_least) const noexcept {
   for (const Role role : transport::node_roles()) {
     if (role == role_ || !requires_role(role)) continue;
-    const Peer& peer = peers_[static_cast<std::size_t>(role)];
+    const Peer& peer = peers_[role];
     // a peer that is gone or never joined counts as ended
     if (at_least == NodeState::ended && (peer.is_lost || !peer.is_known)) continue;
     if (!peer.is_known || peer.status.state < at_least) return false;
@@ -207,8 +207,7 @@ bool SessionMember::all_required(NodeState at_least) const noexcept {
 }
 
 void SessionMember::acknowledge(const wire::Header& from, Topic topic, std::int64_t now_ns) {
-  const auto index = static_cast<std::size_t>(from.role);
-  if (index < wire::kRoles) peers_[index].last_received_ns = now_ns;
+  if (static_cast<std::size_t>(from.role) < wire::kRoles) peers_[from.role].last_received_ns = now_ns;
   const wire::Heard entry{from.role, from.incarnation, static_cast<std::uint8_t>(topic)};
   if (std::find(status_.heard.begin(), status_.heard.end(), entry) != status_.heard.end()) return;
   if (status_.heard.size() == wire::kMaxHeard) return;
@@ -224,7 +223,7 @@ bool SessionMember::must_read(Role reader, Topic topic) const noexcept {
 }
 
 bool SessionMember::has_acknowledged(Role reader, Topic topic) const noexcept {
-  const Peer& peer = peers_[static_cast<std::size_t>(reader)];
+  const Peer& peer = peers_[reader];
   const wire::Heard me{role_, incarnation_, static_cast<std::uint8_t>(topic)};
   return peer.is_known && std::find(peer.status.heard.begin(), peer.status.heard.end(), me) != peer.status.heard.end();
 }
@@ -279,7 +278,7 @@ void SessionMember::send_measured(const Publish& publish) noexcept {
   const bool may_wait = transport_.is_network();
   const std::int64_t begin_ns = may_wait ? monotonic_ns() : 0;
   Status status = publish();
-  if (may_wait) sending_ns_ += monotonic_ns() - begin_ns;
+  if (may_wait) peers_.add_sending({monotonic_ns() - begin_ns});
   if (!status.is_ok() && send_failure_.is_ok()) send_failure_ = std::move(status);
 }
 

@@ -18,6 +18,7 @@
 #include "core/check.h"
 #include "core/status.h"
 #include "node/identity.h"
+#include "node/peer_watch.h"
 #include "node/sent_cache.h"
 #include "transport/cdr/codec.h"
 #include "transport/message_object.h"
@@ -30,14 +31,7 @@ inline constexpr SimDuration kJoinTimeout = {10'000'000'000};
 // for nodes that run in turns in one thread: none of them can be missing, and the machine may be slow
 inline constexpr SimDuration kNoTimeout = {100LL * 365 * 86400 * 1'000'000'000};
 inline constexpr SimDuration kProbeInterval = {20'000'000};
-inline constexpr SimDuration kSilentAfter = {300'000'000};  // then the node is named and the session holds
-// Between two checks of the peers: a longer time is the own silence of the checking process, not that of its peers.
-inline constexpr SimDuration kUsualLook = {100'000'000};
-inline constexpr SimDuration kStoodStill = {
-    1'000'000'000};                                       // between two checks: the peers may have given this node up
-inline constexpr SimDuration kInFlight = {20'000'000};    // last messages of a process that has exited
-inline constexpr SimDuration kProcessLook = {1'000'000};  // between two checks that the processes exist
-inline constexpr SimDuration kResendAfter = {3'000'000};  // then a missing step is requested
+inline constexpr SimDuration kResendAfter = {3'000'000};     // then a missing step is requested
 inline constexpr SimDuration kResendAtMost = {100'000'000};  // longest pause between two requests
 inline constexpr SimDuration kHealthInterval = {100'000'000};
 inline constexpr SimDuration kLinger = {2'000'000'000};  // least time for which a node resends after its own end
@@ -57,25 +51,6 @@ struct Refusals {
     return undecodable + other_session + unexpected_writer + too_far_ahead;
   }
 };
-
-// State of another role of the session.
-struct Peer {
-  bool is_known = false;
-  wire::NodeStatus status;
-  std::uint32_t incarnation = 0;      // incarnation of the process that holds the role
-  std::int64_t last_received_ns = 0;  // monotonic; less the time in which this process stood still
-  std::int64_t excused_ns = -1;       // last_received_ns after that correction, until a message arrives
-  ProcessWatch process;
-  std::int64_t exit_seen_ns = 0;  // time at which the process was first seen to have exited; 0: it exists
-  bool is_silent = false;         // named once
-  bool is_lost = false;           // given up, or gone
-  StepIndex step = kJoinStep;     // the next one to do, from its health
-  std::uint32_t step_epoch = 0;   // epoch of that step
-  std::int64_t gone_ns = 0;       // time at which it was seen to be gone; 0: it is not
-};
-
-// gone: a physics node whose place the session holds for another process of its role.
-enum class PeerEvent : std::uint8_t { none, silent, back, gone, lost };
 
 // Effect of a received session description on a node that does not own the session.
 enum class SessionChange : std::uint8_t {
@@ -189,9 +164,8 @@ class SessionMember {
   void on_health(std::span<const std::byte> bytes, std::int64_t now_ns);
   // io has chosen this process for its role.
   [[nodiscard]] bool holds_role() const noexcept { return holder(role_) == incarnation_; }
-  [[nodiscard]] const Peer& peer(wire::Role role) const noexcept { return peers_[static_cast<std::size_t>(role)]; }
-  // Looks for silent and lost required peers; at most one event per call, with its role. Time in which this process
-  // stood still does not count as silence of a peer: once, until the peer's next message.
+  [[nodiscard]] const Peer& peer(wire::Role role) const noexcept { return peers_[role]; }
+  // Looks for silent and lost required peers (peer_watch.h); at most one event per call, with its role.
   PeerEvent watch_peers(std::int64_t now_ns, wire::Role& about);
   // Reason for the end of this node after a peer is gone or has ended: `reason`, and the part of this process in it
   // when it stood still itself or its messages did not arrive.
@@ -246,10 +220,7 @@ class SessionMember {
   [[nodiscard]] Status take_status(const wire::NodeStatus& status, std::int64_t now_ns);
   [[nodiscard]] bool is_given_up(wire::Role role, std::uint32_t incarnation) const noexcept;
   void forget_given_up(std::int64_t now_ns);
-  [[nodiscard]] bool may_be_replaced(wire::Role role) const noexcept;
-  [[nodiscard]] PeerEvent look_at(Peer& peer, wire::Role role, std::int64_t now_ns) noexcept;
   [[nodiscard]] bool is_in_session(const wire::Header& header) const noexcept;
-  void excuse_peers(std::int64_t now_ns) noexcept;
   [[nodiscard]] bool is_writer(const wire::Header& header, wire::Topic topic) const noexcept;
   [[nodiscard]] std::string found_writers(wire::Topic topic);
   [[nodiscard]] std::optional<std::uint32_t> holder(wire::Role role) const noexcept;
@@ -283,21 +254,14 @@ class SessionMember {
   wire::NodeStatus received_status_;                // the one that is being taken; its texts keep their memory
   std::vector<wire::NodeStatus> pending_statuses_;  // arrived before the session's description
   std::vector<std::string> warnings_;
-  std::array<Peer, wire::kRoles> peers_;
+  PeerWatch peers_;
   // The last status of a second process of a role: io may choose that one, or give the first one up.
   std::array<std::optional<wire::NodeStatus>, wire::kRoles> claimants_;
   Refusals refusals_;
   Status send_failure_;
   std::int64_t next_probe_ns_ = 0;
   bool has_warned_of_claim_ = false;
-  bool was_chosen_ = false;          // io has named this process once
-  std::int64_t processes_ns_ = 0;    // time of the last check that the peers' processes exist
-  std::int64_t watched_ns_ = 0;      // time of the last check of the peers
-  std::int64_t stood_still_ns_ = 0;  // length of the last gap in which the peers could give this process up
-  std::int64_t stood_until_ns_ = 0;
-  std::int64_t sending_ns_ = 0;      // time spent in sending since the last check of the peers
-  std::int64_t sent_before_ns_ = 0;  // the same before that check
-  bool stood_sending_ = false;
+  bool was_chosen_ = false;  // io has named this process once
   std::vector<std::byte> buffer_;
 };
 
