@@ -189,7 +189,7 @@ Description describe(const scene::Scene& scene) {
   return d;
 }
 
-Json to_json(const BodyNumbers& body) {
+Json body_json(const BodyNumbers& body) {
   const bool is_about_center = body.def.inertia_about == multibody::InertiaPoint::center_of_mass;
   Json json = {{"name", body.def.name},
                {"mass", body.def.mass},
@@ -216,9 +216,9 @@ std::string mesh_text(const BodyNumbers& body) {
       triple_text(body.def.center_of_mass), triple_text(body.def.inertia), triple_text(body.def.products));
 }
 
-Json to_json(const Description& d) {
+Json report_json(const Description& d) {
   Json bodies = Json::array();
-  for (const BodyNumbers& body : d.body_numbers) bodies.push_back(to_json(body));
+  for (const BodyNumbers& body : d.body_numbers) bodies.push_back(body_json(body));
   Json nodes = Json::array();
   for (const NodeNeed& node : d.nodes) {
     nodes.push_back({{"role", node.role}, {"needed", node.is_needed}, {"reason", node.reason}});
@@ -257,8 +257,8 @@ std::string joined(const std::vector<std::string>& parts) {
   return text.empty() ? "none" : text;
 }
 
-void print(const Description& d) {
-  if (!d.text.empty()) fmt::print("{}\n\n", printable_lines(d.text));
+// width [characters]: of the lines of the table; 0: no limit.
+std::string report_text(const Description& d, std::size_t width) {
   ReportTable rows({"", ""});
   rows.add({"scene", d.name});
   rows.add({"session", fmt::format("step {}, duration {}, pace {}", duration_text(d.step),
@@ -288,7 +288,7 @@ void print(const Description& d) {
     rows.add({node.role + " node", (node.is_needed ? "needed: " : "not needed: ") + node.reason});
   }
   for (const std::string& part : d.left_out) rows.add({"left out", part});
-  print_table(rows);
+  return (d.text.empty() ? "" : printable_lines(d.text) + "\n\n") + rows.text("", width);
 }
 
 // Prints only the requested parts, in the order of the options.
@@ -336,9 +336,9 @@ ExitCode show(const DescribeOptions& options) {
   const scene::Scene scene = scene::load_file(options.scene, options.overrides);
   const Description description = describe(scene);
   if (options.is_json) {
-    fmt::print("{}\n", to_json(description).dump(2));
+    fmt::print("{}\n", report_json(description).dump(2));
   } else {
-    print(description);
+    fmt::print("{}", report_text(description, output_width()));
   }
   return ExitCode::ok;
 }

@@ -11,13 +11,10 @@
 #include "analysis/scene_plots.h"
 #include "analysis/stall_report.h"
 #include "cli/flag_report.h"
-#include "cli/terminal.h"
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
-#include "core/printable.h"
 #include "core/report_table.h"
-#include "core/text_output.h"
 #include "io_node/session_clock.h"
 #include "node/identity.h"
 #include "plotting/svg_plot.h"
@@ -318,11 +315,7 @@ RunReport make_report(const session::RunOutcome& outcome, const scene::Scene& sc
   return report;
 }
 
-void print(const RunReport& report) {
-  if (report.steps == 0 && report.code != ExitCode::ok) {
-    for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
-    return;
-  }
+std::string report_text(const RunReport& report, std::size_t width) {
   ReportTable rows({"", ""});
   rows.add({"session", fmt::format("{} of scene {}, step {}, pace {}", report.session, report.scene,
                                    duration_text(report.step), report.pace)});
@@ -360,14 +353,10 @@ void print(const RunReport& report) {
   for (const session::DeviceOutcome& device : report.devices)
     rows.add({"device", device.name + ": " + session::to_text(device)});
   for (const std::string& note : report.notes) rows.add({"note", note});
-  print_table(rows);
-  std::fflush(stdout);
-  for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
-  if (!report.plots.empty()) fmt::print("{}\n", printable(report.plots));
-  if (!report.recording.empty()) fmt::print("{}\n", printable(report.recording));
+  return rows.text("", width);
 }
 
-std::string to_json_text(const RunReport& report) {
+Json report_json(const RunReport& report) {
   Json nodes = Json::object();
   for (const NodeReport& node : report.nodes) {
     nodes[node.role] = {{"step_time_mean", node.times.mean()},
@@ -391,31 +380,30 @@ std::string to_json_text(const RunReport& report) {
                                 {"last", number(variable.last)}};
   }
   const bool is_timed = report.wall_time > 0;
-  return Json({{"exit_code", static_cast<int>(report.code)},
-               {"scene", report.scene},
-               {"session", report.session},
-               {"pace", report.pace},
-               {"step", report.step},
-               {"steps", report.steps},
-               {"simulated_time", report.simulated_time},
-               {"wall_time", report.wall_time},
-               {"paused_time", report.paused_time},
-               {"real_time_factor", is_timed ? report.simulated_time / report.wall_time : 0},
-               {"steps_per_second", is_timed ? static_cast<double>(report.steps) / report.wall_time : 0},
-               {"slip", report.slip},
-               {"deadline", session_json(report)},
-               {"nodes", nodes},
-               {"lost", report.lost},
-               {"ports", ports},
-               {"omega_H_max", report.omega_H},
-               {"variables", variables},
-               {"devices", session::to_json(report.devices)},
-               {"notes", report.notes},
-               {"messages", report.messages},
-               {"plots", report.plots},
-               {"recording", report.recording},
-               {"read_back", report.is_read_back}})
-      .dump(2);
+  return {{"exit_code", static_cast<int>(report.code)},
+          {"scene", report.scene},
+          {"session", report.session},
+          {"pace", report.pace},
+          {"step", report.step},
+          {"steps", report.steps},
+          {"simulated_time", report.simulated_time},
+          {"wall_time", report.wall_time},
+          {"paused_time", report.paused_time},
+          {"real_time_factor", is_timed ? report.simulated_time / report.wall_time : 0},
+          {"steps_per_second", is_timed ? static_cast<double>(report.steps) / report.wall_time : 0},
+          {"slip", report.slip},
+          {"deadline", session_json(report)},
+          {"nodes", nodes},
+          {"lost", report.lost},
+          {"ports", ports},
+          {"omega_H_max", report.omega_H},
+          {"variables", variables},
+          {"devices", session::to_json(report.devices)},
+          {"notes", report.notes},
+          {"messages", report.messages},
+          {"plots", report.plots},
+          {"recording", report.recording},
+          {"read_back", report.is_read_back}};
 }
 
 }  // namespace slew::cli

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/json.h"
 #include "scene/scene.h"
 #include "session/run.h"
 
@@ -64,9 +65,8 @@ struct RunReport {
 // Names and patterns of the variables whose curves the report needs.
 [[nodiscard]] std::vector<std::string> report_variables(const scene::Scene& scene);
 
-// For people; the path of the recording is the last line. Of a session that failed before its first step: why, and
-// nothing else.
-void print(const RunReport& report);
-[[nodiscard]] std::string to_json_text(const RunReport& report);
+// The table; messages and paths are not in it. width [characters]: of its lines; 0: no limit.
+[[nodiscard]] std::string report_text(const RunReport& report, std::size_t width = 0);
+[[nodiscard]] Json report_json(const RunReport& report);
 
 }  // namespace slew::cli

@@ -11,6 +11,7 @@
 #include "cli/run_report.h"
 #include "cli/run_session.h"
 #include "cli/status_line.h"
+#include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "cli/window_process.h"
 #include "core/failure.h"
@@ -130,6 +131,21 @@ void print_forecast(const scene::Scene& scene) {
   }
 }
 
+void print_messages(const RunReport& report) {
+  for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
+}
+
+// For people; the path of the recording is the last line. Of a session that failed before its first step the messages
+// alone.
+void print(const RunReport& report) {
+  if (report.steps == 0 && report.code != ExitCode::ok) return print_messages(report);
+  fmt::print("{}", report_text(report, output_width()));
+  std::fflush(stdout);
+  print_messages(report);
+  if (!report.plots.empty()) fmt::print("{}\n", printable(report.plots));
+  if (!report.recording.empty()) fmt::print("{}\n", printable(report.recording));
+}
+
 // With --json standard output has a result in every case; the texts are on standard error too.
 ExitCode run_or_report(const session::RunOptions& options, const options::Command& verb) {
   try {
@@ -188,8 +204,8 @@ ExitCode run_session(session::RunOptions options, const io_node::SessionScene& s
   }
   const RunReport report = make_report(outcome, scene, options.assets());
   if (options.is_json) {
-    fmt::print("{}\n", to_json_text(report));
-    for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
+    fmt::print("{}\n", report_json(report).dump(2));
+    print_messages(report);
   } else {
     print(report);
   }
