@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "cli/flag_report.h"
+#include "analysis/run_report/flag_report.h"
 #include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
@@ -131,7 +131,7 @@ StepCounts step_counts(const recording::Reader& reader, bool is_verifying) {
   if (!is_verifying || !has_samples) {
     if (auto closing = session::closing_counts(reader)) return {closing->ticks, std::move(closing->flags)};
   }
-  return {session::tick_span(reader), recorded_flags(reader)};
+  return {session::tick_span(reader), analysis::recorded_flags(reader)};
 }
 
 Json to_json(const recording::Reader& reader, const StepCounts& counts, double simulated) {
@@ -155,7 +155,7 @@ Json to_json(const recording::Reader& reader, const StepCounts& counts, double s
           {"end", end_of(reader)},
           {"ticks_behind_end", counts.ticks.behind_end},
           {"gaps", gaps_of(reader)},
-          {"notes", explain_flags(counts.flags, reader)},
+          {"notes", analysis::explain_flags(counts.flags, reader)},
           {"events", events_json(reader)},
           {"topics", topics}};
 }
@@ -184,7 +184,7 @@ void print(const recording::Reader& reader, const StepCounts& counts, double sim
         {"topic", fmt::format("{}: {}, {} lost", topic, counted(count.recorded, "message", "messages"), count.lost)});
   }
   for (std::string& gap : gaps_of(reader)) rows.add({"gap", std::move(gap)});
-  for (std::string& flagged : explain_flags(counts.flags, reader)) rows.add({"note", std::move(flagged)});
+  for (std::string& flagged : analysis::explain_flags(counts.flags, reader)) rows.add({"note", std::move(flagged)});
   add_events(reader, has_all_events, rows);
   for (const recording::AttachmentIndexRecord& attachment : reader.attachments()) {
     rows.add({"attached", fmt::format("{} ({})", attachment.name, counted(attachment.size, "byte", "bytes"))});

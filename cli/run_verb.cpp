@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "analysis/run_report/run_report.h"
 #include "analysis/start_check.h"
 #include "cli/keyboard.h"
 #include "cli/problems_json.h"
-#include "cli/run_report.h"
 #include "cli/run_session.h"
 #include "cli/status_line.h"
 #include "cli/terminal.h"
@@ -131,15 +131,15 @@ void print_forecast(const scene::Scene& scene) {
   }
 }
 
-void print_messages(const RunReport& report) {
+void print_messages(const analysis::RunReport& report) {
   for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
 }
 
 // For people; the path of the recording is the last line. Of a session that failed before its first step the messages
 // alone.
-void print(const RunReport& report) {
+void print(const analysis::RunReport& report) {
   if (report.steps == 0 && report.code != ExitCode::ok) return print_messages(report);
-  fmt::print("{}", report_text(report, output_width()));
+  fmt::print("{}", analysis::report_text(report, output_width()));
   std::fflush(stdout);
   print_messages(report);
   if (!report.plots.empty()) fmt::print("{}\n", printable(report.plots));
@@ -190,7 +190,7 @@ ExitCode run_session(session::RunOptions options, const io_node::SessionScene& s
                  "controller; run it as processes\n");
   }
   if (options.scene.is_recording && !options.is_json && !options.is_quiet) print_forecast(scene);
-  options.kept = report_variables(scene);
+  options.kept = analysis::report_variables(scene);
   TerminalWatcher watcher(options, scene, window);
   const session::RunOutcome outcome = options.is_in_process ? session::run_in_process(options, session, watcher)
                                                             : session::run_distributed(options, session, watcher);
@@ -202,9 +202,9 @@ ExitCode run_session(session::RunOptions options, const io_node::SessionScene& s
     for (const std::string& message : messages) std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
     return outcome.code;
   }
-  const RunReport report = make_report(outcome, scene, options.assets());
+  const analysis::RunReport report = analysis::make_report(outcome, scene, options.assets());
   if (options.is_json) {
-    fmt::print("{}\n", report_json(report).dump(2));
+    fmt::print("{}\n", analysis::report_json(report).dump(2));
     print_messages(report);
   } else {
     print(report);

@@ -9,7 +9,7 @@
 #include "scene/scene.h"
 #include "session/run.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct NodeReport {
   std::string role;
@@ -69,4 +69,4 @@ struct RunReport {
 [[nodiscard]] std::string report_text(const RunReport& report, std::size_t width = 0);
 [[nodiscard]] Json report_json(const RunReport& report);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

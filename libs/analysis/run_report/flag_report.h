@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 #include "session/run.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // Names of what samples name by number: volumes and components of the circuit's states in their order, sensors in the
 // order of the scene.
@@ -34,4 +34,4 @@ struct OffenderNames {
 // The same of the samples that were read while the session ran, and how many did not arrive.
 [[nodiscard]] std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const scene::Scene& scene);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/flag_report.h"
+#include "analysis/run_report/flag_report.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "transport/cdr/codec.h"
 #include "transport/wire.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using node::FlagCounter;
@@ -86,7 +86,7 @@ std::vector<std::string> flag_sentences(const FlagCounter& flags, SimDuration st
 
 namespace {
 
-OffenderNames names_of(const scene::Scene& scene) {
+OffenderNames offender_names(const scene::Scene& scene) {
   OffenderNames names;
   if (scene.has_hydraulics()) {
     const hydraulics::Circuit circuit(scene.hydraulics);
@@ -110,7 +110,7 @@ void take_sample(const recording::RecordedMessage& recorded, FlagCounter& flags)
 }  // namespace
 
 std::vector<std::string> explain_flags(const FlagCounter& flags, const scene::Scene& scene) {
-  return flag_sentences(flags, scene.session.step_duration(), names_of(scene));
+  return flag_sentences(flags, scene.session.step_duration(), offender_names(scene));
 }
 
 FlagCounter recorded_flags(const recording::Reader& reader) {
@@ -138,7 +138,7 @@ std::vector<std::string> explain_flags(const FlagCounter& flags, const recording
   // the scene is read for the names in the sentences alone
   if (flag_sentences(flags, step, {}).empty()) return {};
   const scene::Scene scene = scene::load_text(session::recorded_scene_text(reader), reader.identity().scene);
-  return flag_sentences(flags, step, names_of(scene));
+  return flag_sentences(flags, step, offender_names(scene));
 }
 
 std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const scene::Scene& scene) {
@@ -161,4 +161,4 @@ std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const
   return sentences;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/flag_report.h"
+#include "analysis/run_report/flag_report.h"
 #include "core/step_report.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace flag_counter_test {
 
 using node::FlagCounter;
@@ -83,4 +83,4 @@ TEST(FlagCounter, ComesBackFromItsLine) {
 }
 
 }  // namespace flag_counter_test
-}  // namespace slew::cli
+}  // namespace slew::analysis
