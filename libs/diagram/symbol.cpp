@@ -11,23 +11,7 @@ namespace slew::diagram {
 namespace {
 
 using hydraulics::ComponentDef;
-
-const Field* find_field(const ComponentDef& def, std::string_view key) {
-  const hydraulics::ComponentType* type = hydraulics::find_component_type(def.type_name());
-  if (type == nullptr) return nullptr;
-  for (const Field& field : type->fields) {
-    if (field.key == key) return &field;
-  }
-  return nullptr;
-}
-
-// the table binds members of a definition that may change; nothing is changed here
-template <typename Value>
-Value member_of(const ComponentDef& def, std::string_view key, FieldType wanted) {
-  const Field* field = find_field(def, key);
-  if (field == nullptr || field->type != wanted || field->member == nullptr) return {};
-  return *static_cast<const Value*>(field->member(const_cast<ComponentDef&>(def).address()));
-}
+using hydraulics::member_of;
 
 const SymbolRow* find_row(std::string_view type) noexcept {
   for (const std::span<const SymbolRow> rows :
@@ -119,7 +103,7 @@ std::vector<std::string> cylinder_figures(const ComponentDef& def) {
 // diameters of the stages, and the stroke
 std::vector<std::string> telescopic_figures(const ComponentDef& def) {
   std::string diameters;
-  for (const auto& stage : member_of<Table>(def, "stages", FieldType::table)) {
+  for (const auto& stage : member_of<Table>(def, "stages")) {
     diameters += fmt::format("{}{:.6g}", diameters.empty() ? "" : "/", 1e3 * stage[1]);
   }
   const double stroke = number_of(def, "maximum_stroke") - number_of(def, "minimum_stroke");
@@ -129,15 +113,15 @@ std::vector<std::string> telescopic_figures(const ComponentDef& def) {
 }  // namespace
 
 std::string text_of(const ComponentDef& def, std::string_view key) {
-  return member_of<std::string>(def, key, FieldType::text);
+  return member_of<std::string>(def, key);
 }
 
 double number_of(const ComponentDef& def, std::string_view key) {
-  return member_of<double>(def, key, FieldType::number);
+  return member_of<double>(def, key);
 }
 
 bool is_set(const ComponentDef& def, std::string_view key) {
-  return number_of(def, key) != 0 || !text_of(def, key).empty() || member_of<bool>(def, key, FieldType::boolean);
+  return number_of(def, key) != 0 || !text_of(def, key).empty() || member_of<bool>(def, key);
 }
 
 void add_pilot(Symbol& symbol, const ComponentDef& def, std::string_view key, double lane, Point from, Role role) {
@@ -181,7 +165,7 @@ void turn_over(Symbol& symbol) {
 
 std::vector<std::string> figures_of(const ComponentDef& def) {
   if (is_set(def, "piston_diameter")) return cylinder_figures(def);
-  if (def.type_name() == "telescopic_cylinder") return telescopic_figures(def);
+  if (find_field(def, "stages") != nullptr) return telescopic_figures(def);
   std::vector<std::string> texts;
   for (const Figure& figure : kFigures) {
     if (figure.type != def.type_name() || !is_set(def, figure.key)) continue;

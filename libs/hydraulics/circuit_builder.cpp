@@ -2,7 +2,6 @@
 #include "hydraulics/circuit_builder.h"
 
 #include "core/check.h"
-#include "hydraulics/components/engine.h"
 
 namespace slew::hydraulics {
 
@@ -16,10 +15,10 @@ CircuitBuilder::CircuitBuilder(const HydraulicsDef& def)
   }
   // shafts of engines, which pumps before and after them name
   for (const auto& component : def.components) {
-    const EngineDef* engine = dynamic_cast<const EngineDef*>(component.get());
-    if (engine == nullptr) continue;
+    const std::optional<ShaftDef> shaft = component->shaft();
+    if (!shaft) continue;
     const StateIndex speed = add_state({.initial = 1, .scale = 1}), fuel = add_state({.initial = 0, .scale = 1});
-    shafts_.push_back({engine->name, speed, fuel, engine->speed, engine->inertia});
+    shafts_.push_back({component->name, speed, fuel, shaft->speed, shaft->inertia});
   }
   // oil in rigid blocks
   for (int i = 0; i < volume_count_; ++i) {

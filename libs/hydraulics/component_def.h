@@ -22,6 +22,12 @@ struct PumpLines;
 class HydraulicComponent;
 class CircuitBuilder;
 
+// Shaft that a component turns, for the pumps that name it as their engine.
+struct ShaftDef {
+  double speed = 0;    // rad/s, at the start
+  double inertia = 0;  // kg m2
+};
+
 // Base of every component's Def. Members that a scene may set have a row in the type's field table.
 struct ComponentDef {
   std::string name;  // element name, unique in the scene
@@ -39,6 +45,8 @@ struct ComponentDef {
   [[nodiscard]] virtual void* address() noexcept = 0;
   // Facts of a component that drives a force element through a power port; none of the others.
   [[nodiscard]] virtual std::optional<ActuatorDef> actuator() const { return std::nullopt; }
+  // Shaft of a component that drives pumps; none of the others.
+  [[nodiscard]] virtual std::optional<ShaftDef> shaft() const { return std::nullopt; }
   // True if an input may name the component; its type has a control signal then.
   [[nodiscard]] virtual bool takes_signal() const;
   // Adds what connects or relieves volumes whatever the control signals are (pump_lines.h), and pumps.
@@ -63,5 +71,17 @@ struct ComponentType {
 
 // Null if the type does not exist.
 [[nodiscard]] const ComponentType* find_component_type(std::string_view name);
+
+// A row of the Def's field table; null if its type has no such field.
+[[nodiscard]] const Field* find_field(const ComponentDef& def, std::string_view key);
+
+// Member of a Def by the key of its field; Value{} if the type has no such field, or one of another FieldType.
+template <typename Value>
+[[nodiscard]] Value member_of(const ComponentDef& def, std::string_view key) {
+  const Field* field = find_field(def, key);
+  if (field == nullptr || field->type != slew::detail::field_type_of<Value>() || field->member == nullptr) return {};
+  // the table binds members of a Def that may change; nothing is changed here
+  return *static_cast<const Value*>(field->member(const_cast<ComponentDef&>(def).address()));
+}
 
 }  // namespace slew::hydraulics

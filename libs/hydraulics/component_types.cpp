@@ -98,4 +98,13 @@ const ComponentType* find_component_type(std::string_view name) {
   return nullptr;
 }
 
+const Field* find_field(const ComponentDef& def, std::string_view key) {
+  const ComponentType* type = find_component_type(def.type_name());
+  if (type == nullptr) return nullptr;
+  for (const Field& field : type->fields) {
+    if (field.key == key) return &field;
+  }
+  return nullptr;
+}
+
 }  // namespace slew::hydraulics

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "hydraulics/components/hose.h"
-#include "hydraulics/components/ls_pump.h"
 #include "scene/parameters.h"
 #include "session/direct_session.h"
 
@@ -181,8 +180,10 @@ void add_hydraulics(const scene::Scene& scene, const Parts& parts, Cases& cases)
       parts.without_ports(), dry, {{1, 1}, {2.5, 0}}, Aim::cavitation);
   scene::Overrides closed = parts.all("standby_pressure", 400e5);
   for (const auto& component : scene.hydraulics.components) {
-    const auto* pump = dynamic_cast<const hydraulics::LsPumpDef*>(component.get());
-    if (pump != nullptr && !pump->ls_port.empty()) closed.push_back(set(pump->name + ".set_pressure", 400e5));
+    // the margin above a load-sensing pressure is read where there is one
+    const bool has_margin = hydraulics::find_field(*component, "set_pressure") != nullptr &&
+                            !hydraulics::member_of<std::string>(*component, "ls_port").empty();
+    if (has_margin) closed.push_back(set(component->name + ".set_pressure", 400e5));
   }
   for (const auto& component : scene.hydraulics.components) {
     if (component->type_name() == "bleed") closed.push_back(set(component->name + ".nominal_flow", 1e-9));

@@ -38,6 +38,7 @@ struct EngineDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "engine"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  [[nodiscard]] std::optional<ShaftDef> shaft() const override { return ShaftDef{speed, inertia}; }
 };
 
 [[nodiscard]] ComponentType engine_type();

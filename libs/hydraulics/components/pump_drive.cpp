@@ -11,7 +11,7 @@ void check_drive(const HydraulicsDef& circuit, const std::string& pump, const Pu
     return;
   }
   for (const auto& component : circuit.components) {
-    if (component->name != drive.engine || component->type_name() == "engine") continue;
+    if (component->name != drive.engine || component->shaft()) continue;
     errors.push_back({pump + ".engine", "'" + drive.engine + "' is no engine", "a component of type engine", ""});
   }
 }
