@@ -253,7 +253,7 @@ class Process {
       while (lowest_step() < stage) {
         link_->send(stage);
         const std::int64_t deadline = monotonic_ns() + kJoinPeriod;
-        while (lowest_step() < stage && monotonic_ns() < deadline) hear(deadline);
+        while (lowest_step() < stage && monotonic_ns() < deadline) receive(deadline);
       }
       link_->send(stage);
     }
@@ -266,7 +266,7 @@ class Process {
     const std::int64_t give_up = monotonic_ns() + kGiveUp;
     while (last_step(topic) < step) {
       if (monotonic_ns() > give_up) fail(fmt::format("{}: no message for 20 s", way_));
-      hear(give_up);
+      receive(give_up);
     }
   }
 
@@ -281,7 +281,7 @@ class Process {
     return lowest;
   }
 
-  void hear(std::int64_t deadline) {
+  void receive(std::int64_t deadline) {
     Topic topic{};
     StepIndex step = 0;
     bool is_empty = true;

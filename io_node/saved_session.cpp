@@ -179,8 +179,8 @@ Status write_saved(const std::filesystem::path& path, const SavedSession& saved,
   // a file written in the meantime is not replaced either, if the file system supports the check
   const unsigned how = replace == Replace::never ? RENAME_NOREPLACE : 0;
   if (error == 0 && renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, path.c_str(), how) != 0) {
-    const bool cannot_tell = how != 0 && errno == EINVAL;
-    error = cannot_tell && rename(part.c_str(), path.c_str()) == 0 ? 0 : errno;
+    const bool is_unsupported = how != 0 && errno == EINVAL;
+    error = is_unsupported && rename(part.c_str(), path.c_str()) == 0 ? 0 : errno;
   }
   if (error != 0) unlink(part.c_str());
   return error == 0 ? Status::ok() : failed(path, error);

@@ -77,12 +77,12 @@ class Arrangement {
     }
   }
 
-  struct Wish {
+  struct Target {
     double x = 0, weight = 0;
   };
   // Mean place at which the block's ports stand opposite to the ports that they are connected to.
-  [[nodiscard]] std::vector<Wish> wishes() const {
-    std::vector<Wish> wishes(blocks_.size());
+  [[nodiscard]] std::vector<Target> targets() const {
+    std::vector<Target> targets(blocks_.size());
     for (const std::vector<Pin>& channel : channels_) {
       std::vector<double> sum(nets_), count(nets_);
       for (const Pin& pin : channel) sum[pin.net] += x_of(pin), count[pin.net] += 1;
@@ -90,26 +90,26 @@ class Arrangement {
         const double others = count[pin.net] - 1;
         if (others < 1) continue;
         const double mean = (sum[pin.net] - x_of(pin)) / others, weight = 1 / others;
-        Wish& wish = wishes[pin.block];
-        wish.x += weight * (mean - pin.lane);
-        wish.weight += weight;
+        Target& target = targets[pin.block];
+        target.x += weight * (mean - pin.lane);
+        target.weight += weight;
       }
     }
-    for (std::size_t i = 0; i < wishes.size(); ++i) {
-      wishes[i].x = wishes[i].weight > 0 ? wishes[i].x / wishes[i].weight : blocks_[i].x;
-      wishes[i].weight = std::max(wishes[i].weight, 0.02);
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      targets[i].x = targets[i].weight > 0 ? targets[i].x / targets[i].weight : blocks_[i].x;
+      targets[i].weight = std::max(targets[i].weight, 0.02);
     }
-    return wishes;
+    return targets;
   }
   void sort_row(std::size_t row) {
-    const std::vector<Wish> all = wishes();
+    const std::vector<Target> all = targets();
     const auto middle = [&](std::size_t i) { return all[i].x + blocks_[i].symbol.width / 2; };
     std::stable_sort(rows_[row].begin(), rows_[row].end(),
                      [&](std::size_t a, std::size_t b) { return middle(a) < middle(b); });
     place(row, all);
   }
   // Pools neighbours that would overlap to their weighted mean.
-  void place(std::size_t row, const std::vector<Wish>& all) {
+  void place(std::size_t row, const std::vector<Target>& all) {
     struct Pool {
       double mean, weight;
       std::size_t first;
@@ -136,7 +136,7 @@ class Arrangement {
   void settle() {
     constexpr int kRounds = 6;
     for (int round = 0; round < kRounds; ++round) {
-      for (std::size_t i = 0; i < rows_.size(); ++i) place(round % 2 == 0 ? i : rows_.size() - 1 - i, wishes());
+      for (std::size_t i = 0; i < rows_.size(); ++i) place(round % 2 == 0 ? i : rows_.size() - 1 - i, targets());
     }
   }
 
@@ -184,8 +184,8 @@ class Arrangement {
         for (std::size_t k = 1; k < rows_[row].size(); ++k) {
           const std::vector<double> places = places_now();
           std::swap(rows_[row][k - 1], rows_[row][k]);
-          place(row, wishes());
-          place(row, wishes());
+          place(row, targets());
+          place(row, targets());
           if (const double now = cost(); now < best - 1e-6) {
             best = now;
             has_changed = true;

@@ -111,11 +111,11 @@ std::vector<std::string> mat_names(std::span<const Series> series) {
   std::set<std::string> taken = {kOrigin};
   std::vector<std::string> names;
   for (const Series& curve : series) {
-    const std::string wished = mat_name(curve.name);
-    std::string name = wished;
+    const std::string requested = mat_name(curve.name);
+    std::string name = requested;
     for (int k = 2; !taken.insert(name).second; ++k) {
       const std::string suffix = fmt::format("_{}", k);
-      name = wished.substr(0, kMostCharacters - suffix.size()) + suffix;
+      name = requested.substr(0, kMostCharacters - suffix.size()) + suffix;
     }
     names.push_back(std::move(name));
   }

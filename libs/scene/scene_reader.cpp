@@ -129,14 +129,14 @@ class SceneReader {
   // one line for all elements with the same warning
   void add_warnings(const Problems& warnings) {
     for (auto first = warnings.begin(); first != warnings.end(); ++first) {
-      const auto says_the_same = [first](const Problem& other) {
+      const auto reads_the_same = [first](const Problem& other) {
         return other.what == first->what && other.expected == first->expected;
       };
-      if (std::any_of(warnings.begin(), first, says_the_same)) continue;
+      if (std::any_of(warnings.begin(), first, reads_the_same)) continue;
       Problem problem = *first;
       std::string others;
       for (auto other = std::next(first); other != warnings.end(); ++other) {
-        if (says_the_same(*other)) others += (others.empty() ? "" : ", ") + other->path;
+        if (reads_the_same(*other)) others += (others.empty() ? "" : ", ") + other->path;
       }
       if (!others.empty()) problem.what += " (and " + others + ")";
       add_warning(problem);

@@ -17,7 +17,7 @@ constexpr std::size_t kMostEarlyBlocks = 64;
 
 void Curves::take(const wire::VariableDirectory& directory) {
   Writer& writer = writers_[directory.header.role];
-  writer.has_told = true;
+  writer.has_directory = true;
   writer.total = directory.total;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < directory.entries.size(); ++i) {
@@ -39,7 +39,7 @@ void Curves::take(const wire::VariableDirectory& directory) {
 void Curves::take(const wire::VariableBlock& block, double time) {
   if (block.header.phase != wire::Phase::running) return;
   Writer& writer = writers_[block.header.role];
-  if (has_all_names_ || (writer.has_told && writer.named >= writer.total)) return keep(block, time);
+  if (has_all_names_ || (writer.has_directory && writer.named >= writer.total)) return keep(block, time);
   if (writer.early.size() < kMostEarlyBlocks) {
     writer.early.emplace_back(block, time);
   } else {

@@ -46,7 +46,7 @@ class Curves {
   };
   struct Writer {
     std::uint32_t named = 0, total = 0;
-    bool has_told = false;
+    bool has_directory = false;
     std::uint32_t epoch = 0;
     StepIndex newest = kJoinStep;
     StepIndex between = 0;  // steps from one block to the next

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Finds words of people's talk where programs are meant: in comments, texts of C++ and TypeScript, and documents.
+"""Finds words of people's talk where programs are meant: in comments, texts and names of C++, in comments and texts of
+TypeScript, and in documents.
 
 words_test.py ROOT [PATH ...]: files or folders below ROOT; all tracked kinds of file without paths. Prints file:line: word.
 words_test.py ROOT --width [PATH ...]: finds lines of prose in documents that are longer than WIDTH characters instead.
@@ -13,6 +14,12 @@ import sys
 WORDS = re.compile(
     r"(?<!-)\b(say|says|said|saying|tell|tells|told|telling|hear|hears|heard|hearing|nobody|somebody|anybody|everybody"
     r"|knows|know|knew|knowing|asks|ask|asked|asking|anew|wish|wishes|wished)\b|(?<!\w)who\b",
+    re.IGNORECASE,
+)
+# The same in names of C++, word by word. Two words are not in it: idl/slewring.idl has them as names of its contract.
+WORDS_OF_NAMES = re.compile(
+    r"say|says|said|saying|tell|tells|told|telling|hear|hears|hearing|nobody|somebody|anybody|everybody|knows|know|knew"
+    r"|knowing|ask|asks|asking|anew|wish|wishes|wished|who|news",
     re.IGNORECASE,
 )
 # people may do it, programs may not
@@ -28,13 +35,28 @@ ONE_LINK = re.compile(r"\s*([-*+] |\d+\. )?!?\[[^]]*\](\([^)]*\)|: *\S+)[.,;:]?"
 SKIPPED = ("tests/scenes_negative", "tests/fuzz/corpus", "build", ".git", "docs/references.bib")
 
 
+# comments, literals and includes
+NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\])+\'|#include[^\n]*', re.S)
+
+
+def without_digit_separators(source):
+    return re.sub(r"(?<=[0-9a-fA-F])'(?=[0-9a-fA-F])", "_", source)  # they are no character literals
+
+
 def texts_of_cpp(source):
     """Comments and string literals, with their lines."""
-    pattern = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\])+\'|#include[^\n]*', re.S)
-    source = re.sub(r"(?<=[0-9a-fA-F])'(?=[0-9a-fA-F])", "_", source)  # digit separators are no character literals
-    for match in pattern.finditer(source):
+    source = without_digit_separators(source)
+    for match in NO_CODE.finditer(source):
         if not match[0].startswith(("#include", "'")) and match[0] not in CONTRACTS:
             yield source.count("\n", 0, match.start()) + 1, match[0]
+
+
+def names_of_cpp(source):
+    """Names, with their lines."""
+    code = NO_CODE.sub(lambda match: "\n" * match[0].count("\n") or " ", without_digit_separators(source))
+    for number, line in enumerate(code.split("\n"), 1):
+        for name in re.findall(r"[A-Za-z_]\w*", line):
+            yield number, name
 
 
 def lines_of_markdown(source):
@@ -69,6 +91,10 @@ def findings(path):
     for number, text in READERS[os.path.splitext(path)[1]](source):
         for match in WORDS.finditer(PEOPLE.sub("", text)):
             yield number + text.count("\n", 0, match.start()), match[0]
+    if path.endswith((".cpp", ".h")):
+        for number, name in names_of_cpp(source):
+            if any(WORDS_OF_NAMES.fullmatch(word) for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", name)):
+                yield number, name
 
 
 def long_lines(path):

@@ -370,7 +370,7 @@ class SlowDisk : public Distributed {
                      "--duration", duration, "--session", name, "--out", name}),
         work_.path());
   }
-  [[nodiscard]] static bool comes_to_say(const Command& session, const std::string& words) {
+  [[nodiscard]] static bool comes_to_print(const Command& session, const std::string& words) {
     return wait_until([&] { return session.err().find(words) != std::string::npos; });
   }
   void expect_whole_recording(const std::string& name) const {
@@ -389,7 +389,7 @@ TEST_F(SlowDisk, NightlyIsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
   interrupted_twice->send(SIGINT);
 
   // a TERM and a hangup change nothing
-  ASSERT_TRUE(comes_to_say(*ended, "still writes")) << ended->err();
+  ASSERT_TRUE(comes_to_print(*ended, "still writes")) << ended->err();
   for (const int signal : {SIGTERM, SIGHUP, SIGTERM}) ended->send(signal);
   CommandResult result = ended->wait();
   EXPECT_EQ(result.code, 143) << result.err;
@@ -402,7 +402,7 @@ TEST_F(SlowDisk, NightlyIsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
   EXPECT_EQ(result.err.find("killed"), std::string::npos) << result.err;
   expect_whole_recording("left_alone");
 
-  ASSERT_TRUE(comes_to_say(*interrupted, "still writes")) << interrupted->err();
+  ASSERT_TRUE(comes_to_print(*interrupted, "still writes")) << interrupted->err();
   interrupted->send(SIGINT);
   result = interrupted->wait();
   EXPECT_EQ(result.code, 130) << result.err;
@@ -411,7 +411,7 @@ TEST_F(SlowDisk, NightlyIsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
       << result.err;
 
   // the first of two Ctrl-C ends the session
-  ASSERT_TRUE(comes_to_say(*interrupted_twice, "still writes")) << interrupted_twice->err();
+  ASSERT_TRUE(comes_to_print(*interrupted_twice, "still writes")) << interrupted_twice->err();
   EXPECT_EQ(interrupted_twice->err().find("killed"), std::string::npos) << interrupted_twice->err();
   interrupted_twice->send(SIGINT);
   result = interrupted_twice->wait();

@@ -197,9 +197,9 @@ TEST_F(Fit, KeepsTheResultOfAnotherFitInItsFolder) {
   EXPECT_EQ(swept.code, 2);
   EXPECT_NE(swept.err.find("holds the results of a fit"), std::string::npos) << swept.err;
   EXPECT_EQ(result("out"), before);
-  std::vector<std::string> anew = first;
-  anew.emplace_back("--anew");
-  EXPECT_EQ(fit(anew).code, 0);
+  std::vector<std::string> repeated = first;
+  repeated.emplace_back("--anew");
+  EXPECT_EQ(fit(repeated).code, 0);
   EXPECT_NE(result("out"), before);
 }
 

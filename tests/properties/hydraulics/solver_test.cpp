@@ -111,7 +111,7 @@ TEST(HydraulicSolvers, give_the_same_bits_twice) {
   }
 }
 
-TEST(HydraulicSolvers, cvode_starts_anew_at_commands_only) {
+TEST(HydraulicSolvers, cvode_restarts_at_commands_only) {
   // at the start, and when the command comes and goes
   EXPECT_EQ(lift_and_stop(with(Solver::cvode, 1e-6)).restarts, 3u);
 }
@@ -150,7 +150,7 @@ TEST(HydraulicSolvers, no_step_allocates) {
   }
 }
 
-TEST(HydraulicSolvers, runge_kutta_says_which_volume_is_too_fast_for_it) {
+TEST(HydraulicSolvers, runge_kutta_names_the_volume_that_is_too_fast_for_it) {
   HydraulicsDef def = with(Solver::rk4, 1e-4, 5e-4);
   const MassLoad load = crane_load();
   {

@@ -110,7 +110,7 @@ TEST(CanOpenIn, NoticesNameTheNodeAtMostOnceASecond) {
   EXPECT_EQ(stick.device->counts().at("nodes").items()[0].at("boot_ups").integer(), 250);
 }
 
-TEST(CanOpenIn, AnInterfaceThatReturnsBeginsAnew) {
+TEST(CanOpenIn, AnInterfaceThatReturnsBeginsAgain) {
   CanOpenStick stick;
   static_cast<void>(stick.wait_ms(1));
   static_cast<void>(stick.bus.texts());

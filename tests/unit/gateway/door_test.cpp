@@ -155,28 +155,28 @@ TEST(Door, OnlyAddressesOfThisMachineAreLoopback) {
 }
 
 TEST(Door, ThePathsOfTheSceneTakeTheirMethodsAndNeedTheToken) {
-  const auto ask = [](std::string_view method, std::string_view target, const DoorDef& door = {}) {
+  const auto request = [](std::string_view method, std::string_view target, const DoorDef& door = {}) {
     Request request = plain(target);
     request.method = method;
     return judge(door, request);
   };
-  EXPECT_EQ(ask("GET", "/scene.json").service, Service::scene);
-  EXPECT_EQ(ask("POST", "/scene.json").service, Service::scene);
-  EXPECT_EQ(ask("PUT", "/scene.yaml").service, Service::saving);
-  EXPECT_EQ(ask("POST", "/restart").service, Service::restart);
+  EXPECT_EQ(request("GET", "/scene.json").service, Service::scene);
+  EXPECT_EQ(request("POST", "/scene.json").service, Service::scene);
+  EXPECT_EQ(request("PUT", "/scene.yaml").service, Service::saving);
+  EXPECT_EQ(request("POST", "/restart").service, Service::restart);
   for (const auto& [method, target] :
        {std::pair("PUT", "/scene.json"), std::pair("GET", "/scene.yaml"), std::pair("POST", "/scene.yaml"),
         std::pair("GET", "/restart"), std::pair("PUT", "/restart"), std::pair("DELETE", "/scene.yaml"),
         std::pair("POST", "/session.json"), std::pair("PUT", "/other.yaml")}) {
-    EXPECT_EQ(ask(method, target).status, 405u) << method << " " << target;
+    EXPECT_EQ(request(method, target).status, 405u) << method << " " << target;
   }
   for (const char* const target : {"/scenes/../scene.yaml", "/../scene.yaml", "/%73cene.yaml", "//scene.yaml"})
-    EXPECT_NE(ask("PUT", target).service, Service::saving) << target;
+    EXPECT_NE(request("PUT", target).service, Service::saving) << target;
   DoorDef door;
   door.token = "0123456789abcdef";
-  EXPECT_EQ(ask("PUT", "/scene.yaml", door).status, 401u);
-  EXPECT_EQ(ask("POST", "/restart?token=wrong", door).status, 401u);
-  EXPECT_EQ(ask("PUT", "/scene.yaml?token=0123456789abcdef", door).service, Service::saving);
+  EXPECT_EQ(request("PUT", "/scene.yaml", door).status, 401u);
+  EXPECT_EQ(request("POST", "/restart?token=wrong", door).status, 401u);
+  EXPECT_EQ(request("PUT", "/scene.yaml?token=0123456789abcdef", door).service, Service::saving);
   Request foreign = from_page(plain("/restart"), "http://evil.com");
   foreign.method = "POST";
   EXPECT_EQ(judge({}, foreign).status, 403u);

@@ -228,17 +228,17 @@ TEST(InputGate, AWriteWithoutTheLeaseIsRefusedOnceASecondNamingTheHolder) {
   static_cast<void>(gate.take_notices());
   EXPECT_FALSE(gate.write(1, "pid", 1, 1, 5500 * kMs));
   EXPECT_FALSE(gate.answer_to_write(1, "pid", 5500 * kMs)) << "it may be on its way";
-  std::optional<LeaseAnswer> told = gate.answer_to_write(1, "pid", 7000 * kMs);
-  ASSERT_TRUE(told.has_value());
-  EXPECT_FALSE(told->is_granted);
-  EXPECT_EQ(told->holder, "");
-  EXPECT_EQ(told->reason, "'pid' does not hold channel Input_Lift: it is free; acquire it again to go on");
+  std::optional<LeaseAnswer> answer = gate.answer_to_write(1, "pid", 7000 * kMs);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_FALSE(answer->is_granted);
+  EXPECT_EQ(answer->holder, "");
+  EXPECT_EQ(answer->reason, "'pid' does not hold channel Input_Lift: it is free; acquire it again to go on");
   EXPECT_FALSE(gate.answer_to_write(1, "pid", 7999 * kMs));
   ASSERT_TRUE(gate.acquire(1, "joystick", 8000 * kMs).is_granted);
-  told = gate.answer_to_write(1, "pid", 8000 * kMs);
-  ASSERT_TRUE(told.has_value());
-  EXPECT_EQ(told->holder, "joystick");
-  EXPECT_NE(told->reason.find("channel Input_Lift is held by 'joystick'"), std::string::npos) << told->reason;
+  answer = gate.answer_to_write(1, "pid", 8000 * kMs);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->holder, "joystick");
+  EXPECT_NE(answer->reason.find("channel Input_Lift is held by 'joystick'"), std::string::npos) << answer->reason;
   // another channel has a refusal of its own, and the holder receives none
   EXPECT_TRUE(gate.answer_to_write(0, "pid", 8000 * kMs).has_value());
   EXPECT_FALSE(gate.answer_to_write(1, "joystick", 20'000 * kMs));
@@ -256,12 +256,12 @@ TEST(InputGate, AWriteAfterAResetIsRefusedSinceTheChannelIsFree) {
 
 TEST(InputGate, FewRefusalsASecondAreSentHoweverManyWriteWithoutALease) {
   InputGate gate = crane_gate();
-  int told = 0;
+  int answered = 0;
   for (int i = 0; i < 10'000; ++i) {
-    told += gate.answer_to_write(0, "stranger" + std::to_string(i), 10'000 * kMs + i * 100'000).has_value() ? 1 : 0;
+    answered += gate.answer_to_write(0, "stranger" + std::to_string(i), 10'000 * kMs + i * 100'000).has_value() ? 1 : 0;
   }
-  EXPECT_GE(told, 16);
-  EXPECT_LE(told, 32);
+  EXPECT_GE(answered, 16);
+  EXPECT_LE(answered, 32);
 }
 
 // ---- two processes of one name --------------------------------------------------------------------------------
@@ -287,9 +287,9 @@ TEST(InputGate, ASecondProcessOfTheHoldersNameIsRefusedAndMovesNothing) {
   EXPECT_EQ(gate.rejected_no_lease(), 1u);
   gate.advance(0, held({0}), kMs);
   EXPECT_EQ(gate.raw(0), 0.5);
-  const std::optional<LeaseAnswer> told = gate.answer_to_write(0, "pid", 2000 * kMs, 8);
-  ASSERT_TRUE(told.has_value());
-  EXPECT_EQ(told->reason, refused.reason);
+  const std::optional<LeaseAnswer> answer = gate.answer_to_write(0, "pid", 2000 * kMs, 8);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->reason, refused.reason);
   // without the writer from the transport the processes are not distinguished
   EXPECT_TRUE(gate.write(0, "pid", 0.6, 0, 0));
   // when the first has fallen silent the second has it
@@ -427,10 +427,10 @@ TEST(InputGate, AReleaseTakesEffectAfterTheTicksOfItsLastValue) {
   EXPECT_EQ(gate.raw(0), 0.3) << "the script's";
   EXPECT_TRUE(gate.acquire(0, "other", 0).is_granted);
   // a notice for the user alone reports that it has no holder
-  const std::vector<Notice> told = gate.take_notices();
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].controller, "");
-  EXPECT_EQ(told[0].reason,
+  const std::vector<Notice> notices = gate.take_notices();
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_EQ(notices[0].controller, "");
+  EXPECT_EQ(notices[0].reason,
             "'pid' has released channel Lever (controller: lockstep): it is free from tick 4 on, and no tick waits for "
             "a controller until one is in step with it");
 }
@@ -509,9 +509,10 @@ TEST(InputGate, ALockstepChannelThatIsTakenOverKeepsItsValueUntilTheNewHolderIsI
   advance(6);
   EXPECT_EQ(gate.raw(0), -0.5);
   EXPECT_GT(gate.awaited(7).ns, 0);
-  const std::vector<Notice> told = gate.take_notices();
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].reason, "'instructor' is in step from tick 6 on; channel Lever had been without it since tick 5");
+  const std::vector<Notice> notices = gate.take_notices();
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_EQ(notices[0].reason,
+            "'instructor' is in step from tick 6 on; channel Lever had been without it since tick 5");
 }
 
 TEST(InputGate, NoSequenceOfMessagesPutsAValueOutOfRangeOrInTooEarlyATick) {
@@ -535,17 +536,17 @@ TEST(InputGate, NoSequenceOfMessagesPutsAValueOutOfRangeOrInTooEarlyATick) {
     for (int call = 0; call < 2000; ++call) {
       now_ns += below(50) * kMs;
       const auto channel = static_cast<std::size_t>(below(3));
-      const std::string& who = names[below(4)];
+      const std::string& controller = names[below(4)];
       const double value = below(10) == 0 ? kNan : static_cast<double>(below(5) - 2);
       switch (below(8)) {
         case 0:
-          static_cast<void>(gate.acquire(channel, who, now_ns, below(3)));
+          static_cast<void>(gate.acquire(channel, controller, now_ns, below(3)));
           break;
         case 1:
-          static_cast<void>(gate.take_over(channel, who, now_ns, below(3)));
+          static_cast<void>(gate.take_over(channel, controller, now_ns, below(3)));
           break;
         case 2:
-          static_cast<void>(gate.release(channel, who, n + below(8) - 6, below(3)));
+          static_cast<void>(gate.release(channel, controller, n + below(8) - 6, below(3)));
           break;
         case 3:
           if (below(100) == 0) {
@@ -556,8 +557,8 @@ TEST(InputGate, NoSequenceOfMessagesPutsAValueOutOfRangeOrInTooEarlyATick) {
           break;
         case 4:
         case 5:
-          if (!gate.write(channel, who, value, n, now_ns, n + below(10) - 8, below(3))) {
-            static_cast<void>(gate.answer_to_write(channel, who, now_ns, below(3)));
+          if (!gate.write(channel, controller, value, n, now_ns, n + below(10) - 8, below(3))) {
+            static_cast<void>(gate.answer_to_write(channel, controller, now_ns, below(3)));
           }
           break;
         default:

@@ -591,9 +591,9 @@ TEST_F(Io, AnswersInNamesOfAnyLengthAreCutToWhatTheWireBears) {
   lever.channels.push_back({.name = channel, .supervisor = supervisor});
   restart(std::move(lever));
   get_running();
-  const auto acquire = [&](const std::string& who, double how) {
+  const auto acquire = [&](const std::string& controller, double how) {
     played.publish(Topic::controller_input,
-                   wire::ControllerInput{"s", who, channel, wire::ControllerAction::acquire, how, 1, kJoinStep});
+                   wire::ControllerInput{"s", controller, channel, wire::ControllerAction::acquire, how, 1, kJoinStep});
     poll();
     const auto leases = played.received<wire::ControllerLease>(Topic::controller_lease);
     EXPECT_FALSE(leases.empty());

@@ -114,27 +114,27 @@ TEST_F(LockstepController, AfterItsDeathTheChannelHoldsThenGoesToNeutralWithANot
   EXPECT_EQ(node->next_step(), 6);
   poll(2 * kMs);
   EXPECT_EQ(node->next_step(), 7);
-  auto told = leases();
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_TRUE(told[0].is_granted);
-  EXPECT_EQ(told[0].controller, "pid");
-  EXPECT_EQ(told[0].reason,
+  auto replies = leases();
+  ASSERT_EQ(replies.size(), 1u);
+  EXPECT_TRUE(replies[0].is_granted);
+  EXPECT_EQ(replies[0].controller, "pid");
+  EXPECT_EQ(replies[0].reason,
             "tick 6 waited 100 ms for the value of 'pid' from step 5, its last one is from step 4; channel Lever holds "
             "its value until it is in step again, for 200 ms");
   EXPECT_EQ(played.received<wire::Tick>(Topic::tick).back().controls[0], 0.5);
   run_to(220);  // nothing waits for it now
-  told = leases();
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].reason, "'pid' has been out of step for 200 ms: channel Lever goes to neutral");
+  replies = leases();
+  ASSERT_EQ(replies.size(), 1u);
+  EXPECT_EQ(replies[0].reason, "'pid' has been out of step for 200 ms: channel Lever goes to neutral");
   EXPECT_EQ(played.received<wire::Tick>(Topic::tick).back().controls[0], 0);
   run_to(5300);
-  told = leases();
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_FALSE(told[0].is_granted);
-  EXPECT_EQ(told[0].reason, "no value came for 5000 ms: channel Lever is free; acquire it again to go on");
+  replies = leases();
+  ASSERT_EQ(replies.size(), 1u);
+  EXPECT_FALSE(replies[0].is_granted);
+  EXPECT_EQ(replies[0].reason, "no value came for 5000 ms: channel Lever is free; acquire it again to go on");
   const std::vector<std::string> printed = node->member().take_warnings();
   ASSERT_FALSE(printed.empty());
-  EXPECT_EQ(printed.back(), told[0].reason);
+  EXPECT_EQ(printed.back(), replies[0].reason);
 }
 
 TEST_F(LockstepController, OneThatIsBackInTimeIsWaitedForAgain) {
@@ -151,9 +151,9 @@ TEST_F(LockstepController, OneThatIsBackInTimeIsWaitedForAgain) {
   EXPECT_TRUE(leases().empty());
   send(wire::ControllerAction::write, 0.6, 50);
   publish_next_samples();
-  const auto told = leases();
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].reason, "'pid' is in step from tick 51 on; channel Lever had been without it since tick 2");
+  const auto replies = leases();
+  ASSERT_EQ(replies.size(), 1u);
+  EXPECT_EQ(replies[0].reason, "'pid' is in step from tick 51 on; channel Lever had been without it since tick 2");
   EXPECT_EQ(played.received<wire::Tick>(Topic::tick).back().controls[0], 0.6);
   publish_next_samples();
   EXPECT_EQ(node->next_step(), 52);
@@ -238,9 +238,9 @@ TEST_F(LockstepController, OneThatLeavesInMidRunIsAnEventAndAWarning) {
   const auto events = played.received<wire::ControlReply>(Topic::control_reply);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].reason, expected);
-  const auto told = leases();
-  ASSERT_EQ(told.size(), 1u) << "the answer to the release";
-  EXPECT_TRUE(told[0].is_granted);
+  const auto replies = leases();
+  ASSERT_EQ(replies.size(), 1u) << "the answer to the release";
+  EXPECT_TRUE(replies[0].is_granted);
 }
 
 TEST_F(LockstepController, AControllerThatMissedAResetIsRefusedWhenItWrites) {
@@ -253,12 +253,12 @@ TEST_F(LockstepController, AControllerThatMissedAResetIsRefusedWhenItWrites) {
   poll(1500 * kMs);
   send(wire::ControllerAction::write, 0.5, 1);
   send(wire::ControllerAction::write, 0.5, 2);
-  const auto told = leases();
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_FALSE(told[0].is_granted);
-  EXPECT_EQ(told[0].controller, "pid");
-  EXPECT_EQ(told[0].holder, "");
-  EXPECT_EQ(told[0].reason, "'pid' does not hold channel Lever: it is free; acquire it again to go on");
+  const auto replies = leases();
+  ASSERT_EQ(replies.size(), 1u);
+  EXPECT_FALSE(replies[0].is_granted);
+  EXPECT_EQ(replies[0].controller, "pid");
+  EXPECT_EQ(replies[0].holder, "");
+  EXPECT_EQ(replies[0].reason, "'pid' does not hold channel Lever: it is free; acquire it again to go on");
 }
 
 TEST_F(LockstepController, LoopDelayIsAVariableInStepsAndInMilliseconds) {

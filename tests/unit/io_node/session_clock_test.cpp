@@ -88,7 +88,7 @@ TEST_F(Clock, GivesUpWholeStepsOfALagBeyondItsLimit) {
   EXPECT_EQ(timing->transitions, 1u);
   std::string over;
   for (int i = 0; i < 1200; ++i) {
-    if (const std::optional<OverrunAction> told = step(kMs / 10)) over += told->why;
+    if (const std::optional<OverrunAction> action = step(kMs / 10)) over += action->why;
   }
   EXPECT_NE(over.find("has kept up with the wall clock for 1 s again"), std::string::npos) << over;
   EXPECT_EQ(timing->transitions, 2u);
@@ -218,12 +218,12 @@ TEST_F(Clock, JudgesNothingInTheStartUpGrace) {
 TEST_F(Clock, ALagInTheGraceIsForTheRecordingAndALaterOneForTheUserToo) {
   rules(OverrunPolicy::slip, 0, milliseconds(200));
   step(60 * kMs);
-  std::string told;
+  std::string reasons;
   for (int i = 0; i < 1500; ++i) {
     const std::optional<OverrunAction> verdict = step(kMs / 10);
-    if (verdict && !verdict->is_for_recording_alone) told += verdict->why;
+    if (verdict && !verdict->is_for_recording_alone) reasons += verdict->why;
   }
-  EXPECT_EQ(told, "");
+  EXPECT_EQ(reasons, "");
   EXPECT_EQ(timing->transitions, 1u);
   EXPECT_EQ(clock->skipped(), 59u);
   step(60 * kMs);

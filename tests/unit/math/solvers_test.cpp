@@ -50,7 +50,7 @@ TEST(RungeKutta4, is_of_fourth_order) {
   EXPECT_NEAR(std::log2(error_after_one_second(coarse) / error_after_one_second(fine)), 4, 0.1);
 }
 
-TEST(RungeKutta4, says_when_a_state_moves_by_more_than_a_step_follows) {
+TEST(RungeKutta4, reports_when_a_state_moves_by_more_than_a_step_follows) {
   for (const double step : {0.03, 0.15}) {
     Oscillator system;
     double y[] = {1000, 0};
@@ -61,7 +61,7 @@ TEST(RungeKutta4, says_when_a_state_moves_by_more_than_a_step_follows) {
   }
 }
 
-TEST(RungeKutta4, says_when_its_step_is_beyond_the_limit) {
+TEST(RungeKutta4, reports_when_its_step_is_beyond_the_limit) {
   Oscillator system;
   double y[] = {0.01, 0};  // small beside its scale: what moves is followed well enough
   RungeKutta4 stable(2, options(1, 0.15)), unstable(2, options(1, 0.25));
@@ -86,7 +86,7 @@ TEST(Cvode, is_within_its_tolerance_over_many_intervals) {
   }
 }
 
-TEST(Cvode, keeps_its_past_until_it_is_told_of_a_jump) {
+TEST(Cvode, keeps_its_past_until_a_jump_is_reported) {
   Oscillator system;
   CvodeStepper solver(2, options(1e-6, 1));
   double y[] = {1, 0};

@@ -166,7 +166,7 @@ TEST(MeasuringSubsystem, refuses_a_saved_state_with_any_bit_changed) {
   EXPECT_TRUE(fresh.subsystem.load(state, sample).is_ok());
 }
 
-TEST(MeasuringSubsystem, begins_anew_after_a_reset) {
+TEST(MeasuringSubsystem, begins_again_after_a_reset) {
   MeasuredRun run(noisy());
   std::vector<std::pair<double, bool>> first;
   for (StepIndex n = 1; n <= 50; ++n) run.to(n), first.push_back(run.shown());

@@ -18,7 +18,7 @@ void take(TickCounter& counter, std::uint32_t epoch, StepIndex step, std::int64_
   counter.take_time(sent_ns);
 }
 
-void io_says(TickCounter& counter, wire::NodeState state, std::int64_t sent_ns, const char* reason = "") {
+void io_reports(TickCounter& counter, wire::NodeState state, std::int64_t sent_ns, const char* reason = "") {
   wire::NodeStatus io;
   io.header.role = wire::Role::io;
   io.state = state;
@@ -28,13 +28,13 @@ void io_says(TickCounter& counter, wire::NodeState state, std::int64_t sent_ns, 
 
 TEST(TickCounter, CountsStepsOfAllEpochsAndWallTimeWithoutPauses) {
   TickCounter counter(milliseconds(1));
-  io_says(counter, wire::NodeState::running, 1);
+  io_reports(counter, wire::NodeState::running, 1);
   for (StepIndex step = 0; step < 10; ++step) take(counter, 0, step, (100 + step) * kMs);
-  io_says(counter, wire::NodeState::holding, 110 * kMs);
-  io_says(counter, wire::NodeState::running, 500 * kMs);
+  io_reports(counter, wire::NodeState::holding, 110 * kMs);
+  io_reports(counter, wire::NodeState::running, 500 * kMs);
   take(counter, 0, 10, 509 * kMs);
   // holding for a node is not a pause
-  io_says(counter, wire::NodeState::holding, 510 * kMs, "waits for mechanics");
+  io_reports(counter, wire::NodeState::holding, 510 * kMs, "waits for mechanics");
   take(counter, 0, 13, 609 * kMs);
   for (StepIndex step = 0; step < 5; ++step) take(counter, 1, step, (700 + step) * kMs);
   EXPECT_TRUE(counter.is_in_order());

@@ -121,12 +121,12 @@ void expect_refusal(const Case& one, const Field& field, const BadValue& bad) {
     ADD_FAILURE() << "accepted:\n" << text;
   } catch (const LoadError& error) {
     const auto& diagnostics = error.diagnostics();
-    const bool is_told = std::any_of(diagnostics.begin(), diagnostics.end(), [&](const Diagnostic& diagnostic) {
+    const bool is_reported = std::any_of(diagnostics.begin(), diagnostics.end(), [&](const Diagnostic& diagnostic) {
       return diagnostic.path == path && diagnostic.what == bad.what && diagnostic.expected == bad.expected &&
              diagnostic.line > 0;
     });
-    EXPECT_TRUE(is_told) << text << path << ": " << bad.what << "; expected " << bad.expected << "\nis not in\n"
-                         << error.what();
+    EXPECT_TRUE(is_reported) << text << path << ": " << bad.what << "; expected " << bad.expected << "\nis not in\n"
+                             << error.what();
   }
 }
 

@@ -310,14 +310,14 @@ TEST(FlexibleModel, FaultsAreReportedWithPlaceExpectationAndSuggestion) {
 }
 
 TEST(FlexibleModel, FaultsAreReportedAtOnce) {
-  const std::string told = problems_of(
+  const std::string problems = problems_of(
       "model: m\nprefix: p\nmaterials: {S: {youngs_modulus: -1, density: 2 m}}\nsections: {B: {shape: tube, wall: 1}}\n"
       "lines: {nodes: 3}\nreduction: {attachment: glued}\n");
   for (const char* part : {"f:3:33: materials.S.youngs_modulus: '-1' is out of range",
                            "f:3:46: materials.S.density: ", "f:4:12: sections.B: the key 'diameter' is missing",
                            "f:5:1: lines: unknown key; did you mean 'line'?",
                            "f:6:25: reduction.attachment: is 'glued'; expected clamped or free"})
-    EXPECT_NE(told.find(part), std::string::npos) << part << "\nis not in\n" << told;
+    EXPECT_NE(problems.find(part), std::string::npos) << part << "\nis not in\n" << problems;
 }
 
 TEST(FlexibleModel, ABeamBesideMatricesIsRefused) {
@@ -385,8 +385,8 @@ TEST(FlexibleModel, EveryFieldRefusesWhatItDoesNotTake) {
       const bool is_open = field.type == FieldType::number && std::isinf(field.range.min);
       const std::string text =
           fmt::format("{}{}: {}{}\n", one.before, field.key, is_open ? ".nan" : outside(field), one.after);
-      const std::string told = problems_of(text);
-      EXPECT_NE(told.find(fmt::format(": {}{}: ", one.owner, field.key)), std::string::npos) << text << told;
+      const std::string problems = problems_of(text);
+      EXPECT_NE(problems.find(fmt::format(": {}{}: ", one.owner, field.key)), std::string::npos) << text << problems;
     }
   }
 }

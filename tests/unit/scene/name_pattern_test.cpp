@@ -12,15 +12,15 @@ namespace name_pattern_test {
 const std::vector<std::string> kNames = {"Cyl_Lift.force", "Cyl_Jib.force", "Cyl_Lift.stroke", "Bag.position.y"};
 
 TEST(Choose, KeepsTheOrderOfTheNamesAndGivesNoNameTwice) {
-  const std::vector<std::string> wishes = {"Bag.position.y", "Cyl_*.force", "Cyl_Lift.*"};
-  EXPECT_EQ(choose(wishes, kNames),
+  const std::vector<std::string> patterns = {"Bag.position.y", "Cyl_*.force", "Cyl_Lift.*"};
+  EXPECT_EQ(choose(patterns, kNames),
             (std::vector<std::string>{"Bag.position.y", "Cyl_Lift.force", "Cyl_Jib.force", "Cyl_Lift.stroke"}));
 }
 
 TEST(Choose, NamesTheVariableThatWasProbablyMeant) {
-  const std::vector<std::string> wishes = {"Cyl_Lft.force"};
+  const std::vector<std::string> patterns = {"Cyl_Lft.force"};
   try {
-    static_cast<void>(choose(wishes, kNames));
+    static_cast<void>(choose(patterns, kNames));
     FAIL() << "the misspelt name was taken";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ExitCode::bad_input);

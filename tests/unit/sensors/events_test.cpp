@@ -44,7 +44,7 @@ TEST(Clearance, IsCloseBelowItsLimitUntilItIsBeyondTheHysteresis) {
   EXPECT_EQ(value(sensors, "S.close"), 1);
 }
 
-TEST(Zone, TellsWhoEntersStaysAndLeaves) {
+TEST(Zone, ReportsWhatEntersStaysAndLeaves) {
   SensorDef zone{.name = "S", .type = SensorType::zone, .zone = "b", .watch = {"A"}, .stay = 0.05};
   SensorsDef def = pair(sphere(0.5), box(2, 2, 2), zone);
   def.interval = 0.02;

@@ -21,11 +21,11 @@ constexpr const char* kScene =
 
 class SceneEditingTest : public ::testing::Test {
  protected:
-  HttpAnswer ask(Service service, bool is_change, const std::string& body = "", const std::string& match = "") {
+  HttpAnswer request(Service service, bool is_change, const std::string& body = "", const std::string& match = "") {
     return editing.answer({service, is_change, match, body});
   }
   Json edit(const std::string& text, const Json& change) {
-    const HttpAnswer answer = ask(Service::scene, true, Json({{"text", text}, {"edit", change}}).dump());
+    const HttpAnswer answer = request(Service::scene, true, Json({{"text", text}, {"edit", change}}).dump());
     EXPECT_EQ(answer.status, 200u) << *answer.content;
     return Json::parse(*answer.content).value_or(Json());
   }
@@ -40,7 +40,7 @@ class SceneEditingTest : public ::testing::Test {
 };
 
 TEST_F(SceneEditingTest, TheFileIsServedWithItsElementsKindsAndTag) {
-  const HttpAnswer answer = ask(Service::scene, false);
+  const HttpAnswer answer = request(Service::scene, false);
   const Json file = Json::parse(*answer.content).value_or(Json());
   EXPECT_EQ(file.at("text").text(), kScene);
   EXPECT_EQ(file.at("tag").text(), entity_tag(kScene));
@@ -60,23 +60,23 @@ TEST_F(SceneEditingTest, AnEditIsAnsweredAndNotWritten) {
 
 TEST_F(SceneEditingTest, ASaveNamesTheStateThatItReplaces) {
   const std::string text = edit(kScene, {{"set", "A.mass"}, {"value", "2 kg"}}).at("text").text();
-  EXPECT_EQ(ask(Service::saving, true, text).status, 428u);
-  EXPECT_EQ(ask(Service::saving, true, text, "\"other\"").status, 412u);
+  EXPECT_EQ(request(Service::saving, true, text).status, 428u);
+  EXPECT_EQ(request(Service::saving, true, text, "\"other\"").status, 412u);
   EXPECT_EQ(on_disk(), kScene);
   fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
-  const HttpAnswer saved = ask(Service::saving, true, text, entity_tag(kScene));
+  const HttpAnswer saved = request(Service::saving, true, text, entity_tag(kScene));
   EXPECT_EQ(saved.status, 204u);
   EXPECT_EQ(saved.entity_tag, entity_tag(text));
   EXPECT_EQ(on_disk(), text);
   EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
   // another page that has the state of before
-  EXPECT_EQ(ask(Service::saving, true, kScene, entity_tag(kScene)).status, 412u);
+  EXPECT_EQ(request(Service::saving, true, kScene, entity_tag(kScene)).status, 412u);
   EXPECT_EQ(on_disk(), text);
 }
 
 TEST_F(SceneEditingTest, ATextWithProblemsIsNotWritten) {
   for (const char* const text : {"bodies: [", "", "bodies:\n  A: {mass: -1 kg, inertia: [1, 1, 1]}\n"}) {
-    EXPECT_EQ(ask(Service::saving, true, text, entity_tag(kScene)).status, 422u) << text;
+    EXPECT_EQ(request(Service::saving, true, text, entity_tag(kScene)).status, 422u) << text;
     EXPECT_EQ(on_disk(), kScene);
   }
 }
@@ -91,14 +91,14 @@ TEST_F(SceneEditingTest, AScenesLinkStaysALink) {
 }
 
 TEST_F(SceneEditingTest, ARestartNeedsTheFileAsThePageHasIt) {
-  EXPECT_EQ(ask(Service::restart, true).status, 428u);
-  EXPECT_EQ(ask(Service::restart, true, "", "\"other\"").status, 412u);
+  EXPECT_EQ(request(Service::restart, true).status, 428u);
+  EXPECT_EQ(request(Service::restart, true, "", "\"other\"").status, 412u);
   EXPECT_FALSE(editing.takes_restart());
-  EXPECT_EQ(ask(Service::restart, true, "", entity_tag(kScene)).status, 202u);
+  EXPECT_EQ(request(Service::restart, true, "", entity_tag(kScene)).status, 202u);
   EXPECT_TRUE(editing.takes_restart());
   EXPECT_FALSE(editing.takes_restart());
   folder.write("winch.yaml", "bodies: [");
-  EXPECT_EQ(ask(Service::restart, true, "", entity_tag("bodies: [")).status, 422u);
+  EXPECT_EQ(request(Service::restart, true, "", entity_tag("bodies: [")).status, 422u);
   EXPECT_FALSE(editing.takes_restart());
 }
 
@@ -106,10 +106,10 @@ TEST_F(SceneEditingTest, DamagedAndGiantRequestsAreRefused) {
   for (const char* const body :
        {"", "{", "[]", "5", R"({"text": 5})", R"({"text": "a", "edit": 5})",
         R"({"text": "bodies: {}", "edit": {"set": ["A"]}})", "\xff", R"({"a":{"b":{"c":{"d":{"e":1}}}}})"})
-    EXPECT_EQ(ask(Service::scene, true, body).status, 400u) << body;
+    EXPECT_EQ(request(Service::scene, true, body).status, 400u) << body;
   const std::string giant(kMostSceneBytes + 1, '#');
-  EXPECT_EQ(ask(Service::scene, true, Json({{"text", giant}}).dump()).status, 413u);
-  EXPECT_EQ(ask(Service::saving, true, giant, entity_tag(kScene)).status, 413u);
+  EXPECT_EQ(request(Service::scene, true, Json({{"text", giant}}).dump()).status, 413u);
+  EXPECT_EQ(request(Service::saving, true, giant, entity_tag(kScene)).status, 413u);
   EXPECT_EQ(on_disk(), kScene);
 }
 

@@ -48,7 +48,7 @@ Status CoupledRun::start() {
 
 void CoupledRun::step(std::span<const double> controls) {
   const StepIndex age = ages_ ? ages_(n_) : n_ % scene_.session.exchange_every;
-  had_news_ = n_ - age != used_;
+  had_new_sample_ = n_ - age != used_;
   used_ = n_ - age;
   session_.step(n_, changes_, controls);
   changes_.clear();
@@ -136,7 +136,7 @@ Comparison compare(const scene::Scene& scene, const Traces& reference, double du
       const PortDefects& defects = run.indicator().port(i);
       // work adds up from one exchange to the next
       if ((n + 1) % scene.session.exchange_every == 0) port.work += std::fabs(run.mechanism().work[i]);
-      if (run.had_news()) {
+      if (run.had_new_sample()) {
         port.residual += std::fabs(defects.dE_star);
         port.net += defects.dE_star;
       }

@@ -52,7 +52,8 @@ class CoupledRun {
   [[nodiscard]] const MechanismSample& mechanism() const { return session_.mechanism(); }
   [[nodiscard]] const ActuatorSample& actuators() const { return session_.actuators(); }
   [[nodiscard]] bool has_failed() const { return has_failed_; }
-  [[nodiscard]] bool had_news() const { return had_news_; }     // the last step had a sample that no step before it had
+  // the last step had a sample that no step before it had
+  [[nodiscard]] bool had_new_sample() const { return had_new_sample_; }
   [[nodiscard]] std::uint32_t flags() const { return flags_; }  // all so far
   [[nodiscard]] const Indicator& indicator() const { return hydraulics().indicator(); }
   [[nodiscard]] double variable(std::string_view name) const;
@@ -68,7 +69,7 @@ class CoupledRun {
   std::vector<wire::Command> changes_;  // changes of the next step
   StepIndex n_ = 0;
   StepIndex used_ = -1;  // step of the sample that the last step had
-  bool had_news_ = false;
+  bool had_new_sample_ = false;
   std::uint32_t flags_ = 0;
   bool has_failed_ = false;
 };

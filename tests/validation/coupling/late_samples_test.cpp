@@ -87,7 +87,7 @@ TEST(LateSamples, a_constant_delay_costs_what_the_study_found) {
 }
 
 // Without the correction by time stamps the same way counts as an error at every step: study 4.0 kN at one step.
-TEST(LateSamples, the_indicator_tells_the_error_of_delays) {
+TEST(LateSamples, the_indicator_follows_the_error_of_delays) {
   const scene::Scene scene = boom(kFreeRunning);
   const Traces reference = reference_traces(scene, kBoomDuration);
   for (const StepIndex steps : {1, 2, 3, 5}) {

@@ -77,7 +77,7 @@ TEST(SingleCylinder, level_two_is_within_one_per_mille_at_1_ms_and_usable_at_10_
   for (const Comparison& run : {fine, coarse}) EXPECT_FALSE(has(run.flags, StepFlag::coupling_creates_energy));
 }
 
-TEST(SingleCylinder, hold_says_that_it_creates_energy_where_it_is_unstable) {
+TEST(SingleCylinder, hold_reports_that_it_creates_energy_where_it_is_unstable) {
   scene::Scene scene = load();
   const Traces reference = reference_traces(scene, kDuration);
   for (const double H : {1e-3, 2e-3, 5e-3}) {
@@ -88,7 +88,7 @@ TEST(SingleCylinder, hold_says_that_it_creates_energy_where_it_is_unstable) {
   }
 }
 
-TEST(SingleCylinder, eta_tells_the_force_error_within_the_studys_factor) {
+TEST(SingleCylinder, eta_is_the_force_error_within_the_studys_factor) {
   // study: eta times 10 to 30 with cylinder friction; without it the errors of a swing add up and the factor grows
   scene::Scene scene = load();
   const Traces reference = reference_traces(scene, kDuration);

@@ -304,7 +304,7 @@ class Stated : public ::testing::Test {
 TEST_F(Stated, WhatCannotBeAnElasticLawIsRefused) {
   struct Case {
     std::function<void(ElasticSample&)> change;
-    std::string says;
+    std::string expected;
   };
   const Case cases[] = {
       {[](ElasticSample& s) { s.K[1] = 1; }, "elastic forces of 'Boom': stiffness or damping is not symmetric"},
@@ -316,7 +316,7 @@ TEST_F(Stated, WhatCannotBeAnElasticLawIsRefused) {
   };
   for (const Case& one : cases) {
     const std::string text = refusal(one.change);
-    EXPECT_NE(text.find(one.says), std::string::npos) << text << "\nexpected: " << one.says;
+    EXPECT_NE(text.find(one.expected), std::string::npos) << text << "\nexpected: " << one.expected;
   }
   EXPECT_EQ(refusal([](ElasticSample&) {}), "");
 }

@@ -105,11 +105,11 @@ double scheme_A(double load, double H, double factor) {
 // The hinge's side: (M_rr [+ m_L L^2]) theta'' + k theta = -M_rf q''_held - (N1) m_L L phi . q''_held
 // The flexible side: M_ff q'' + D q' + K q = -M_fr theta''_held [+ phi f_held (N1)] [- m_L phi (phi q'' + L theta'')
 // (N2)]
-double naive(double load, double H, bool flex_knows_load) {
+double naive(double load, double H, bool flex_has_load) {
   const Jib j = jib();
   const Matrix coupling = j.M.block(0, 1, 1, 2), phi = j.t.block(1, 0, 2, 1).transposed();  // rows
   const double hub = j.M(0, 0) + load * kLength * kLength;
-  const Matrix own = of_modes(j.M) + (flex_knows_load ? load : 0.0) * phi.transposed() * phi;
+  const Matrix own = of_modes(j.M) + (flex_has_load ? load : 0.0) * phi.transposed() * phi;
   // hinge: x = (theta, theta'), held q''
   Matrix A_r(2, 2), B_r(2, 2);
   A_r(0, 1) = 1;
@@ -119,8 +119,8 @@ double naive(double load, double H, bool flex_knows_load) {
   // flexible: held theta'' and tip acceleration
   const Matrix A_f = first_order(own, of_modes(j.D), of_modes(j.K));
   Matrix B_f(4, 2);
-  const Vector by_hinge = coupling.transposed() + (flex_knows_load ? load * kLength : 0.0) * phi.transposed();
-  const Vector by_reaction = flex_knows_load ? Vector(2) : phi.transposed();
+  const Vector by_hinge = coupling.transposed() + (flex_has_load ? load * kLength : 0.0) * phi.transposed();
+  const Vector by_reaction = flex_has_load ? Vector(2) : phi.transposed();
   B_f.put(2, 0, -testing::inverse(own) * by_hinge);
   B_f.put(2, 1, testing::inverse(own) * by_reaction);
   const Matrix R = held(A_r, B_r, H), F = held(A_f, B_f, H);
