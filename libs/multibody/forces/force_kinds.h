@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of force kinds beyond spring-dampers, and the loops over it. A new kind is a line here: its row.
+// The table of force kinds beyond spring-dampers, and the loops over it. A new kind: its header and its row.
 //
 // Kinds are walked in the order of the table, each in the scene's order: so are wrenches summed, parameters hashed and
 // variables listed. A kind that a scene does not have costs the look at an empty array.
