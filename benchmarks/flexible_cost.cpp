@@ -25,7 +25,7 @@
 #include "mechanics_node/mechanics_subsystem.h"
 #include "multibody/formulations/dynamics.h"
 #include "multibody/formulations/formulation.h"
-#include "scene/modal_body.h"
+#include "scene/flexible_conversion.h"
 #include "scene/scene.h"
 #include "scene/script.h"
 #include "tests/support/flex_beams.h"

@@ -8,7 +8,6 @@
 
 #include "analysis/description/liftable_load.h"
 #include "analysis/start_check.h"
-#include "cli/problems_json.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"
@@ -21,6 +20,7 @@
 #include "scene/canonical.h"
 #include "scene/name_pattern.h"
 #include "scene/scene_options.h"
+#include "scene/scene_outline.h"
 #include "session/direct_session.h"
 #include "session/recording_forecast.h"
 #include "session/unrecorded.h"
@@ -130,7 +130,7 @@ ExitCode check(const CheckOptions& options) {
     return ExitCode::ok;
   } catch (const scene::LoadError& error) {
     if (!options.is_json) throw;
-    fmt::print("{}\n", problems_json(error).dump(2));
+    fmt::print("{}\n", scene::problems_json(error).dump(2));
     return ExitCode::bad_input;
   }
 }

@@ -7,14 +7,15 @@
 #include <filesystem>
 #include <numeric>
 
-#include "cli/flex_report_json.h"
 #include "cli/verbs.h"
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "flex/attachment_comparison.h"
 #include "flex/flexible_files.h"
 #include "flex/input_error.h"
 #include "flex/mode_shape_plot.h"
+#include "flex/reduction_report.h"
 #include "flex/text_lines.h"
 #include "scene/flexible_model.h"
 #include "scene/units.h"
@@ -159,8 +160,8 @@ ExitCode report_description(const ReportOptions& options) {
   const flex::AttachmentComparison attachments = flex::compare_attachments(from.model, from.reduction, all, kept);
   write_shapes(options, all, kept);
   if (options.is_json) {
-    Json json = to_json(report);
-    json["attachments"] = to_json(attachments);
+    Json json = flex::report_json(report);
+    json["attachments"] = flex::report_json(attachments);
     fmt::print("{}\n", json.dump(2));
     return ExitCode::ok;
   }
@@ -185,7 +186,7 @@ ExitCode report_set(const ReportOptions& options) {
   const flex::ReductionReport report = with_exit_codes(options.file, [&] { return flex::report_files(all, kept); });
   write_shapes(options, all, kept);
   if (options.is_json) {
-    fmt::print("{}\n", to_json(report).dump(2));
+    fmt::print("{}\n", flex::report_json(report).dump(2));
     return ExitCode::ok;
   }
   fmt::print("{}", flex::text_of(report));

@@ -9,7 +9,6 @@
 #include <set>
 
 #include "analysis/scene_plots.h"
-#include "cli/picture_name.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/printable.h"
@@ -204,7 +203,7 @@ void add_plot(options::Command& program) {
               "file to write: .svg, .html, or - for standard output; without it plot.svg, or for the scene's plots "
               "<scene>.svg beside the recording")
       .value_name("FILE")
-      .check(problem_of_picture_name, "");
+      .check(plotting::problem_of_picture_name, "");
   verb.option("--from", options->from, "leave out what lies before, such as '2.5 s'").value_name("TIME");
   verb.option("--to", options->to, "leave out what lies behind").value_name("TIME");
   verb.option("--title", options->title, "heading; without it the scene's name").value_name("TEXT");

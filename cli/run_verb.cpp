@@ -8,7 +8,6 @@
 #include "analysis/run_report/run_report.h"
 #include "analysis/start_check.h"
 #include "cli/keyboard.h"
-#include "cli/problems_json.h"
 #include "cli/run_session.h"
 #include "cli/status_line.h"
 #include "cli/terminal.h"
@@ -21,6 +20,7 @@
 #include "program/add_scene_options.h"
 #include "program/add_session_options.h"
 #include "program/node_options.h"
+#include "scene/scene_outline.h"
 #include "session/recording_forecast.h"
 #include "session/run.h"
 #include "session/unrecorded.h"
@@ -151,10 +151,10 @@ ExitCode run_or_report(const session::RunOptions& options, const options::Comman
   try {
     return run(options, verb);
   } catch (const scene::LoadError& error) {
-    if (options.is_json) fmt::print("{}\n", problems_json(error).dump(2));
+    if (options.is_json) fmt::print("{}\n", scene::problems_json(error).dump(2));
     throw;
   } catch (const Failure& failure) {
-    if (options.is_json) fmt::print("{}\n", problems_json(failure).dump(2));
+    if (options.is_json) fmt::print("{}\n", scene::problems_json(failure).dump(2));
     throw;
   }
 }
@@ -197,7 +197,8 @@ ExitCode run_session(session::RunOptions options, const io_node::SessionScene& s
   if (!outcome.has_begun) {
     const std::vector<std::string> messages = session::without_echoes(outcome.messages);
     if (options.is_json) {
-      fmt::print("{}\n", problems_json(Failure(outcome.code, fmt::format("{}", fmt::join(messages, "\n")))).dump(2));
+      fmt::print("{}\n",
+                 scene::problems_json(Failure(outcome.code, fmt::format("{}", fmt::join(messages, "\n")))).dump(2));
     }
     for (const std::string& message : messages) std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
     return outcome.code;

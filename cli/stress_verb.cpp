@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "analysis/stress/stress_report.h"
+#include "analysis/stress/stress.h"
 #include "cli/progress_line.h"
 #include "cli/terminal.h"
 #include "cli/verbs.h"

@@ -9,7 +9,7 @@
 #include "core/display.h"
 #include "coupling/indicator.h"
 #include "coupling/own_past.h"
-#include "scene/deep_starts.h"
+#include "scene/unsettled_start.h"
 
 namespace slew::hydraulics_node {
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/json.h"
 #include "flex/reduction.h"
 
 namespace slew::flex {
@@ -32,5 +33,6 @@ struct AttachmentComparison {
                                                        const Reduction& all, std::span<const int> kept);
 
 [[nodiscard]] std::string text_of(const AttachmentComparison& comparison);
+[[nodiscard]] Json report_json(const AttachmentComparison& comparison);
 
 }  // namespace slew::flex

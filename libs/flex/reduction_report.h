@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/json.h"
 #include "flex/reduction.h"
 #include "flex/tip_compliance.h"
 
@@ -52,6 +53,8 @@ struct ReductionReport {
 [[nodiscard]] ReductionReport report_files(const Reduction& all, std::span<const int> kept);
 
 [[nodiscard]] std::string text_of(const ReductionReport& report);
+// SI; frequencies in Hz. Values that need the whole model are null in a report on flexible files.
+[[nodiscard]] Json report_json(const ReductionReport& report);
 
 // A few lines: mass, frequencies, static compliance and its share by the lowest modes.
 [[nodiscard]] std::string summary_of(const Reduction& all, const TipCompliance& tip);

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
-#include <string_view>
 #include <vector>
 
 #include "core/escaped.h"
-#include "plotting/html_text.h"
+#include "core/json.h"
 #include "plotting/svg_text.h"
 
 namespace slew::plotting {
@@ -172,6 +172,22 @@ std::string plot_html(std::span<const Plot> plots, const PlotOptions& options) {
       "id=\"data\">{3}</script>\n<script>{4}</script>\n</body>\n</html>\n",
       escaped(options.title), kPageStyle, escaped(options.subtitle),
       in_script(Data().write(plots, std::max(options.panel_height, 60.0))), kPageScript);
+}
+
+std::string in_script(std::string text) {
+  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.replace(at, 2, "<\\/");
+  return text;
+}
+
+std::string json_string(std::string_view text) {
+  return Json(text).dump();
+}
+
+std::string problem_of_picture_name(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (path == "-" || path.starts_with("/dev/") || ending == ".svg" || ending == ".html") return "";
+  return "'" + path + "' ends neither in .svg nor in .html, the formats of pictures and pages; another program makes " +
+         "others of an .svg, such as rsvg-convert a .png";
 }
 
 }  // namespace slew::plotting

@@ -10,6 +10,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "plotting/svg_plot.h"
 
@@ -17,5 +18,15 @@ namespace slew::plotting {
 
 // options.width is not used: the page takes the window's.
 [[nodiscard]] std::string plot_html(std::span<const Plot> plots, const PlotOptions& options);
+
+// Data for a <script> element: nothing in it can end the element.
+[[nodiscard]] std::string in_script(std::string text);
+
+// A JSON string with its quotes; bytes that are no UTF-8 are replaced.
+[[nodiscard]] std::string json_string(std::string_view text);
+
+// For options::Option::check(): empty for a name that ends in .svg or .html, for "-" and for a device such as
+// /dev/stdout; otherwise what is wrong.
+[[nodiscard]] std::string problem_of_picture_name(const std::string& path);
 
 }  // namespace slew::plotting

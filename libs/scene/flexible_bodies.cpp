@@ -22,8 +22,7 @@
 #include "multibody/flexible/elastic_law.h"
 #include "multibody/formulations/integrators.h"
 #include "scene/assets.h"
-#include "scene/modal_body.h"
-#include "scene/segment_chain.h"
+#include "scene/flexible_conversion.h"
 
 namespace slew::scene {
 namespace {

@@ -298,6 +298,20 @@ Json diagnostics_json(const LoadError& error) {
   return list;
 }
 
+Json problems_json(const LoadError& error) {
+  return {{"ok", false},
+          {"code", static_cast<int>(ExitCode::bad_input)},
+          {"problems", diagnostics_json(error)},
+          {"omitted", error.omitted()}};
+}
+
+Json problems_json(const Failure& failure) {
+  const Json problem = {{"file", ""},     {"line", 0},       {"column", 0}, {"path", ""}, {"what", failure.what()},
+                        {"expected", ""}, {"suggestion", ""}};
+  return {
+      {"ok", false}, {"code", static_cast<int>(failure.code())}, {"problems", Json::array({problem})}, {"omitted", 0}};
+}
+
 Json outline_json(const std::string& path, const std::string& text, const Overrides& overrides) {
   Json json = {{"elements", Json::array()},
                {"points", Json::array()},

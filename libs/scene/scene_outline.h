@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/failure.h"
 #include "core/json.h"
 #include "scene/scene.h"
 
@@ -27,6 +28,13 @@ namespace slew::scene {
 
 // [{file, line, column, path, what, expected, suggestion}] of the loader.
 [[nodiscard]] Json diagnostics_json(const LoadError& error);
+
+// What --json prints where a verb has no result: {"ok": false, "code": 2, "problems": [{"file", "line", "column",
+// "path", "what", "expected", "suggestion"}], "omitted"}
+[[nodiscard]] Json problems_json(const LoadError& error);
+
+// The same form with one problem, whose "what" is the whole message.
+[[nodiscard]] Json problems_json(const Failure& failure);
 
 // A change of a text: {"set": path, "value": text}, {"add": name, "section", "type"}, {"copy": name, "to": name},
 // {"rename": name, "to": name}, {"remove": name}, or {}, which changes nothing. A rename is refused while included

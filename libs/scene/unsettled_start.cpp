@@ -11,6 +11,7 @@
 
 #include "core/display.h"
 #include "math/semidefinite.h"
+#include "multibody/build/validate.h"
 #include "multibody/formulations/dynamics.h"
 #include "multibody/model/observe.h"
 #include "scene/ports.h"
@@ -150,6 +151,14 @@ void find_unsettled_start(const Scene& scene, Problems& warnings) {
        "springs or tyres that carry the weight in the start pose (a preload, free lengths), or 'slewring "
        "run --from' a state that was saved at rest",
        ""});
+}
+
+std::string deep_starts(const Scene& scene) {
+  Problems found;
+  multibody::find_unlikely_contacts(scene.mechanics, found);
+  std::string text;
+  for (const Problem& one : found) text += (text.empty() ? "" : "; ") + one.path + ": " + one.what;
+  return text;
 }
 
 }  // namespace slew::scene

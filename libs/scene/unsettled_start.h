@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Machines that fall while hydraulics.start: equilibrium holds their actuators.
+// Starts that are no rest: machines that fall while hydraulics.start: equilibrium holds their actuators, and shapes
+// that start deep in each other.
 //
 // The static forces of the actuators keep every line's length at rest. If what carries an actuator is not held itself
 // (a chassis on springs without load), it accelerates, the forces are those of the falling machine, and they are wrong
@@ -10,6 +11,8 @@
 // contact, which take up their load within milliseconds.
 #pragma once
 
+#include <string>
+
 #include "core/problem.h"
 #include "scene/scene.h"
 
@@ -17,5 +20,9 @@ namespace slew::scene {
 
 // Builds the mechanism. Pre-condition: a validated scene whose files are there.
 void find_unsettled_start(const Scene& scene, Problems& warnings);
+
+// "Ground_Bag: the shapes start 0.02 m deep in each other, ...", one after the other; empty: none. Builds the
+// mechanism. Pre-condition: a validated scene.
+[[nodiscard]] std::string deep_starts(const Scene& scene);
 
 }  // namespace slew::scene

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "core/escaped.h"
-#include "plotting/html_text.h"
+#include "plotting/html_plot.h"
 #include "plotting/svg_text.h"
 
 namespace slew::analysis {

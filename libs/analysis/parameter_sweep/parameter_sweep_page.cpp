@@ -6,7 +6,7 @@
 
 #include "analysis/parameter_sweep/parameter_sweep.h"
 #include "core/escaped.h"
-#include "plotting/html_text.h"
+#include "plotting/html_plot.h"
 
 namespace slew::analysis {
 namespace {

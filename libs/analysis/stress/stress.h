@@ -105,4 +105,11 @@ using StressProgress = std::function<bool(std::string_view doing, double share)>
 // when books do not balance; a session's own code when one failed.
 [[nodiscard]] ExitCode exit_code_of(const Stress& stress) noexcept;
 
+// The machine, the table with two rows a cell, the books, the verdict. width [characters]: of the lines of a table; 0:
+// no limit.
+[[nodiscard]] std::string report_text(const Stress& stress, std::size_t width = 0);
+[[nodiscard]] std::string report_json(const Stress& stress);
+// The largest response of every 0.1 s of each cell over its time, as plot_html() draws curves.
+[[nodiscard]] std::string report_html(const Stress& stress);
+
 }  // namespace slew::analysis

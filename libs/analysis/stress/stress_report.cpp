@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "analysis/stress/stress_report.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "analysis/stress/stress.h"
 #include "core/display.h"
 #include "core/json.h"
 #include "core/report_table.h"

@@ -10,7 +10,7 @@
 #include "core/escaped.h"
 #include "core/json.h"
 #include "core/report_table.h"
-#include "plotting/html_text.h"
+#include "plotting/html_plot.h"
 
 namespace slew::analysis {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "analysis/stress/stress_report.h"
+#include "analysis/stress/stress.h"
 
 namespace slew::analysis {
 namespace stress_verdict_test {

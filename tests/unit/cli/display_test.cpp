@@ -2,17 +2,18 @@
 // Names of pictures, and the colours of the lamps.
 #include <gtest/gtest.h>
 
-#include "cli/picture_name.h"
 #include "cli/status_line.h"
+#include "plotting/html_plot.h"
 
 namespace slew::cli {
 namespace display_test {
 
 TEST(PictureName, EndsInSvgOrHtml) {
   for (const char* name : {"a.svg", "folder.d/a.html", "-", "/dev/stdout"})
-    EXPECT_EQ(problem_of_picture_name(name), "");
+    EXPECT_EQ(plotting::problem_of_picture_name(name), "");
   for (const char* name : {"a.png", "a", "a.svg.gz", "svg", "a.SVG"}) {
-    EXPECT_NE(problem_of_picture_name(name).find("ends neither in .svg nor in .html"), std::string::npos) << name;
+    EXPECT_NE(plotting::problem_of_picture_name(name).find("ends neither in .svg nor in .html"), std::string::npos)
+        << name;
   }
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "multibody/model/defs.h"
-#include "scene/modal_body.h"
+#include "scene/flexible_conversion.h"
 #include "tests/support/flex_beams.h"
 
 namespace slew::testing {

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "multibody/model/defs.h"
-#include "scene/segment_chain.h"
+#include "scene/flexible_conversion.h"
 #include "tests/support/flex_beams.h"
 
 namespace slew::testing {

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/flex_report_json.h"
-
 #include <cmath>
 
 #include "core/json.h"
+#include "flex/attachment_comparison.h"
+#include "flex/reduction_report.h"
 
-namespace slew::cli {
+namespace slew::flex {
 namespace {
 
 Json list(math::Vec3 v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
-Json mass_json(const flex::RigidMass& mass) {
-  const math::Mat3 inertia = flex::central_inertia(mass);
+Json mass_json(const RigidMass& mass) {
+  const math::Mat3 inertia = central_inertia(mass);
   return {{"mass", mass.mass},
-          {"centre", list(flex::centre_of(mass))},
+          {"centre", list(centre_of(mass))},
           {"inertia", Json::array({inertia(0, 0), inertia(1, 1), inertia(2, 2)})},
           {"products", Json::array({inertia(0, 1), inertia(0, 2), inertia(1, 2)})}};
 }
 
-Json source_json(const flex::Source& source) {
+Json source_json(const Source& source) {
   return {{"model", source.model},
           {"made_of", source.made_of},
-          {"attachment", source.attachment == flex::Attachment::clamped ? "clamped" : "free"},
+          {"attachment", source.attachment == Attachment::clamped ? "clamped" : "free"},
           {"clamped_nodes", source.clamped_nodes},
           {"interface_nodes", source.interface_nodes},
           {"nodes", source.nodes},
@@ -31,10 +31,10 @@ Json source_json(const flex::Source& source) {
           {"boundary_freedoms", source.boundary_freedoms},
           {"interior_freedoms", source.interior_freedoms},
           {"fixed_interface_modes", source.fixed_interface_modes},
-          {"stiffening", source.stiffening == flex::GeometricStiffening::straight_beam ? "straight_beam" : "none"}};
+          {"stiffening", source.stiffening == GeometricStiffening::straight_beam ? "straight_beam" : "none"}};
 }
 
-Json mode_json(const flex::ModeFigures& mode, bool has_model) {
+Json mode_json(const ModeFigures& mode, bool has_model) {
   Json out = {{"mode", mode.ordinal},     {"kept", mode.is_kept},
               {"full_hz", Json()},        {"reduced_hz", mode.reduced / (2 * M_PI)},
               {"relative_error", Json()}, {"effective_mass", mode.effective_mass}};
@@ -46,10 +46,10 @@ Json mode_json(const flex::ModeFigures& mode, bool has_model) {
 
 }  // namespace
 
-Json to_json(const flex::ReductionReport& report) {
+Json report_json(const ReductionReport& report) {
   Json modes = Json::array(), directions = Json::array();
-  for (const flex::ModeFigures& mode : report.modes) modes.push_back(mode_json(mode, report.has_model));
-  for (const flex::ComplianceFigures& c : report.compliance) {
+  for (const ModeFigures& mode : report.modes) modes.push_back(mode_json(mode, report.has_model));
+  for (const ComplianceFigures& c : report.compliance) {
     directions.push_back({{"direction", std::string(1, c.direction)},
                           {report.has_model ? "full" : "all_modes", c.full},
                           {"kept", c.kept},
@@ -72,9 +72,9 @@ Json to_json(const flex::ReductionReport& report) {
   return out;
 }
 
-Json to_json(const flex::AttachmentComparison& comparison) {
+Json report_json(const AttachmentComparison& comparison) {
   Json rows = Json::array();
-  for (const flex::AttachmentShares& row : comparison.rows) {
+  for (const AttachmentShares& row : comparison.rows) {
     Json one = {{"modes", row.modes}, {"clamped", Json()}, {"free", Json()}};
     if (row.clamped) one["clamped"] = *row.clamped;
     if (row.free) one["free"] = *row.free;
@@ -86,4 +86,4 @@ Json to_json(const flex::AttachmentComparison& comparison) {
           {"obstacle", comparison.obstacle}};
 }
 
-}  // namespace slew::cli
+}  // namespace slew::flex
