@@ -26,6 +26,7 @@
 // no function through a pointer. What a step reaches neither allocates nor throws.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -89,6 +90,8 @@ struct StopMotion {
   int side = 0;      // the part of the law that acts, 0: none
   double x = 0;      // coordinate of its spring [m or rad]
   double speed = 0;  // m/s or rad/s
+  // behind the edge of its range, negative before it [m or rad], and its rate; tables have no edge
+  double depth = -INFINITY, depth_rate = 0;
 };
 
 template <typename T>

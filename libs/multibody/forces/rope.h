@@ -118,7 +118,8 @@ struct RopeRow : ForceRow<Rope> {
   static constexpr bool kHasStops = true;
   static StopMotion stop_of(const Rope& rope, std::span<const LinkMotion> motion) noexcept {
     const RopeState state = state_of(rope, motion);
-    return {state.springs, state.length - rope.free_length, state.rate};
+    const double stretch = state.length - rope.free_length;
+    return {state.springs, stretch, state.rate, stretch, state.rate};
   }
   static double curve_force(const Rope& rope, double stretch) noexcept {
     return stretch > 0 && !rope.spring_curve.empty() ? math::value_at(rope.spring_curve, stretch) : 0;

@@ -130,7 +130,7 @@ struct TyreRow : ForceRow<Tyre> {
   static constexpr bool kHasStops = true;
   static StopMotion stop_of(const Tyre& tyre, std::span<const LinkMotion> motion) noexcept {
     const TyreState state = state_of(tyre, motion[static_cast<std::size_t>(tyre.link)]);
-    return {state.springs, state.depth, state.depth_rate};
+    return {state.springs, state.depth, state.depth_rate, state.depth, state.depth_rate};
   }
 
   static void list_variables(const Tyre& tyre, VariableNames& names);

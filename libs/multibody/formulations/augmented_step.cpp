@@ -9,6 +9,7 @@
 #include "multibody/contacts/contact_passes.h"
 #include "multibody/formulations/body_attitude.h"
 #include "multibody/formulations/penalty_passes.h"
+#include "multibody/formulations/step_parts.h"
 #include "multibody/formulations/stops.h"
 
 namespace slew::multibody {
@@ -29,9 +30,6 @@ constexpr double kSlowStep = 0.1;
 // A force that jumps at the edge of a stop takes a value between: the corrections alternate, and are bisected. With
 // parts left to divide into, a slow iteration ends sooner.
 constexpr int kMostEdgeCorrections = 80, kMostOfADividedPart = 8;
-// parts of (11): the smallest one, the factor between two lengths, and the number of divisions before the rest of the
-// sub-step takes the implicit Euler rule
-constexpr int kSmallestParts = 1024, kDivision = 4, kMostDivisions = 32;
 // A link that moves otherwise by (11) than by (5), as a share of the mechanism's length, or rad: what (5) itself misses
 // in a second at 1 ms on the crane.
 constexpr double kMovedByEuler = 1e-6;
@@ -287,7 +285,7 @@ Outcome take_part(const Parts& parts, double h, bool has_stops, bool may_divide)
   const bool has_settled = parts.find_end(h, Rule::trapezoid, most);
   if (!has_stops) return has_settled ? Outcome::settled : Outcome::unsettled;
   see_element_stops(parts.model, parts.ws, pws.stops);
-  const Touch touch = has_settled ? touch_between(parts.model, pws.stops_0, pws.stops) : Touch::harsh;
+  const Touch touch = has_settled ? touch_between(parts.model, pws.stops_0, pws.stops, {}) : Touch::harsh;
   if (touch == Touch::none) return Outcome::settled;
   if (touch == Touch::harsh && may_divide) return Outcome::divide;
   parts.keep_displacement();
@@ -302,30 +300,24 @@ bool advance_by_trapezoid(const Model& model, const PenaltyModel& body, BodyStat
                           PenaltyWorkspace& pws, double h, std::span<const double> mean,
                           std::span<const double> slope) noexcept {
   const Parts parts{model, body, state, joints, ws, pws, slope};
-  const bool has_stops = has_element_stops(model);
+  const bool has_stops = has_element_stops(model, Touched::elements);
   bool is_sound = true;
-  int divisions = 0;
-  pws.parts = 0;
   if (has_stops) see_element_stops(model, ws, pws.stops_0);
-  for (int done = 0, part = kSmallestParts; done < kSmallestParts;) {
-    // the rows' forces continue along their lines
-    const double share = static_cast<double>(part) / kSmallestParts;
-    const double later = h * (static_cast<double>(done) / kSmallestParts + 0.5 * share - 0.5);
-    for (std::size_t k = 0; k < mean.size(); ++k) pws.part_mean[k] = mean[k] + later * slope[k];
-    const Outcome outcome = take_part(parts, share * h, has_stops, part > 1 && divisions < kMostDivisions);
+  // beyond the most divisions a touch takes the implicit Euler rule
+  StepParts part(h, kSmallestPart, kMostDivisions);
+  for (;;) {
+    part.put_mean(mean, slope, pws.part_mean);
+    const Outcome outcome = take_part(parts, part.length(), has_stops, part.may_divide());
     if (outcome == Outcome::divide) {
-      ++divisions;
-      part = std::max(1, part / kDivision);
+      part.divide();
       continue;
     }
-    is_sound = parts.accept(share * h) && outcome == Outcome::settled && is_sound;
-    ++pws.parts;
-    done += part;
-    part = std::min(kDivision * part, kSmallestParts - done);
-    if (part == 0) break;
+    is_sound = parts.accept(part.length()) && outcome == Outcome::settled && is_sound;
+    if (!part.take()) break;
     is_sound = evaluate(model, body, state, joints, ws, pws) && is_sound;
     see_element_stops(model, ws, pws.stops_0);
   }
+  pws.parts = part.taken();
   return is_sound;
 }
 

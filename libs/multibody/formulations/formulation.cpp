@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,8 @@
 #include "multibody/formulations/body_penalty.h"
 #include "multibody/formulations/dynamics.h"
 #include "multibody/formulations/passes.h"
+#include "multibody/formulations/step_parts.h"
+#include "multibody/formulations/stops.h"
 #include "multibody/model/observe.h"
 
 namespace slew::multibody {
@@ -23,6 +26,9 @@ namespace {
 constexpr int kMostPartsOfAStep = 8;
 // Growth of the speeds above which an iteration without convergence has diverged.
 constexpr double kMostGrowth = 1e3;
+// Smallest part of an explicit rule at a touch, in 1/1024: there it resolves what it is stable with. The parts between
+// touches bound the number of divisions.
+constexpr int kSmallestOfExplicit = 4, kNoMostDivisions = std::numeric_limits<int>::max();
 
 }  // namespace
 
@@ -46,36 +52,43 @@ struct Dynamics::HeldBodies {
   PenaltyWorkspace ws;
 };
 
+// The start of a sub-step or part, for its repetition in shorter ones.
+struct Dynamics::Start {
+  explicit Start(const Model& mechanism) : joints(start_state(mechanism)), bodies(body_state(mechanism, joints)) {}
+
+  // bodies, stages: null if the formulation, the rule has none
+  void keep(const State& present, const BodyState* present_bodies, const StageWorkspace* stages) noexcept {
+    copy_state(present, joints);
+    if (present_bodies != nullptr) bodies = *present_bodies;
+    if (stages == nullptr) return;
+    algorithmic = stages->algorithmic;
+    algorithmic_turn = stages->algorithmic_turn;
+  }
+  void go_back(State& present, BodyState* present_bodies, StageWorkspace* stages) const noexcept {
+    copy_state(joints, present);
+    if (present_bodies != nullptr) *present_bodies = bodies;
+    if (stages == nullptr) return;
+    stages->algorithmic = algorithmic;
+    stages->algorithmic_turn = algorithmic_turn;
+  }
+
+  State joints;
+  BodyState bodies;
+  std::vector<double> algorithmic;
+  std::vector<math::Vec3> algorithmic_turn;
+};
+
 // Integrators beside rk4. In joint coordinates the iteration has a matrix of its own.
 struct Dynamics::Stages {
   Stages(const Model& mechanism, const StepRule& step_rule, StageWorkspace::Coordinates coordinates)
-      : rule(step_rule), model(build_stiff_body_model(mechanism)), ws(mechanism, model, coordinates) {
+      : rule(step_rule), model(build_stiff_body_model(mechanism)), ws(mechanism, model, coordinates), start(mechanism) {
     if (coordinates == StageWorkspace::Coordinates::joint) matrix.emplace(mechanism, model);
-    start.joints = start_state(mechanism);
-    start.bodies = body_state(mechanism, start.joints);
     keep(start.joints, nullptr);
     part_mean.resize(mechanism.rows.size());
   }
 
-  // The start of a sub-step, for a repetition in parts.
-  struct Start {
-    State joints;
-    BodyState bodies;
-    std::vector<double> algorithmic;
-    std::vector<math::Vec3> algorithmic_turn;
-  };
-  void keep(const State& joints, const BodyState* bodies) noexcept {
-    copy_state(joints, start.joints);
-    if (bodies != nullptr) start.bodies = *bodies;
-    start.algorithmic = ws.algorithmic;
-    start.algorithmic_turn = ws.algorithmic_turn;
-  }
-  void go_back(State& joints, BodyState* bodies) noexcept {
-    copy_state(start.joints, joints);
-    if (bodies != nullptr) *bodies = start.bodies;
-    ws.algorithmic = start.algorithmic;
-    ws.algorithmic_turn = start.algorithmic_turn;
-  }
+  void keep(const State& joints, const BodyState* bodies) noexcept { start.keep(joints, bodies, &ws); }
+  void go_back(State& joints, BodyState* bodies) noexcept { start.go_back(joints, bodies, &ws); }
 
   StepRule rule;
   BodyModel model;
@@ -83,7 +96,25 @@ struct Dynamics::Stages {
   std::optional<BodyWorkspace> matrix;
   Start start;
   std::vector<double> part_mean;
-  int iterations = 0, parts = 1;  // counts of the last sub-step
+};
+
+// Sub-steps in parts where one-sided forces begin or end, or a table bends.
+struct Dynamics::Touches {
+  Touches(const Model& mechanism, Touched which, const StageWorkspace* stages)
+      : touched(which),
+        is_explicit(which == Touched::swings),
+        stops(element_stop_count(mechanism)),
+        stops_0(stops),
+        part_mean(mechanism.rows.size()),
+        start(mechanism) {
+    start.keep(start.joints, nullptr, stages);
+  }
+
+  Touched touched;
+  bool is_explicit;
+  std::vector<StopMotion> stops, stops_0;  // at the end and the start of a part
+  std::vector<double> part_mean;
+  Start start;
 };
 
 namespace {
@@ -131,6 +162,10 @@ Dynamics::Dynamics(Formulation formulation, const Model& model, const State& sta
     case Formulation::penalty:
       held_ = std::make_unique<HeldBodies>(formulation, model, start);
       break;
+  }
+  if (formulation != Formulation::augmented) {
+    const Touched touched = is_implicit(rule.integrator) ? Touched::tables : Touched::swings;
+    touches_ = std::make_unique<Touches>(model, touched, stages_ == nullptr ? nullptr : &stages_->ws);
   }
   if (model.contact == nullptr || held_ != nullptr || is_implicit(rule.integrator)) return;
   rule.integrator = Integrator::sdirk2;
@@ -249,14 +284,75 @@ bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, dou
 
 bool Dynamics::take_substep(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                             std::span<const double> slope) noexcept {
-  if (is_euler_) return advance_by_euler(model, state, ws, h, mean);
+  parts_ = iterations_ = 0;
+  const bool may_touch = touches_ != nullptr && has_element_stops(model, touches_->touched);
+  return may_touch ? take_touches(model, state, ws, h, mean, slope) : take_rule(model, state, ws, h, mean, slope);
+}
+
+// motion of links and elements at the end of a part
+void Dynamics::show_end(const Model& model, const State& state, Workspace& ws) const noexcept {
+  if (const BodyState* bodies = own_state(); bodies != nullptr) {
+    update_body_motion(model, *bodies, ws);
+  } else {
+    update_motion(model, state.q, state.u, ws);
+  }
+  update_elements(model, state.q, Elements::used, ws);
+}
+
+bool Dynamics::take_touches(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                            std::span<const double> slope) noexcept {
+  Touches& t = *touches_;
+  BodyState* const bodies = own_state();
+  StageWorkspace* const stages = stages_ == nullptr ? nullptr : &stages_->ws;
+  StepParts part(h, t.is_explicit ? kSmallestOfExplicit : kSmallestPart,
+                 t.is_explicit ? kNoMostDivisions : kMostDivisions);
+  bool is_sound = true, is_plastic = false;
+  see_element_stops(model, ws, t.stops_0);
+  for (;;) {
+    const bool was_lost = ws.contact != nullptr && ws.contact->is_lost;
+    const int parts = parts_, iterations = iterations_;
+    t.start.keep(state, bodies, stages);
+    part.put_mean(mean, slope, t.part_mean);
+    const std::span<const double> part_mean = part.is_whole() ? mean : t.part_mean;
+    if (stages != nullptr) stages->takes_touch = is_plastic;
+    const bool is_taken = take_rule(model, state, ws, part.length(), part_mean, slope);
+    show_end(model, state, ws);
+    see_element_stops(model, ws, t.stops);
+    const bool is_harsh = touch_between(model, t.stops_0, t.stops, {t.touched, part.length()}) == Touch::harsh;
+    // an explicit rule takes the smallest part as it is, an implicit one as a touch
+    if (is_harsh && (part.may_divide() || (!t.is_explicit && !is_plastic))) {
+      is_plastic = !part.may_divide();
+      if (part.may_divide()) part.divide();
+      if (ws.contact != nullptr) ws.contact->is_lost = was_lost;
+      parts_ = parts;
+      iterations_ = iterations;
+      t.start.go_back(state, bodies, stages);
+      evaluate(model, state, ws);
+      continue;
+    }
+    is_plastic = false;
+    is_sound = is_taken && is_sound;
+    if (!part.take()) break;
+    evaluate(model, state, ws);
+    see_element_stops(model, ws, t.stops_0);
+  }
+  if (stages != nullptr) stages->takes_touch = false;
+  return is_sound;
+}
+
+bool Dynamics::take_rule(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                         std::span<const double> slope) noexcept {
   if (stages_ != nullptr) return advance_by_rule(model, state, ws, h, mean, slope);
+  ++parts_;
+  if (is_euler_) return advance_by_euler(model, state, ws, h, mean);
   if (bodies_ != nullptr) {
     Bodies& b = *bodies_;
     return multibody::advance(model, b.model, b.state, state, ws, b.ws, h, mean, slope) && is_regular_;
   }
   if (held_ != nullptr) {
-    return multibody::advance(model, held_->model, held_->state, state, ws, held_->ws, h, mean, slope) && is_regular_;
+    const bool is_sound = multibody::advance(model, held_->model, held_->state, state, ws, held_->ws, h, mean, slope);
+    parts_ += held_->ws.parts - 1;
+    return is_sound && is_regular_;
   }
   return multibody::advance(model, state, ws, h, mean, slope);
 }
@@ -269,38 +365,31 @@ bool Dynamics::advance_by_rule(const Model& model, State& state, Workspace& ws, 
   const BodyModel& body = bodies_ == nullptr ? s.model : bodies_->model;
   const int most = is_implicit(s.rule.integrator) ? kMostPartsOfAStep : 1;
   if (most > 1) s.keep(state, bodies);
-  s.iterations = 0;
   bool is_sound = true;
-  for (s.parts = 1;; s.parts *= 2) {
+  int parts = 1;
+  for (;; parts *= 2) {
     // without convergence, repeat in twice as many parts; the rows' forces continue along their lines
-    const double part = h / s.parts;
+    const double part = h / parts;
     is_sound = true;
-    for (int i = 0; i < s.parts && (is_sound || s.parts == most); ++i) {
-      if (s.parts > 1) evaluate(model, state, ws);
+    for (int i = 0; i < parts && (is_sound || parts == most); ++i) {
+      if (parts > 1) evaluate(model, state, ws);
       const double later = (i + 0.5) * part - 0.5 * h;
       for (std::size_t k = 0; k < mean.size(); ++k) s.part_mean[k] = mean[k] + later * slope[k];
       is_sound = multibody::advance(model, body, s.rule, {state, bodies}, ws, bws, s.ws, part, s.part_mean, slope) &&
                  is_regular_ && is_sound;
-      s.iterations += s.ws.iterations;
+      iterations_ += s.ws.iterations;
     }
-    if (is_sound) return true;
-    if (s.parts == most) break;
+    if (is_sound || parts == most) break;
     s.go_back(state, bodies);
   }
+  parts_ += parts;
+  if (is_sound) return true;
   // hold a diverged sub-step at its start
   if (most > 1 && !(fixed_max_abs(state.u) <= kMostGrowth * std::max(1.0, fixed_max_abs(s.start.joints.u)))) {
     s.go_back(state, bodies);
     evaluate(model, state, ws);
   }
   return false;
-}
-
-int Dynamics::iterations() const noexcept {
-  return stages_ == nullptr ? 0 : stages_->iterations;
-}
-
-int Dynamics::parts() const noexcept {
-  return stages_ != nullptr ? stages_->parts : held_ != nullptr ? held_->ws.parts : 1;
 }
 
 const BodyState* Dynamics::own_state() const noexcept {

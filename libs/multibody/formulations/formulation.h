@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "core/state_bytes.h"
 #include "core/state_hash.h"
@@ -50,9 +51,9 @@ class Dynamics {
   // shows it (joint_gauge.h); the joint coordinates of the State cannot.
   void observe(const Model& model, const State& state, Workspace& ws) const noexcept;
   // Corrections of the last sub-step's implicit stages, and its number of parts: one, except after an iteration without
-  // convergence, and of `augmented` where a one-sided force begins or ends.
-  [[nodiscard]] int iterations() const noexcept;
-  [[nodiscard]] int parts() const noexcept;
+  // convergence, and where a one-sided force begins or ends, or a table bends, in the sub-step.
+  [[nodiscard]] int iterations() const noexcept { return iterations_; }
+  [[nodiscard]] int parts() const noexcept { return parts_; }
   // Number of parts of the last advance() because of contacts, and the number of them by the implicit rule.
   [[nodiscard]] int contact_parts() const noexcept { return contact_parts_; }
   [[nodiscard]] int settling_parts() const noexcept { return settling_parts_; }
@@ -66,6 +67,7 @@ class Dynamics {
  private:
   // none: recursive
   [[nodiscard]] const BodyState* own_state() const noexcept;
+  [[nodiscard]] BodyState* own_state() noexcept { return const_cast<BodyState*>(std::as_const(*this).own_state()); }
   template <typename Self, typename Bytes>
   static void visit(Self& self, Bytes& bytes);
   [[nodiscard]] StepKind contact_step() const noexcept;
@@ -75,19 +77,27 @@ class Dynamics {
                                  std::span<const double> mean, std::span<const double> slope) noexcept;
   struct PartOfStep;
   [[nodiscard]] bool advance_contacts(const Model& model, State& state, Workspace& ws, const PartOfStep& part) noexcept;
+  void show_end(const Model& model, const State& state, Workspace& ws) const noexcept;
+  [[nodiscard]] bool take_touches(const Model& model, State& state, Workspace& ws, double h,
+                                  std::span<const double> mean, std::span<const double> slope) noexcept;
   [[nodiscard]] bool take_substep(const Model& model, State& state, Workspace& ws, double h,
                                   std::span<const double> mean, std::span<const double> slope) noexcept;
+  [[nodiscard]] bool take_rule(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                               std::span<const double> slope) noexcept;
   [[nodiscard]] bool advance_by_rule(const Model& model, State& state, Workspace& ws, double h,
                                      std::span<const double> mean, std::span<const double> slope) noexcept;
 
   struct Bodies;
   struct HeldBodies;
+  struct Start;
   struct Stages;
+  struct Touches;
   std::unique_ptr<Bodies> bodies_;    // lagrange
   std::unique_ptr<HeldBodies> held_;  // augmented, penalty
   std::unique_ptr<Stages> stages_;    // integrators other than rk4 and semi-implicit Euler
   std::unique_ptr<Stages> settling_;  // for contacts at rest under an explicit rule; without carried values
-  int contact_parts_ = 1, settling_parts_ = 0;
+  std::unique_ptr<Touches> touches_;  // none: `augmented`, which divides by itself
+  int contact_parts_ = 1, settling_parts_ = 0, parts_ = 1, iterations_ = 0;
   bool is_euler_ = false;   // semi-implicit Euler in joint coordinates, which needs no data of its own
   bool is_regular_ = true;  // result of the last evaluation
 };

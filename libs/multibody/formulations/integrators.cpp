@@ -420,7 +420,7 @@ bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Mo
   forces.put(begins_at_start ? 0 : 0.5 * h, stages.row_force);
   take_start(at);
   see_stops(model, ws, stages.stops_0);
-  const bool takes_blow = is_implicit(rule.integrator) && is_blow(at, rule.integrator, h);
+  const bool takes_blow = is_implicit(rule.integrator) && (stages.takes_touch || is_blow(at, rule.integrator, h));
   const bool has_settled = takes_blow ? take_touch(at, rule.iteration_tolerance, forces) : take_rule(at, rule, forces);
   const bool is_impulse = rule.integrator == Integrator::semi_implicit_euler;
   const bool is_closed = is_impulse ? close_impulse(at, h) : close(at);

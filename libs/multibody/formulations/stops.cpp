@@ -12,17 +12,33 @@ namespace {
 
 // shares of the speed and of the force: a touch below loses about as much of its speed, a table a third of its work
 constexpr double kGentle = 0.01, kBent = 0.03;
+// the first of explicit rules, of which a touch gains or loses about a third; and the change of speed, as a share,
+// above which they lose more than a thousandth of it to a spring
+constexpr double kGentleOfExplicit = 0.003, kSwung = 0.3;
 
 StopMotion stop_of(const ElementLaw& law, double x, double speed) noexcept {
   StopMotion stop{0, x - law.free, speed};
   if (!(law.end_spring > 0)) return stop;
+  const bool is_at_min = law.min - x > x - law.max;
+  stop.depth = is_at_min ? law.min - x : x - law.max;
+  stop.depth_rate = is_at_min ? -speed : speed;
   const double force = math::stop_force(x, speed, law.min, law.max, law.end_spring, law.end_damping).force;
   stop.side = force > 0 ? -1 : force < 0 ? 1 : 0;
   return stop;
 }
 
-bool has_stop(const ElementLaw& law) noexcept {
-  return law.end_spring > 0 || !law.spring_curve.empty();
+bool has_stop(const ElementLaw& law, Touched touched) noexcept {
+  return !law.spring_curve.empty() || (touched != Touched::tables && law.end_spring > 0);
+}
+
+// Whether the speed changes much within a part of h from or to the edge of a range: a touch that began or ends in the
+// part itself or in one beside it. Elements that stay far behind the edge do not count.
+bool is_swung(const StopMotion& start, const StopMotion& end, double h) noexcept {
+  const double change = std::fabs(end.speed - start.speed);
+  if (!(change > kSwung * std::max(std::fabs(start.speed), std::fabs(end.speed)))) return false;
+  const bool from_edge = std::fabs(start.depth) < h * start.depth_rate;
+  const bool to_edge = std::fabs(end.depth) < -h * end.depth_rate;
+  return start.side != 0 ? from_edge || to_edge : from_edge && to_edge;
 }
 
 // visit(motion of an element)
@@ -43,12 +59,13 @@ void for_each_stop(const Model& model, const Workspace& ws, Visit visit) noexcep
 
 // force: of the spring at its coordinate
 template <typename Force>
-Touch touch_of(const StopMotion& start, const StopMotion& end, Force force) noexcept {
-  const bool is_changed = start.side != end.side;
-  const double change = std::fabs(end.speed - start.speed);
-  const bool is_gentle = change <= kGentle * std::max(std::fabs(start.speed), std::fabs(end.speed));
+Touch touch_of(const StopMotion& start, const StopMotion& end, Passed passed, Force force) noexcept {
+  const bool is_changed = start.side != end.side && passed.touched != Touched::tables;
+  const bool is_explicit = passed.touched == Touched::swings;
+  const double change = std::fabs(end.speed - start.speed), gentle = is_explicit ? kGentleOfExplicit : kGentle;
+  const bool is_gentle = change <= gentle * std::max(std::fabs(start.speed), std::fabs(end.speed));
   if (is_gentle) return is_changed ? Touch::gentle : Touch::none;
-  if (is_changed) return Touch::harsh;
+  if (is_changed || (is_explicit && is_swung(start, end, passed.h))) return Touch::harsh;
   const double F0 = force(start.x), F1 = force(end.x), between = force(0.5 * (start.x + end.x));
   const double largest = std::max({std::fabs(F0), std::fabs(F1), std::fabs(between)});
   return std::fabs(F0 + F1 - 2 * between) > kBent * largest ? Touch::harsh : Touch::none;
@@ -60,8 +77,8 @@ std::size_t element_stop_count(const Model& model) noexcept {
   return model.lines.size() + model.angles.size() + stop_count(model.elements);
 }
 
-bool has_element_stops(const Model& model) noexcept {
-  const auto has = [](const auto& element) { return has_stop(element.law); };
+bool has_element_stops(const Model& model, Touched touched) noexcept {
+  const auto has = [touched](const auto& element) { return has_stop(element.law, touched); };
   return stop_count(model.elements) > 0 || std::any_of(model.lines.begin(), model.lines.end(), has) ||
          std::any_of(model.angles.begin(), model.angles.end(), has);
 }
@@ -71,11 +88,12 @@ void see_element_stops(const Model& model, const Workspace& ws, std::span<StopMo
   for_each_stop(model, ws, [&](const StopMotion& stop) { stops[k++] = stop; });
 }
 
-Touch touch_between(const Model& model, std::span<const StopMotion> start, std::span<const StopMotion> end) noexcept {
+Touch touch_between(const Model& model, std::span<const StopMotion> start, std::span<const StopMotion> end,
+                    Passed passed) noexcept {
   Touch touch = Touch::none;
   std::size_t k = 0;
   const auto see = [&](auto force) {
-    touch = std::max(touch, touch_of(start[k], end[k], force));
+    touch = std::max(touch, touch_of(start[k], end[k], passed, force));
     ++k;
   };
   const auto see_law = [&](const auto& element) {
