@@ -163,7 +163,8 @@ Dynamics::Dynamics(Formulation formulation, const Model& model, const State& sta
       held_ = std::make_unique<HeldBodies>(formulation, model, start);
       break;
   }
-  if (formulation != Formulation::augmented) {
+  // semi-implicit Euler sees a force a part late, and keeps no energy over parts of different lengths
+  if (formulation != Formulation::augmented && rule.integrator != Integrator::semi_implicit_euler) {
     const Touched touched = is_implicit(rule.integrator) ? Touched::tables : Touched::swings;
     touches_ = std::make_unique<Touches>(model, touched, stages_ == nullptr ? nullptr : &stages_->ws);
   }
