@@ -97,7 +97,7 @@ struct StageWorkspace {
   std::vector<double> multipliers;  // multipliers of the joints, by BlockLdl::first_row(), after the first request
   bool has_multipliers = false;
   bool has_stops = false;
-  bool takes_touch = false;       // asked for: the sub-step is one in which a stop is touched
+  bool takes_touch = false;       // set by the owner: take the sub-step as one in which a stop is touched
   bool has_alternated = false;    // a stop changed in an iteration of the sub-step
   bool is_near_singular = false;  // near a singular position in the sub-step, as in loops.h
   int iterations = 0;             // iterations of the last sub-step
