@@ -110,6 +110,8 @@ TEST_P(Interop, ATypedReaderOfAnotherProgramReadsEveryFieldOfWhatWeSend) {
   wire::ControlRequest ready;
   EXPECT_EQ(message.topic, Topic::control_request);
   EXPECT_TRUE(decode(message.bytes, ready));
+  // the two sides discover each other independently
+  ASSERT_TRUE(eventually([&] { return transport->matched_readers(Topic::mechanism) == 1; }));
   std::mt19937_64 random(21);
   ByteBuffer bytes;
   for (int i = 0; i < kCount; ++i) {
