@@ -10,6 +10,7 @@
 #include "core/failure.h"
 #include "core/report_table.h"
 #include "io_node/input_gate.h"
+#include "node/identity.h"
 #include "program/add_scene_options.h"
 #include "program/add_session_options.h"
 #include "scene/names.h"

@@ -16,6 +16,7 @@
 #include "recording/run_directory.h"
 #include "scene/names.h"
 #include "session/recorded.h"
+#include "transport/roles.h"
 
 namespace slew::analysis {
 namespace {
@@ -23,7 +24,7 @@ namespace {
 using wire::Role;
 
 void report_nodes(const observer::SessionView& view, RunReport& report) {
-  for (const Role role : wire::kNodeRoles) {
+  for (const Role role : transport::node_roles()) {
     if (!view.has_session() || (view.session().required_roles & bit(role)) == 0) continue;
     const observer::NodeView& node = view.node(role);
     report.nodes.push_back({std::string(node::to_text(role)), node.times, node.health.resends_asked,
@@ -58,7 +59,7 @@ void report_ranges(const observer::SessionView& view, const scene::Scene& scene,
 
 // what was left out under load
 void report_left_out(const observer::SessionView& view, RunReport& report) {
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : transport::physics_roles()) {
     const observer::NodeView& node = view.node(role);
     if (node.blocks_left_out == 0) continue;
     report.notes.push_back(
