@@ -101,6 +101,7 @@ class PortProblem {
   // stops.cpp: repetition in parts; depth: number of divisions so far
   void take_substep(const Step& step, double h, bool is_first, std::size_t depth) noexcept;
   void restore_start(std::size_t depth) noexcept;
+  [[nodiscard]] bool may_meet_stop(double h) const noexcept;
   [[nodiscard]] bool misses_limit() const noexcept;
   [[nodiscard]] double net_acceleration(std::size_t k, double h) noexcept;
   [[nodiscard]] bool strays_in_stop(double h) noexcept;

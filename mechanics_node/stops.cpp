@@ -21,6 +21,8 @@ constexpr int kParts = 4;
 // sub-step; and the speed that the difference of the spring's energy means, in units of the row's own: 1e-3 of its
 // energy.
 constexpr double kLargestStray = 0.03;
+// a port's stop is near when it could be reached within so many sub-steps
+constexpr double kNear = 4;
 
 }  // namespace
 
@@ -31,7 +33,18 @@ void PortProblem::restore_start(std::size_t depth) noexcept {
   a_free_trends_.clear();
 }
 
-// A limit that a large load reaches from rest: its row took no part in the port problem.
+// Stops of ports by their speeds, limits of joints always: a large load may reach one from rest.
+bool PortProblem::may_meet_stop(double h) const noexcept {
+  for (std::size_t row = 0; row < mechanism_.row_count(); ++row) {
+    if (!is_port(row) && mechanism_.model().rows[row].law.limit_stiffness > 0) return true;
+    const double x = position_of(row);
+    const double reach = kNear * h * std::fabs(ratio_of(row) * mechanism_.workspace().row_v[row]);
+    if (stop_at(row, x - reach).stiffness > 0 || stop_at(row, x + reach).stiffness > 0) return true;
+  }
+  return false;
+}
+
+// The row of a limit that a load reached took no part in the port problem.
 bool PortProblem::misses_limit() const noexcept {
   for (std::size_t row = ports_.size(); row < mechanism_.row_count(); ++row) {
     if (!mechanism_.is_row_active(row) && stop_at(row, position_of(row)).stiffness > 0) return true;
@@ -83,10 +96,11 @@ bool PortProblem::strays_in_stop(double h) noexcept {
 
 void PortProblem::take_substep(const Step& step, double h, bool is_first, std::size_t depth) noexcept {
   mechanism_.evaluate();
+  const bool may_stray = !starts_.empty() && may_meet_stop(h);
   const bool may_divide = depth < starts_.size();
-  if (may_divide) mechanism_.keep(starts_[depth]);
+  if (may_stray && may_divide) mechanism_.keep(starts_[depth]);
   coupling::PortStep solved = advance(step, h, is_first);
-  if (!starts_.empty()) {
+  if (may_stray) {
     mechanism_.evaluate();
     if ((solved.meets_stop && strays_in_stop(h)) || misses_limit()) {
       if (may_divide) {
