@@ -85,7 +85,7 @@ class ForceBuilder {
     const Vec3 axis = pose1.R * element.axis;
     const Vec3 f2 = link_pose_[at(element.link2)].R * element.f2;
     const double angle = std::atan2(math::dot(f2, pose1.R * element.g1), math::dot(f2, pose1.R * element.f1));
-    element.is_coaxial = true;
+    element.is_coaxial = element.first_path < element.path_end;  // a weld has no axis
     element.offset = angle;
     for (int i = element.first_path; i < element.path_end; ++i) {
       PathEntry& entry = model_.paths[at(i)];

@@ -47,6 +47,25 @@ TEST(StaticJoint, FixedCarriesWeightAndMoment) {
   expect_near(reaction.moment, kMoment, 1e-10);
 }
 
+// A spring between two bodies that are welded: its torque is k phi_0 n with n = f2 x (c g1 - s f1)/(c^2 + s^2), which
+// f2 tilts away from f1 x g1.
+TEST(StaticJoint, FixedCarriesTheTorqueOfASpringBesideIt) {
+  MechanicsDef def = static_body(JointType::fixed, {});
+  def.gravity = {0, 0, 0};
+  def.rotational_forces = {{.name = "Spring",
+                            .body1 = "Ground",
+                            .f1 = {1, 0, 0},
+                            .g1 = {0, 1, 0},
+                            .body2 = "Block",
+                            .f2 = {1, 0, 0.5},
+                            .spring_constant = 10,
+                            .free_angle = M_PI / 6}};
+  Mechanism weld(def);
+  const JointReaction reaction = reaction_of(weld);
+  expect_near(reaction.force, {0, 0, 0}, 1e-12);
+  expect_near(reaction.moment, {-5 * M_PI / 6, 0, 10 * M_PI / 6}, 1e-10);
+}
+
 TEST(StaticJoint, RevoluteNeedsTheMomentAboutItsAxis) {
   // axis along global x
   Mechanism hinge(static_body(JointType::revolute, {0, M_PI / 2, 0}), {"Joint"});
