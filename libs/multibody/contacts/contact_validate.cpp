@@ -246,6 +246,13 @@ void find_lost_rebounds(const MechanicsDef& mechanics, double substep, Problems&
 
 void find_unlikely_contacts(const MechanicsDef& mechanics, Problems& warnings) {
   if (mechanics.contacts.empty()) return;
+  for (const ContactPairDef& pair : mechanics.contacts) {
+    const std::string& body = find_named(mechanics.shapes, pair.shape_a)->body;
+    // between fixed shapes a pair is a name
+    if (find_named(mechanics.shapes, pair.shape_b)->body != body || body == kGroundName) continue;
+    warnings.push_back(
+        {pair.name, fmt::format("it has no effect: both shapes are of '{}'", body), "shapes of two bodies", ""});
+  }
   find_deep_starts(mechanics, warnings);
 }
 

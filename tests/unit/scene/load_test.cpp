@@ -56,6 +56,25 @@ TEST(Load, WarnsOfAScriptedChangeBehindTheEndOfTheRun) {
   EXPECT_TRUE(load_text(script, "test").warnings.empty());
 }
 
+TEST(Load, WarnsOfAContactWithinOneBody) {
+  const auto warnings = [](const std::string& second) {
+    return load_text(
+               "bodies:\n  A: {mass: 1 kg, inertia: [1, 1, 1]}\n  B: {position: [3, 0, 0], mass: 1 kg, inertia: [1, 1, "
+               "1]}\n"
+               "joints:\n  F: {type: revolute, body2: A}\n  G: {type: revolute, point1: [3, 0, 0], body2: B}\n"
+               "shapes:\n  S: {type: sphere, body: A, radius: 0.1}\n  T: {type: sphere, body: " +
+                   second +
+                   ", radius: 0.1}\n"
+                   "contacts: {C: {shape_a: S, shape_b: T, spring_constant: 1e5}}\n",
+               "test")
+        .warnings;
+  };
+  ASSERT_EQ(warnings("A").size(), 1u);
+  EXPECT_NE(warnings("A")[0].find("C: it has no effect: both shapes are of 'A'"), std::string::npos)
+      << warnings("A")[0];
+  EXPECT_TRUE(warnings("B").empty());
+}
+
 TEST(Load, WarnsOfAPointOfTheScriptBehindTheEndOfTheRun) {
   const auto warnings = [](const std::string& points) {
     return load_text(
