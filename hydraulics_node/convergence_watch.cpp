@@ -37,12 +37,21 @@ void ConvergenceWatch::write(const char* form, const Values&... values) noexcept
 }
 
 bool ConvergenceWatch::ends_run(const StepReport& report, const hydraulics::CircuitIntegrator& integrator,
-                                std::string_view offender) noexcept {
+                                std::string_view offender, std::string_view beyond_waves) noexcept {
   if (integrator.last_report().is_impossible) {
     write(
         "{}: no sub-step solves it within the budget: the last one tried has an error above 1 % of its size, or leaves "
         "more room without oil than oil has flowed out; the state before the step is kept. {}",
         offender, remedy_of(solver_));
+    return true;
+  }
+  if (integrator.beyond_waves() >= 0) {
+    write(
+        "{}: its chamber of level tlm closed a space of vapour or soft oil within one step, and its waves cannot "
+        "follow "
+        "that: the pressure would be that of the step, not of the machine. Use coupling: two for its cylinder, or a "
+        "shorter session.step",
+        beyond_waves);
     return true;
   }
   unsolved_ = std::clamp(unsolved_ + (is_unsolved(report) ? 1 : -1), 0, kMostUnsolved);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ends a session whose circuit is no longer solved while its pressures are still finite.
 //
-// Two rules, checked after every step:
+// Three rules, checked after every step:
 //   - The excess of steps accepted with their error over sound ones reaches kMostUnsolved: steps that are not
 //   converged,
 //     and steps over the sub-step budget whose error exceeded the tolerance. The count decreases by one with each sound
 //     step, down to zero, so that single steps never add up to an end.
 //   - No sub-step keeps the oil of a volume, or has less than a gross error (math::StiffReport::is_impossible).
+//   - No chamber of level tlm hardens within a step by more than its waves can follow (Circuit::beyond_waves()).
 // Not covered: pressures that are converged and wrong.
 #pragma once
 
@@ -30,9 +31,10 @@ class ConvergenceWatch {
   explicit ConvergenceWatch(hydraulics::Solver solver) noexcept : solver_(solver) {}
 
   void reset() noexcept { unsolved_ = 0, text_length_ = 0; }
-  // Counts a step. True: the run ends; text() names the offender and the reason. Does not allocate.
+  // Counts a step. True: the run ends; text() names the offender and the reason. beyond_waves: name of the volume of
+  // the third rule. Does not allocate.
   [[nodiscard]] bool ends_run(const StepReport& report, const hydraulics::CircuitIntegrator& integrator,
-                              std::string_view offender) noexcept;
+                              std::string_view offender, std::string_view beyond_waves) noexcept;
   [[nodiscard]] std::string_view text() const noexcept { return {text_.data(), text_length_}; }
 
   // Adds nothing while all recent steps are sound: the hash of a sound run is that of its circuit.

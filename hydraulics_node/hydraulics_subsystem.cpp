@@ -125,6 +125,11 @@ void HydraulicsSubsystem::apply_levels() noexcept {
   }
 }
 
+// As apply_levels(), of a step that another integrator computes: no chamber is a line, whatever its level.
+void HydraulicsSubsystem::lump_lines() noexcept {
+  for (std::size_t i = 0; i < m_; ++i) integrator_->set_line(static_cast<int>(i), false, H_.seconds());
+}
+
 // The pistons take the positions of a new sample of this step; a late one corrects them.
 void HydraulicsSubsystem::align(const coupling::MechanismSample& mechanism, StepIndex age) noexcept {
   if (age == 0) {
@@ -175,7 +180,10 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   StepReport report = integrator_->step(H_.seconds(), reduced_);
   report.flags |= taken.flags;
   alarm_.raise_flags(levels_, report);
-  if (convergence_.ends_run(report, *integrator_, offender_name(report.offender))) report.raise(StepFlag::ended);
+  const std::string_view hardened = offender_name(integrator_->beyond_waves());
+  if (convergence_.ends_run(report, *integrator_, offender_name(report.offender), hardened)) {
+    report.raise(StepFlag::ended);
+  }
   if (report.has_failed()) {
     failure_ = report;
     sample.actuators = published_;
@@ -196,6 +204,7 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
                                        const coupling::PartnerSamples& partners, std::span<const double> controls,
                                        coupling::OwnSample& sample) noexcept {
   apply_tick(n, controls);
+  lump_lines();
   if (partners.mechanism != nullptr && m_ > 0) alarm_.update(*partners.mechanism, published_, stiffness_, levels_);
   const bool is_step = n >= 0 && circuit_->has_temperatures();
   if (is_step) circuit_->begin_heat(integrator_->state().data());

@@ -73,6 +73,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   template <typename Self, typename Bytes>
   static void visit(Self& self, Bytes& bytes);
   void apply_levels() noexcept;
+  void lump_lines() noexcept;
   void apply_tick(StepIndex n, std::span<const double> controls) noexcept;
   void take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
                       StepReport& report) noexcept;

@@ -84,6 +84,14 @@ double Circuit::capacity_growth(int volume, const double* y) const noexcept {
   return C.d_pressure / C.value;
 }
 
+double Circuit::capacity_of_lines(std::size_t volume, double p, const double* y) const noexcept {
+  double sum = 0;
+  for (const LineChamber& line : lines_) {
+    if (line.is_line && line.volume == static_cast<int>(volume)) sum += line_capacity(line, p, y[line.position]);
+  }
+  return sum;
+}
+
 void Circuit::capacities(const double* y, double* C) const noexcept {
   for (std::size_t i = 0; i < volume_name_.size(); ++i) C[i] = is_fixed_[i] ? 0 : capacity(i, y).value;
 }
@@ -298,9 +306,10 @@ void Circuit::read_variables(const double* y, std::span<double> values) noexcept
   for (std::size_t i = 0; i < volume_name_.size(); ++i) {
     const Capacity C = capacity(i, y);
     const ValueSlope p = vapour_.pressure(i, y[i]);
+    const double whole = C.value + capacity_of_lines(i, std::max(y[i], floor_), y);
     *out++ = p.value;
     *out++ = C.content;
-    *out++ = C.value > 0 ? C.content * p.slope / C.value : 0;
+    *out++ = whole > 0 ? C.content * p.slope / whole : 0;
     *out++ = !is_fixed_[i] && y[i] < floor_ ? 1 : 0;
     if (!has_temperatures()) continue;
     *out++ = heat_->T[i];

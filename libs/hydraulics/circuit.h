@@ -187,6 +187,9 @@ class Circuit {
   [[nodiscard]] bool is_line(int actuator) const noexcept;
   // Ends a communication step; mean_pressure [Pa] of the volumes over it, by line.
   void end_line_step(const double* y, std::span<const double> mean_pressure) noexcept;
+  // The volume whose line hardened in that step beyond what its waves can follow: air or vapour closed within it, and
+  // the pressure is that of the step, not of the machine. -1: none.
+  [[nodiscard]] int beyond_waves() const noexcept { return beyond_waves_; }
   // Force of the lines on the piston in the next step, at rest.
   [[nodiscard]] LineThrust line_thrust(int actuator, const double* y) const noexcept;
   [[nodiscard]] double line_capacity(const LineChamber& line, double p, double x) const noexcept;
@@ -302,6 +305,7 @@ class Circuit {
   }
   [[nodiscard]] Capacity capacity(std::size_t volume, const double* y) const noexcept;
   [[nodiscard]] double capacity_at(std::size_t volume, const double* y) const noexcept;
+  [[nodiscard]] double capacity_of_lines(std::size_t volume, double p, const double* y) const noexcept;
   void stamp_flows(const double* y) noexcept;
   void evaluate_flows(const double* y, double* f) noexcept;
   void add_line_flows(const double* y, Rates& sums) const noexcept;
@@ -317,7 +321,13 @@ class Circuit {
   [[nodiscard]] double intake_of_lines(std::size_t volume, double h, std::span<const double> pressures) const noexcept;
   [[nodiscard]] double moved_alone(std::size_t volume, double dV, const double* y_start) noexcept;
   bool move_lines(const double* x_new) noexcept;
-  [[nodiscard]] double filled_pressure(const LineChamber& line, double oil, double dx, double p) const noexcept;
+  void fill(LineChamber& line, double oil, double dx) const noexcept;
+  [[nodiscard]] double missed_pressure(const LineChamber& line, double c_m, const double* y) const noexcept;
+  [[nodiscard]] double line_volume(const LineChamber& line, double x) const noexcept;
+  [[nodiscard]] double line_content(const LineChamber& line, double p) const noexcept;
+  [[nodiscard]] double line_pressure(const LineChamber& line, double content, double p, double error) const noexcept;
+  [[nodiscard]] double pressure_by_parts(const LineChamber& line, double oil, double dx) const noexcept;
+  [[nodiscard]] double volume_content(std::size_t volume, double p, const double* y) const noexcept;
   [[nodiscard]] std::span<LineChamber> lines_of(int actuator) noexcept {
     return std::span(lines_).subspan(2 * static_cast<std::size_t>(actuator), 2);
   }
@@ -341,6 +351,7 @@ class Circuit {
   std::vector<VolumeContent> volumes_;
   std::vector<std::size_t> with_chambers_;  // volumes that pistons change
   std::vector<LineChamber> lines_;          // two by actuator
+  int beyond_waves_ = -1;
   std::vector<Actuator> actuators_;
   std::vector<ComponentState> states_;
   std::vector<std::string> state_owner_;

@@ -11,6 +11,11 @@ namespace {
 constexpr double kHighestTabulated = 4e9;  // Pa; beyond, kappa keeps its last value
 constexpr double kLowestFraction = 1e-3;   // share of the floor: the table's lower end
 
+// int_0^t of a cubic
+double integral(const std::array<double, 4>& c, double t) noexcept {
+  return (((c[3] / 4 * t + c[2] / 3) * t + c[1] / 2) * t + c[0]) * t;
+}
+
 }  // namespace
 
 OilCompressibility::OilCompressibility(const HydraulicsDef& def)
@@ -25,6 +30,7 @@ OilCompressibility::OilCompressibility(const HydraulicsDef& def)
   first_ = leading_bits(kLowestFraction * def.pressure_floor);
   lowest_ = start_of(first_);
   const std::uint64_t last = leading_bits(kHighestTabulated);
+  double content = 0;
   for (std::uint64_t bits = first_; bits <= last; ++bits) {
     // cubic with the exact values and slopes at both ends
     const double start = start_of(bits), end = start_of(bits + 1), width = end - start;
@@ -32,7 +38,19 @@ OilCompressibility::OilCompressibility(const HydraulicsDef& def)
     const double rise = b.value - a.value, slope_a = a.slope * width, slope_b = b.slope * width;
     segment_.push_back(
         {start, 1 / width, {a.value, slope_a, 3 * rise - 2 * slope_a - slope_b, slope_a + slope_b - 2 * rise}});
+    content_.push_back(content);
+    content += width * integral(segment_.back().coefficient, 1);
   }
+}
+
+double OilCompressibility::content(double p) const noexcept {
+  if (!(p > lowest_)) return 0;
+  const std::uint64_t index = leading_bits(p) - first_;
+  const std::size_t i = index < segment_.size() ? index : segment_.size() - 1;
+  const Segment& s = segment_[i];
+  const double t = (p - s.start) * s.inverse_width;
+  const double within = t > 1 ? integral(s.coefficient, 1) + (t - 1) * at(p).value : integral(s.coefficient, t);
+  return content_[i] + within / s.inverse_width;
 }
 
 // (1), (2)

@@ -39,6 +39,8 @@ class OilCompressibility {
     if (t > 1) return {((c[3] + c[2]) + c[1]) + c[0], 0};
     return {((c[3] * t + c[2]) * t + c[1]) * t + c[0], ((3 * c[3] * t + 2 * c[2]) * t + c[1]) * s.inverse_width};
   }
+  // int kappa dp from the table's start to p, exact for the kappa of at(); below the start 0.
+  [[nodiscard]] double content(double p) const noexcept;
   // (2), (3) evaluated directly, to build the table.
   [[nodiscard]] ValueSlope exact(double p) const noexcept;
 
@@ -68,6 +70,7 @@ class OilCompressibility {
   double lowest_;
   std::uint64_t first_ = 0;  // leading bits of the first segment's start
   std::vector<Segment> segment_;
+  std::vector<double> content_;  // content() at the start of each segment
 };
 
 }  // namespace slew::hydraulics

@@ -22,20 +22,22 @@ void Circuit::visit(Self& self, Bytes& bytes) {
   bytes.numbers(self.ls_);
   for (auto& line : self.lines_) {
     auto& state = line.state;
-    // 0: no line, 1: a line, 2: a line with room without oil
-    const bool counts_room = state.held != 0 || state.room != 0;
-    auto kind = static_cast<std::uint8_t>(!line.is_line ? 0 : counts_room ? 2 : 1);
+    // 0: no line, 1: a line, 3: a line with room without oil or a wave that was held; 2 is of earlier programs
+    const bool is_plain = state.held == 0 && state.room == 0 && !state.is_apart(self.floor_);
+    auto kind = static_cast<std::uint8_t>(!line.is_line ? 0 : is_plain ? 1 : 3);
     bytes.number(kind);
     bytes.number(line.delay);
     for (auto* x : {&state.c_h, &state.c_m, &state.c_m_next, &state.Z, &state.Z_next, &state.x}) bytes.number(*x);
     if constexpr (Bytes::kIsReading) {
-      if (kind > 2) return bytes.refuse();
+      if (kind == 2 || kind > 3) return bytes.refuse();
       line.is_line = kind > 0;
       state.held = state.room = 0;
+      state.p = state.wave_pressure(self.floor_);
     }
-    if (kind == 2) {
+    if (kind == 3) {
       bytes.number(state.held);
       bytes.number(state.room);
+      bytes.number(state.p);
     }
     if constexpr (Bytes::kIsReading) {
       if (!line.is_line) continue;

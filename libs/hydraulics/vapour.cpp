@@ -89,7 +89,12 @@ int Circuit::unbalanced_volume(double share, const double* y_before, const doubl
 
 int Circuit::first_overdrawn(const double* y) const noexcept {
   for (std::size_t i = 0; i < volumes_.size(); ++i) {
-    if (vapour_.is_in(i, y) && vapour_.void_volume(i, y) > kFull * capacity(i, y).content) return static_cast<int>(i);
+    if (is_fixed_[i] != 0) continue;
+    double room = vapour_.void_volume(i, y);
+    for (const LineChamber& line : lines_) {
+      if (line.is_line && line.volume == static_cast<int>(i)) room += line.state.room;
+    }
+    if (room > 0 && room > kFull * capacity(i, y).content) return static_cast<int>(i);
   }
   return -1;
 }

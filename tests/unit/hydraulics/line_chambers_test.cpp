@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
+#include "core/state_bytes.h"
+#include "core/state_hash.h"
 #include "hydraulics/circuit_integrator.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
 
@@ -96,6 +99,55 @@ TEST_F(LiftLines, CompressTheirOilAsAVolumeDoes) {
   }
   EXPECT_GT(p_a[0], 1e6 + circuit.lowest_pressure());
   EXPECT_NEAR(p_a[1], p_a[0], 5e-3 * p_a[0]);
+}
+
+TEST_F(LiftLines, WithRoomWithoutOilGoOnFromTheirSavedState) {
+  integrator.set_line(kLift, true, kStep);
+  move(2, 60);
+  const LineState& line = circuit.lines()[2 * kLift].state;
+  ASSERT_GT(line.room, 0) << line.p << " " << line.c_h << " " << line.c_m << " " << line.held;
+  std::vector<std::byte> saved;
+  StateWriter writer(saved, {1, 1});
+  integrator.save(writer);
+  writer.finish();
+  Circuit other_circuit(def);
+  CircuitIntegrator other(other_circuit, def);
+  StateReader reader(saved, {1, 1});
+  other.load(reader);
+  ASSERT_TRUE(reader.finish("lines").is_ok());
+  const auto go_on = [this](CircuitIntegrator& one) {
+    std::vector<double> x, v(3, 0);
+    for (const ActuatorLinearisation& actuator : integrator.actuators()) x.push_back(actuator.x);
+    for (int n = 0; n < 30; ++n) {
+      x[kLift] = x_lift - 1e-3 * n;
+      one.align(x, v);
+      static_cast<void>(one.step(kStep, HeldSpeed(3)));
+    }
+    StateHash hash;
+    one.add_to(hash);
+    return hash.digest();
+  };
+  EXPECT_EQ(go_on(other), go_on(integrator));
+}
+
+// Between two pressures int kappa dp = ln(V_0/V_1), from (1) of oil.h.
+TEST(OilContent, IsTheLogarithmOfTheOilsVolume) {
+  for (const double air : {0.0, 0.005, 0.05}) {
+    HydraulicsDef def;
+    def.entrained_air = air;
+    const OilCompressibility oil(def);
+    const auto volume = [&def, air](double p) {
+      return std::exp(-(p - def.air_reference_pressure) / def.oil_bulk_modulus) +
+             air * std::pow(def.air_reference_pressure / p, 1 / def.polytropic_exponent);
+    };
+    for (const double from : {def.pressure_floor, 2e4, 1e5, 1e6}) {
+      for (const double to : {1e5, 1.7e5, 1e6, 4e7}) {
+        const double right = std::log(volume(from) / volume(to));
+        EXPECT_NEAR(oil.content(to) - oil.content(from), right, 1e-6 * std::fabs(right) + 1e-15)
+            << air << " " << from << " " << to;
+      }
+    }
+  }
 }
 
 TEST_F(LiftLines, JacobianIsTheDerivativeOfTheRates) {
