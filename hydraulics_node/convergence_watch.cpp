@@ -48,8 +48,8 @@ bool ConvergenceWatch::ends_run(const StepReport& report, const hydraulics::Circ
   if (integrator.beyond_waves() >= 0) {
     write(
         "{}: its chamber of level tlm closed a space of vapour or soft oil within one step, and its waves cannot "
-        "follow "
-        "that: the pressure would be that of the step, not of the machine. Use coupling: two for its cylinder, or a "
+        "follow that: the pressure would be that of the step, not of the machine. Use coupling: two for its cylinder, "
+        "or a "
         "shorter session.step",
         beyond_waves);
     return true;

@@ -108,8 +108,8 @@ class CircuitIntegrator final : private math::StiffSystem {
   void set_step_size(double h) noexcept { solver_->set_step_size(h); }
   [[nodiscard]] std::span<const StateIndex> quasi_static() const noexcept { return quasi_static_; }  // volumes
   [[nodiscard]] const math::StiffReport& last_report() const noexcept { return report_; }
-  // The volume with more room without oil than it has room after the last step, -1: none.
   [[nodiscard]] int beyond_waves() const noexcept { return circuit_.beyond_waves(); }  // of the last step
+  // The volume with more room without oil than it has room after the last step, -1: none.
   [[nodiscard]] int overdrawn() const noexcept { return circuit_.first_overdrawn(y_.data()); }
 
   // Adds the raw bits of all state that influences later results: y, the solver's memory, failure latch, live

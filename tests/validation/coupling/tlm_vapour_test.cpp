@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chambers of level tlm that are pulled into vapour take no more oil than they have room, or the run ends by name; and
-// what is read from a chamber does not know its level where the level has no effect.
+// what is read from a chamber does not depend on its level where the level has no effect.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -148,7 +148,7 @@ TEST(TlmVapour, ABlowThatAStepCannotFollowEndsTheRunByName) {
 }
 
 // In a monolith no level has an effect: the force is that of the pressures less the friction, no stop touched.
-TEST(TlmVapour, ReadingsOfAMonolithDoNotKnowTheLevel) {
+TEST(TlmVapour, ReadingsOfAMonolithDoNotDependOnTheLevel) {
   for (const char* level : {"hold", "linear", "two", "tlm"}) {
     const scene::Scene scene = scene::load_text(
         kBreathing, "breathing", {std::string("session.coupling=") + level, "session.solution=monolithic"});
