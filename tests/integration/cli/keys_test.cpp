@@ -311,7 +311,7 @@ TEST_F(Keys, SessionWithKeysGivesTheBitsOfOneWithout) {
   EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
 }
 
-// The observer of a run that is not recorded reads the samples; stores of before did not let it.
+// The observer of a run that is not recorded reads the samples; key stores of an earlier version did not let it.
 TEST_F(Keys, FlagsAreReportedWithoutARecordingOrAsMissing) {
   std::ofstream(folder() / "closed.yaml")
       << "volumes:\n  Vol_P: {rigid_volume: 1 l}\n  Vol_T: {initial_pressure: 1 bar, fixed: true}\n"
@@ -327,7 +327,14 @@ TEST_F(Keys, FlagsAreReportedWithoutARecordingOrAsMissing) {
     EXPECT_EQ(result.code, 0) << result.err;
     return nlohmann::json::parse(result.out, nullptr, false)["notes"].dump();
   };
-  EXPECT_NE(notes().find("Vol_P: a pressure was beyond the range of the oil's law"), std::string::npos) << notes();
+  // an observer whose handshake ends after the first ticks says what it has missed, here perhaps all that was flagged
+  bool has_flags = false;
+  for (int i = 0; i < 20 && !has_flags; ++i) {
+    const std::string reported = notes();
+    has_flags = reported.find("Vol_P: a pressure was beyond the range of the oil's law") != std::string::npos;
+    EXPECT_TRUE(has_flags || reported.find("did not arrive here") != std::string::npos) << reported;
+  }
+  EXPECT_TRUE(has_flags);
   const fs::path observer = folder() / "plant/observer";
   std::string narrower = text_of(observer / "permissions.xml");
   for (const std::string topic : {"slewring/mechanism", "slewring/actuators"}) {
