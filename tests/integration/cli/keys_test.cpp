@@ -327,7 +327,8 @@ TEST_F(Keys, FlagsAreReportedWithoutARecordingOrAsMissing) {
     EXPECT_EQ(result.code, 0) << result.err;
     return nlohmann::json::parse(result.out, nullptr, false)["notes"].dump();
   };
-  // an observer whose handshake ends after the first ticks says what it has missed, here perhaps all that was flagged
+  // an observer whose handshake ends after the first ticks reports what it has missed, here perhaps all that was
+  // flagged
   bool has_flags = false;
   for (int i = 0; i < 20 && !has_flags; ++i) {
     const std::string reported = notes();
