@@ -57,7 +57,8 @@ Answer ClientSession::join(const JoinOptions& options, SimDuration timeout, std:
     endpoint.writes = {Topic::controller_input};
     endpoint.reads = {Topic::session, Topic::node_status, Topic::variable_directory, Topic::variables,
                       Topic::controller_lease};
-    endpoint.is_controller = true;
+    endpoint.receives_last_blocks = true;
+    endpoint.receives_last_leases = false;
     status = transport::open_transport(network, endpoint, transport);
   }
   if (!status.is_ok()) return {status.code == ExitCode::bad_input ? Code::bad_argument : Code::failed, status.text};

@@ -45,8 +45,10 @@ std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role r
 }  // namespace
 
 std::unique_ptr<transport::Transport> open_transport(Role role, const SessionOptions& options) {
-  auto transport =
-      open(options, role, {options.session, std::string(traits(role).name), traits(role).writes, traits(role).reads});
+  transport::Endpoint endpoint{options.session, std::string(traits(role).name), traits(role).writes,
+                               traits(role).reads};
+  endpoint.receives_last_blocks = role == Role::observer;
+  auto transport = open(options, role, endpoint);
   if (traits(role).needed == transport::Needed::never) return transport;
   return std::make_unique<MeteredTransport>(std::move(transport));
 }
@@ -71,7 +73,9 @@ std::unique_ptr<transport::Transport> open_observer_with_samples(transport::InPr
 }
 
 std::unique_ptr<transport::Transport> open_viewer(const SessionOptions& options) {
-  return open(options, Role::observer, {options.session, "viewer", {}, traits(Role::observer).reads});
+  transport::Endpoint endpoint{options.session, "viewer", {}, traits(Role::observer).reads};
+  endpoint.receives_last_blocks = true;
+  return open(options, Role::observer, endpoint);
 }
 
 transport::TopicSet listener_topics(const SessionOptions& options) {

@@ -9,7 +9,8 @@ namespace slew::transport {
 
 inline constexpr SimDuration kMaxBlocking = milliseconds(20);  // of publish()
 inline constexpr SimDuration kFarewell = milliseconds(250);    // for the last messages to arrive, at the end
-// blocks of variables that a writer keeps for a controller that finds it after the first ticks of its loop's delay
+// blocks of variables that a writer keeps, first of all for a controller that finds it after the first ticks of its
+// loop's delay
 inline constexpr std::int32_t kLastBlocks = 128;
 inline constexpr std::size_t kInFlight = 64;  // messages received and not taken, or written and not sent
 // variables: io, mechanics, hydraulics, flex, sensor; inputs: as many controllers
@@ -29,8 +30,9 @@ inline constexpr std::int32_t kWriters = 5;
 
 // Whether an endpoint receives kept messages of earlier writers.
 [[nodiscard]] inline bool receives_kept(const Endpoint& endpoint, const TopicTraits& topic) {
-  return kept_by_writer(topic) > 0 &&
-         topic.topic != (endpoint.is_controller ? wire::Topic::controller_lease : wire::Topic::variables);
+  if (topic.topic == wire::Topic::variables) return endpoint.receives_last_blocks;
+  if (topic.topic == wire::Topic::controller_lease) return endpoint.receives_last_leases;
+  return kept_by_writer(topic) > 0;
 }
 
 }  // namespace slew::transport

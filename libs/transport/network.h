@@ -56,9 +56,11 @@ struct Endpoint {
   std::string role;     // name of this endpoint in messages of others, "mechanics"
   TopicSet writes;      // publish() of another topic is refused
   TopicSet reads;
-  // A controller receives the last blocks of variables from before it was discovered, since it answers each of them. It
-  // receives no earlier answers to controllers, since those belong to another process.
-  bool is_controller = false;
+  // Receives the last blocks of variables from before it was discovered: a controller answers each of them, and to an
+  // observer no others come in a pause.
+  bool receives_last_blocks = false;
+  // Receives earlier answers to controllers. For a controller they are those to another process.
+  bool receives_last_leases = true;
 };
 
 // Messages sent on this interface go beyond this machine. False too when there is no such interface.

@@ -187,10 +187,10 @@ TEST_F(Distributed, VerbsLookAtAndChangeARunningSession) {
     EXPECT_EQ(answered.code, 0) << command[0] << answered.err;
     EXPECT_TRUE(answered.out.starts_with("accepted(")) << answered.out;
     if (command[0] != "pause") continue;
-    // every line has the same members, also where no value has come
+    // the values of the last steps before the pause
     const CommandResult paused = slewring({"watch", "Bag.position.y", "--count", "1", "--json"});
     ASSERT_EQ(paused.code, 0) << paused.err;
-    EXPECT_TRUE(nlohmann::json::parse(paused.out).at("values").contains("Bag.position.y")) << paused.out;
+    EXPECT_TRUE(nlohmann::json::parse(paused.out).at("values").at("Bag.position.y").is_number()) << paused.out;
   }
   const CommandResult result = session->wait();
   EXPECT_EQ(result.code, 0) << result.err;
