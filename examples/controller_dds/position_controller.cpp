@@ -26,6 +26,8 @@
 
 namespace {
 
+constexpr std::size_t kMostWaiting = 128;  // values that a writer keeps
+
 struct Options {
   std::string session;
   std::string variable = "Cyl_Lift.stroke";
@@ -195,15 +197,20 @@ class Loop {
     });
   }
 
-  // keeps the new values of the variable with their steps, until they are answered
+  // Keeps the new values of the variable with their steps, until they are answered. They may arrive before the
+  // directory that names them and before the lease that was granted first: a lockstep channel needs them from step 0
+  // on.
   void read_variable() {
+    if (!place_.is_known) return;
     take_all<slewring_VariableBlock>(e_.variables, [&](const slewring_VariableBlock& block) {
-      if (!place_.is_known || block.header.role != place_.role) return;
+      if (block.header.role != place_.role) return;
       if (place_.index < block.first || place_.index >= block.first + block.values._length) return;
       waiting_.emplace_back(block.header.step, block.values._buffer[place_.index - block.first]);
     });
-    // without the channel only the newest value is used
-    if (!has_lease_ && waiting_.size() > 1) waiting_.erase(waiting_.begin(), waiting_.end() - 1);
+    // in mid-run only the newest is used
+    const std::size_t most = has_lease_ ? (is_begun_late_ ? 1 : waiting_.size()) : kMostWaiting;
+    while (waiting_.size() > most) waiting_.erase(waiting_.begin());
+    if (has_lease_) is_begun_late_ = false;
   }
 
   // answers the oldest waiting value; false when there is none
@@ -222,7 +229,9 @@ class Loop {
       const bool is_notice = lease.answers == 0;
       if (is_notice ? !has_lease_ : lease.answers < requested_from_ || lease.answers > sequence_) return;
       const bool is_taken_away = has_lease_ && !lease.is_granted && *lease.holder == '\0';
+      const bool had_lease = has_lease_;
       has_lease_ = lease.is_granted && options_.name == lease.holder;
+      if (has_lease_ && !had_lease) is_begun_late_ = lease.header.step > 0;
       if (is_taken_away) {
         std::fprintf(stderr, "position_controller: %s\n", lease.reason);
         requested_from_ = sequence_ + 1;
@@ -263,6 +272,7 @@ class Loop {
   Endpoints e_;
   Place place_;
   bool has_lease_ = false;
+  bool is_begun_late_ = false;  // the lease was granted in mid-run, and nothing has been answered since
   std::string refusal_;
   std::vector<std::pair<std::int64_t, double>> waiting_;  // step and value
   double value_ = 0;
