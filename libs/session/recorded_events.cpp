@@ -159,10 +159,12 @@ std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
     } else if (transport::decode(message.payload, reply)) {
       if (reply.request != 0 && !answered.insert(reply.request).second) return Visit::go_on;
       if (is_answered_read(reply, requests)) return Visit::go_on;
+      const std::string asked = request_text(reply, requests);
       const std::string answer = reply.is_accepted ? " accepted" : " refused";
-      const std::string text =
-          reply.request == 0 ? reply.reason : with_reason(request_text(reply, requests) + answer, reply.reason);
-      events.push_back({reply.header.step, reply.header.epoch, text});
+      const std::string text = reply.request == 0 ? reply.reason : with_reason(asked + answer, reply.reason);
+      // these hold in the epoch that they begin
+      const bool begins_epoch = reply.is_accepted && (asked == "reset" || asked == "load");
+      events.push_back({reply.header.step, reply.header.epoch + (begins_epoch ? 1 : 0), text});
     }
     return Visit::go_on;
   }));

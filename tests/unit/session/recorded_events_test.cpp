@@ -127,6 +127,25 @@ TEST_F(Events, ListAResentReplyOnce) {
   EXPECT_EQ(event_texts().size(), 1u);
 }
 
+TEST_F(Events, OfAResetOrLoadAreInTheEpochThatItBegins) {
+  wire::ControlReply reply;
+  reply.header.epoch = 2;
+  std::vector<std::string> expected;
+  for (const std::string asked : {"pause", "reset", "load"}) {
+    for (const bool is_accepted : {true, false}) {
+      ++reply.request;
+      reply.asked = asked;
+      reply.is_accepted = is_accepted;
+      write_message(reply);
+      const bool begins_epoch = is_accepted && asked != "pause";
+      expected.push_back(asked + (is_accepted ? " accepted" : " refused") + (begins_epoch ? " 3" : " 2"));
+    }
+  }
+  std::vector<std::string> found;
+  for (const RecordedEvent& event : events()) found.push_back(event.text + " " + std::to_string(event.epoch));
+  EXPECT_EQ(found, expected);
+}
+
 TEST_F(Events, AreNoReadsUnlessRefused) {
   wire::ControlRequest read = param_set();
   read.action = wire::ControlAction::get_parameter;
