@@ -366,6 +366,7 @@ TEST_F(Stress, NightlyTheWholeMatrixIsRunWithTheSchedulingOfItsCells) {
   ASSERT_EQ(cells.size(), 12u);
   ASSERT_EQ(seen.size(), 12u);
   std::size_t i = 0;
+  int yardsticks = 0;  // of the cells that are FIFO
   for (const char* scheduling : {"normal", "FIFO"}) {
     for (const char* load : {"none", "cpu", "mixed"}) {
       for (const double added : {0.0, 200e-6}) {
@@ -380,10 +381,15 @@ TEST_F(Stress, NightlyTheWholeMatrixIsRunWithTheSchedulingOfItsCells) {
         const bool is_fifo = std::string(scheduling) == "FIFO";
         const std::multiset<int> priorities = is_fifo ? std::multiset<int>{30, 20, 20, 10} : std::multiset<int>{};
         EXPECT_EQ(from_outside.nodes, priorities);
-        EXPECT_EQ(from_outside.loops, priorities) << "the bare loops have the session's";
+        // on a busy machine a session of 2 s may be over before its pause for the bare loops
+        const bool has_yardstick = cell.contains("yardstick");
+        yardsticks += is_fifo && has_yardstick ? 1 : 0;
+        EXPECT_EQ(from_outside.loops, has_yardstick ? priorities : std::multiset<int>{})
+            << "the bare loops have the session's";
       }
     }
   }
+  EXPECT_GE(yardsticks, 2) << result.out;
 }
 
 }  // namespace stress_test
