@@ -15,7 +15,7 @@
 
 #include "benchmarks/peers/models.h"
 #include "multibody/formulations/dynamics.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "tests/support/chain_def.h"
 #include "tests/validation/multibody/crane_def.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/index.h"
 #include "multibody/flexible/deflection.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::mechanics_node {
 namespace {

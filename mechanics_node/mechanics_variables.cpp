@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "coupling/static_forces.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::mechanics_node {
 namespace {

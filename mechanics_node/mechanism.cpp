@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "scene/ports.h"
 
 namespace slew::mechanics_node {

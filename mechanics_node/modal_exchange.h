@@ -11,7 +11,7 @@
 #include "coupling/samples.h"
 #include "multibody/flexible/elastic_law.h"
 #include "multibody/formulations/dynamics.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "scene/scene.h"
 
 namespace slew::mechanics_node {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Free acceleration and mobility of the mechanism's rows, at the evaluated instant or over an interval.
 //
-// Over an interval the springs and dampers behind the rows take part (multibody/constraints/step_rows.h). Rows over an
+// Over an interval the springs and dampers behind the rows take part (multibody/formulations/step_rows.h). Rows over an
 // interval are used where they differ from those of the instant by more than kSignificantChange, which is decided once
 // at the start of the scene, and while a contact is active: a contact force lasts for a fraction of the interval and is
 // no free acceleration of all of it. Where their matrix is singular, the rows of the instant are used; `kind` shows it.
@@ -13,7 +13,7 @@
 
 #include "coupling/samples.h"
 #include "mechanics_node/mechanism.h"
-#include "multibody/constraints/step_rows.h"
+#include "multibody/formulations/step_rows.h"
 
 namespace slew::mechanics_node {
 

@@ -32,7 +32,7 @@
 #include "coupling/port_levels.h"
 #include "hydraulics/circuit.h"
 #include "multibody/formulations/dynamics.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "scene/scene.h"
 
 namespace slew::monolith {

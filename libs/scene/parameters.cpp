@@ -9,7 +9,7 @@
 
 #include "core/suggestion.h"
 #include "multibody/build/validate.h"
-#include "multibody/forces/element_speeds.h"
+#include "multibody/formulations/element_speeds.h"
 #include "multibody/joints/joint_axes.h"
 #include "multibody/model/body_inertia.h"
 #include "multibody/model/field_tables.h"

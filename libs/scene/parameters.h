@@ -63,7 +63,7 @@ class ParameterDirectory {
   // "Bag.mass=1500kg", "Cyl_Lift.coupling=linear": refused if unknown (with a suggestion), not live, of a wrong
   // dimension, out of range, none of the choices, or if the loader would refuse the machine with this value. Also
   // refused: a mass, spring or damper that is too fast for the mechanics' explicit integrator
-  // (multibody/forces/element_speeds.h; at the start, with the other values of the scene).
+  // (multibody/formulations/element_speeds.h; at the start, with the other values of the scene).
   [[nodiscard]] Assignment parse_assignment(std::string_view text, std::optional<SimDuration> over = {});
   // The same for a value in SI, as received over the wire. over: the requested time; default: the parameter's own. A
   // choice changes at once, or is refused.

@@ -9,7 +9,7 @@
 
 #include "core/suggestion.h"
 #include "multibody/build/validate.h"
-#include "multibody/forces/element_speeds.h"
+#include "multibody/formulations/element_speeds.h"
 #include "multibody/model/model.h"
 #include "scene/assets.h"
 #include "scene/canonical.h"

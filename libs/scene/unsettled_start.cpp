@@ -13,7 +13,7 @@
 #include "math/semidefinite.h"
 #include "multibody/build/validate.h"
 #include "multibody/formulations/dynamics.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "scene/ports.h"
 
 namespace slew::scene {

@@ -7,7 +7,7 @@
 // difference is at least the error of any method of order one or more where the motion is smooth; near singular
 // positions shorter steps may be worse, which the energies show. A row's difference below the estimate means only that.
 //
-// Energy (kinetic and potential, multibody/model/observe.h), relative to the largest kinetic energy of the reference:
+// Energy (kinetic and potential, multibody/results/observe.h), relative to the largest kinetic energy of the reference:
 //   kept      the reference keeps it: a row's drift is max |E(t) - E(0)|
 //   compared  the scene is driven, loses energy or stores it elsewhere: a row's drift is max |E(t) - E_ref(t)|
 // Coupling errors of H are equal in all rows; benchmarks and docs/coupling-results.md judge them.

@@ -9,7 +9,7 @@
 
 #include "core/failure.h"
 #include "mechanics_node/mechanics_subsystem.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::analysis {
 namespace {

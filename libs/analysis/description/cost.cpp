@@ -15,7 +15,7 @@
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/report_table.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "scene/ports.h"
 #include "transport/cdr/codec.h"
 #include "transport/roles.h"

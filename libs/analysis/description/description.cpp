@@ -10,7 +10,7 @@
 #include "core/report_table.h"
 #include "hydraulics/circuit.h"
 #include "multibody/model/model.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "scene/ports.h"
 
 namespace slew::analysis {

@@ -5,7 +5,7 @@
 
 #include "analysis/description/timed_call.h"
 #include "multibody/formulations/formulation.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "scene/ports.h"
 
 namespace slew::analysis {

@@ -2,8 +2,8 @@
 #include "analysis/drawing/machine_at_start.h"
 
 #include "multibody/model/model.h"
-#include "multibody/model/observe.h"
 #include "multibody/model/state.h"
+#include "multibody/results/observe.h"
 #include "scene/ports.h"
 
 namespace slew::analysis {

@@ -21,7 +21,7 @@
 #include "core/suggestion.h"
 #include "mechanics_node/payload.h"
 #include "multibody/model/model.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "scene/ports.h"
 
 namespace slew::analysis {

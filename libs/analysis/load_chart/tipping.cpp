@@ -11,7 +11,7 @@
 #include "core/failure.h"
 #include "core/index.h"
 #include "multibody/model/model.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::analysis {
 

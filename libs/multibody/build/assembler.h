@@ -15,7 +15,7 @@
 #include "multibody/constraints/constraint.h"
 #include "multibody/constraints/loops.h"
 #include "multibody/formulations/passes.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 

@@ -10,7 +10,7 @@
 #include "multibody/build/assembler.h"
 #include "multibody/constraints/constraint.h"
 #include "multibody/formulations/body_penalty.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 namespace {

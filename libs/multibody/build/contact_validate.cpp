@@ -14,8 +14,8 @@
 #include "multibody/contacts/contact_rate.h"
 #include "multibody/formulations/integrators.h"
 #include "multibody/model/model.h"
-#include "multibody/model/observe.h"
 #include "multibody/model/topology.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 using contact::find_named;

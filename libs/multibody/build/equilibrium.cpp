@@ -14,7 +14,7 @@
 #include "multibody/contacts/contact_passes.h"
 #include "multibody/formulations/dynamics.h"
 #include "multibody/formulations/passes.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 

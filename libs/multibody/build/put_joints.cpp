@@ -18,8 +18,8 @@
 #include "multibody/build/validate.h"
 #include "multibody/flexible/expand_nodes.h"
 #include "multibody/joints/joint_axes.h"
-#include "multibody/model/observe.h"
 #include "multibody/model/topology.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 namespace {

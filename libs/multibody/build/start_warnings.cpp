@@ -11,8 +11,8 @@
 #include "multibody/build/validate.h"
 #include "multibody/flexible/deflection.h"
 #include "multibody/model/body_inertia.h"
-#include "multibody/model/observe.h"
 #include "multibody/model/topology.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 

@@ -10,11 +10,12 @@
 
 #include "multibody/build/assembly.h"
 #include "multibody/build/start_rules.h"
+#include "multibody/build/validate_flexible.h"
+#include "multibody/build/validate_gears.h"
+#include "multibody/build/validate_motions.h"
 #include "multibody/constraints/gear_fields.h"
-#include "multibody/constraints/validate_gears.h"
 #include "multibody/contacts/contact_elements.h"
 #include "multibody/flexible/expand_nodes.h"
-#include "multibody/flexible/validate_flexible.h"
 #include "multibody/forces/validate_elements.h"
 #include "multibody/formulations/body_penalty.h"
 #include "multibody/formulations/dynamics.h"
@@ -23,10 +24,9 @@
 #include "multibody/joints/joint_axes.h"
 #include "multibody/model/body_inertia.h"
 #include "multibody/model/field_tables.h"
-#include "multibody/model/observe.h"
 #include "multibody/model/topology.h"
 #include "multibody/motions/motion_fields.h"
-#include "multibody/motions/validate_motions.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "multibody/flexible/validate_flexible.h"
+#include "multibody/build/validate_flexible.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,8 @@
 #include "multibody/flexible/elastic_law.h"
 #include "multibody/flexible/expand_nodes.h"
 #include "multibody/flexible/segment_speeds.h"
-#include "multibody/forces/element_speeds.h"
 #include "multibody/formulations/dynamics.h"
+#include "multibody/formulations/element_speeds.h"
 #include "multibody/formulations/integrators.h"
 #include "multibody/formulations/passes.h"
 #include "multibody/model/field_tables.h"

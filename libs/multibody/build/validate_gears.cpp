@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "multibody/constraints/validate_gears.h"
+#include "multibody/build/validate_gears.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "multibody/motions/validate_motions.h"
+#include "multibody/build/validate_motions.h"
 
 #include <fmt/format.h>
 

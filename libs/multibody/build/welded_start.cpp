@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "multibody/flexible/welded_start.h"
+#include "multibody/build/welded_start.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/static_vector.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 

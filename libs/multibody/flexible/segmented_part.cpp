@@ -6,8 +6,8 @@
 
 #include "core/index.h"
 #include "multibody/flexible/expand_nodes.h"
-#include "multibody/model/observe.h"
 #include "multibody/model/topology.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 

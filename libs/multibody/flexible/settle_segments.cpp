@@ -10,7 +10,7 @@
 #include "multibody/contacts/contact_passes.h"
 #include "multibody/flexible/segmented_part.h"
 #include "multibody/formulations/passes.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 

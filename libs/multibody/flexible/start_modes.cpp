@@ -11,8 +11,8 @@
 #include "math/small_cholesky.h"
 #include "multibody/forces/point_load.h"
 #include "multibody/formulations/passes.h"
-#include "multibody/model/observe.h"
 #include "multibody/model/state.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/index.h"
 #include "multibody/forces/element_law.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 namespace {

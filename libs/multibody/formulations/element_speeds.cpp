@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "multibody/forces/element_speeds.h"
+#include "multibody/formulations/element_speeds.h"
 
 #include <fmt/format.h>
 

@@ -16,7 +16,7 @@
 // Laws have their steepest slopes (steepest_laws.h): tables, end dampers, taut ropes, tyres on the ground with their
 // slip. A law with a bound, such as a table for friction, does not grow for ever, but a sub-step beyond the limit
 // leaves it at the bound, at rest as well. Left out: contacts, which find their own parts of a sub-step; gravity; rows,
-// whose owner solves them implicitly; the modes and segments alone (flexible/validate_flexible.h). An instant, not a
+// whose owner solves them implicitly; the modes and segments alone (build/validate_flexible.h). An instant, not a
 // bound for all poses.
 #pragma once
 

@@ -16,7 +16,7 @@
 #include "multibody/formulations/passes.h"
 #include "multibody/formulations/step_parts.h"
 #include "multibody/formulations/stops.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 

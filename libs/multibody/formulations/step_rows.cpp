@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "multibody/constraints/step_rows.h"
+#include "multibody/formulations/step_rows.h"
 
 #include <algorithm>
 #include <array>

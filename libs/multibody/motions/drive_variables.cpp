@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "core/index.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 

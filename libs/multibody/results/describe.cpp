@@ -8,7 +8,7 @@
 #include "core/index.h"
 #include "multibody/constraints/constraint.h"
 #include "multibody/model/field_tables.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 namespace {

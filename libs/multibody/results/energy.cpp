@@ -6,7 +6,7 @@
 #include "multibody/forces/coupled_mass.h"
 #include "multibody/forces/element_law.h"
 #include "multibody/formulations/passes.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 

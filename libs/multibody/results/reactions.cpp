@@ -11,7 +11,7 @@
 #include "multibody/forces/element_law.h"
 #include "multibody/formulations/dynamics.h"
 #include "multibody/formulations/passes.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 

@@ -10,8 +10,8 @@
 #include "multibody/forces/element_law.h"
 #include "multibody/formulations/passes.h"
 #include "multibody/joints/joint_axes.h"
-#include "multibody/model/observe.h"
 #include "multibody/motions/drive_variables.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 

@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "tests/peers/multibody/body_motion.h"
 
 namespace slew::multibody::testing {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "multibody/formulations/body_penalty.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody::testing {
 

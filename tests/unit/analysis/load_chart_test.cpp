@@ -14,7 +14,7 @@
 #include "build_paths.h"
 #include "core/failure.h"
 #include "multibody/model/model.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "scene/ports.h"
 
 namespace slew::analysis {

@@ -9,7 +9,7 @@
 #include "build_paths.h"
 #include "core/failure.h"
 #include "multibody/model/model.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::analysis {
 namespace simplify_test {

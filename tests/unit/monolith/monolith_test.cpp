@@ -12,7 +12,7 @@
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "monolith/mechanics_reference.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "scene/ports.h"
 
 namespace slew::monolith {

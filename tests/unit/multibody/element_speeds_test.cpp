@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Limits of the explicit rules on springs and dampers, against their stability regions (Hairer and Wanner, IV.2).
-#include "multibody/forces/element_speeds.h"
+#include "multibody/formulations/element_speeds.h"
 
 #include <gtest/gtest.h>
 

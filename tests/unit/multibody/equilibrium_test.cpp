@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "multibody/model/model.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 namespace equilibrium_test {

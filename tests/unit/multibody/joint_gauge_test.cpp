@@ -9,7 +9,7 @@
 
 #include "multibody/build/validate.h"
 #include "multibody/formulations/formulation.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody {
 namespace joint_gauge_test {

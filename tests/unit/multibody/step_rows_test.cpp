@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rows over a step against dense algebra in joint coordinates: M^-1 K and M^-1 D are there the slopes of the
 // recursion's accelerations, found by differences, where the code under test assembles K and D in body coordinates.
-#include "multibody/constraints/step_rows.h"
+#include "multibody/formulations/step_rows.h"
 
 #include <random>
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "multibody/model/model.h"
-#include "multibody/model/observe.h"
 #include "multibody/model/topology.h"
+#include "multibody/results/observe.h"
 #include "scene/scene.h"
 #include "scene_text.h"
 

@@ -3,7 +3,7 @@
 // cannot do at all. Figures: docs/extremes.md.
 #include "multibody/build/validate.h"
 #include "multibody/flexible/deflection.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "tests/validation/flexible/strip.h"
 
 namespace slew::multibody {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compression of a cantilever close to Euler's load: geometric stiffening of the floating frame, segments, and the
 // linear body without stiffening. Reference: slender_beam.h. Figures: docs/extremes.md.
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "tests/support/nightly.h"
 #include "tests/validation/flexible/strip.h"
 

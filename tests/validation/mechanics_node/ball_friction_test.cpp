@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "monolith/mechanics_reference.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "support/mechanics_alone.h"
 
 namespace slew::testing {

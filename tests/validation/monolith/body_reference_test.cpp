@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "tests/properties/multibody/random_tree.h"
 #include "tests/validation/multibody/governor_def.h"
 #include "tests/validation/multibody/loop_defs.h"

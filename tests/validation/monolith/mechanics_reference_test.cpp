@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 #include "tests/validation/multibody/governor_def.h"
 #include "tests/validation/multibody/loop_defs.h"
 

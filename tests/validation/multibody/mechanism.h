@@ -11,7 +11,7 @@
 #include "multibody/build/validate.h"
 #include "multibody/formulations/dynamics.h"
 #include "multibody/formulations/formulation.h"
-#include "multibody/model/observe.h"
+#include "multibody/results/observe.h"
 
 namespace slew::multibody::testing {
 
