@@ -22,6 +22,8 @@ command -v dpkg-shlibdeps > /dev/null || { echo "SKIPPED: there is no dpkg-shlib
 # ---- contents
 cd "$build"
 cpack -G DEB -B "$scratch/packages" > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+# `uninstall` would remove the files of an installed package
+compgen -G 'install_manifest_*.txt' && fail "cpack leaves the list of its staged files"
 version=$("$build/bin/slewring" --version --json | sed -n 's/.*"version": "\(.*\)".*/\1/p')
 declare -A names=([slewring]=slewring_${version}_$(dpkg --print-architecture) \
                   [libslewring-client-dev]=libslewring-client-dev_${version}_$(dpkg --print-architecture) \
