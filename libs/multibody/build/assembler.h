@@ -25,6 +25,7 @@ inline constexpr int kMostAssemblyIterations = 100;
 inline constexpr int kMostAssemblyHalvings = 20;
 inline constexpr double kNearTurn = 0.05;  // rad, distance of the nearby positions
 inline constexpr double kSlide = 0.02;     // share of the mechanism's size
+inline constexpr double kHeavy = 1e4;      // factor of the modes' masses where joints shall move in their place
 // violation of a loop by given speeds above which it is reported
 inline constexpr double kAssembledSpeed = 1e-6;
 
@@ -46,24 +47,17 @@ class Assembler {
   [[nodiscard]] State& state() { return state_; }
 
   // Newton's method for the independent rows, with damping
-  void close() {
-    for (int i = 0; i < kMostAssemblyIterations; ++i) {
-      renew(state_);
-      const double before = independent_violation();
-      if (before <= kClosed * extent_of(ws_).length || !std::isfinite(before)) return;
-      find_step([](const RowValue& row) { return row.g; });
-      const State from = state_;
-      for (int halving = 0; halving < kMostAssemblyHalvings; ++halving) {
-        state_.q = from.q;
-        solve_forward(model_, ws_, ws_.residual, ws_.loops.step);
-        displace(model_, ws_, ws_.loops.step, state_.q);
-        update_motion(model_, state_.q, state_.u, ws_);
-        evaluate_cuts(model_, state_.q, state_.u, ws_);
-        if (independent_violation() < before) break;
-        for (double& r : ws_.residual) r *= 0.5;
-        update_motion(model_, from.q, from.u, ws_);
-      }
-    }
+  void close() { close_with(1); }
+
+  // The same, by joints wherever they can: a body that bends as far as its masses alone would have it may be beyond
+  // what its modes describe.
+  void close_by_joints() { close_with(kHeavy); }
+
+  // False where a body bends so far that its modes have masses of no body.
+  [[nodiscard]] bool has_masses() {
+    renew(state_);
+    const std::vector<double>& found = ws_.loops.residual;
+    return std::all_of(found.begin(), found.end(), [](double value) { return std::isfinite(value); });
   }
 
   [[nodiscard]] std::vector<bool> dependent_rows() {
@@ -103,8 +97,8 @@ class Assembler {
     return std::min(kLargest, kRounding / ws_.loops.factor.smallest_pivot());
   }
 
-  // a nearby position, selected by seed
-  void move_away(std::uint64_t seed) {
+  // a nearby position, selected by seed; distance: of kNearTurn
+  void move_away(std::uint64_t seed, double distance = 1) {
     renew(state_);
     double size = 0;
     for (const LinkMotion& m : ws_.motion) size = std::max(size, norm(m.r));
@@ -114,7 +108,7 @@ class Assembler {
       return static_cast<double>(random >> 11) * 0x1p-52 - 1;
     };
     std::vector<double> step(state_.u.size());
-    for (double& x : step) x = kNearTurn * uniform();
+    for (double& x : step) x = distance * kNearTurn * uniform();
     for (std::size_t i = 1; i < model_.links.size(); ++i) {
       const Link& link = model_.links[i];
       const double slide = kSlide / kNearTurn * (size > 0 ? size : 1);
@@ -225,15 +219,40 @@ class Assembler {
   }
 
  private:
+  // modal_inertia: factor of the modes' own masses
+  void close_with(double modal_inertia) {
+    for (int i = 0; i < kMostAssemblyIterations; ++i) {
+      renew(state_, modal_inertia);
+      const double before = independent_violation();
+      if (before <= kClosed * extent_of(ws_).length || !std::isfinite(before)) return;
+      find_step([](const RowValue& row) { return row.g; });
+      const State from = state_;
+      for (int halving = 0; halving < kMostAssemblyHalvings; ++halving) {
+        state_.q = from.q;
+        solve_forward(model_, ws_, ws_.residual, ws_.loops.step);
+        displace(model_, ws_, ws_.loops.step, state_.q);
+        update_motion(model_, state_.q, state_.u, ws_);
+        evaluate_cuts(model_, state_.q, state_.u, ws_);
+        if (independent_violation() < before) break;
+        for (double& r : ws_.residual) r *= 0.5;
+        update_motion(model_, from.q, from.u, ws_);
+      }
+    }
+  }
+
   [[nodiscard]] bool is_prescribed(std::size_t speed) const {
     return std::any_of(model_.drives.begin(), model_.drives.end(),
                        [speed](const Drive& drive) { return drive.u == static_cast<int>(speed); });
   }
 
-  void renew(const State& state) {
+  void renew(const State& state, double modal_inertia = 1) {
     update_motion(model_, state.q, state.u, ws_);
     update_elements(model_, state.q, Elements::used, ws_);
     update_inertia(model_, ws_);
+    for (PartMotion& part : ws_.parts) {
+      const std::size_t modes = part.q.size();
+      for (std::size_t k = 0; k < modes; ++k) part.E[k * (modes + 1)] *= modal_inertia;
+    }
     update_coupled(model_, ws_);
     std::fill(ws_.tau.begin(), ws_.tau.end(), 0.0);
     factorize(model_, ws_);

@@ -20,6 +20,8 @@ namespace {
 // the rounding of six digits in a scene.
 constexpr double kVanishing = 1e-4;
 
+constexpr double kNearest = 1e-3;  // least distance of a nearby position, of the usual one
+
 // properties of the rows in positions near the start
 struct Nearby {
   std::vector<bool> is_dependent;  // dependent in all positions
@@ -55,9 +57,12 @@ Nearby look_nearby(Model model) {
   Nearby result;
   for (const std::uint64_t seed : {1U, 2U}) {
     Assembler nearby(model);
-    nearby.state() = start.state();
-    nearby.move_away(seed);
-    nearby.close();
+    for (double distance = 1; distance >= kNearest; distance *= 0.25) {
+      nearby.state() = start.state();
+      nearby.move_away(seed, distance);
+      nearby.close_by_joints();
+      if (nearby.has_masses()) break;
+    }
     const std::vector<bool> here = nearby.dependent_rows();
     const std::vector<double> mobility = nearby.mobilities();
     if (result.mobility.empty()) result = {here, mobility};
@@ -153,7 +158,7 @@ std::vector<AssemblyReport::Row> find_locking_gears(const Model& model) {
   start.close();
   nearby.state() = start.state();
   nearby.move_away(kSeed);
-  nearby.close();
+  nearby.close_by_joints();
   static_cast<void>(nearby.dependent_rows());
   const double rounding = nearby.rounding_of_freedom();
   for (const Gear& gear : released.gears) {
