@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "core/index.h"
@@ -18,28 +17,51 @@ namespace slew::multibody {
 namespace {
 
 constexpr int kMostModeCorrections = 200;
-constexpr double kModesSettled = 1e-11;  // correction, relative to the largest modal coordinate
-constexpr double kModeProbe = 1e-4;      // step of the differences, relative to the scale of the modes
+constexpr int kMostHalvings = 20;         // of a step of Newton's method
+constexpr double kModesSettled = 1e-11;   // correction, relative to the largest modal coordinate
+constexpr double kModeProbe = 1e-4;       // step of the differences, relative to the scale of the modes
+constexpr double kCurvatureProbe = 1e-2;  // the same, of second differences
 
 class ModalSettling {
  public:
-  explicit ModalSettling(Model& model) : model_(model), ws_(model), state_(start_state(model)) {}
+  explicit ModalSettling(Model& model) : model_(model), ws_(model), state_(start_state(model)) {
+    std::fill(state_.u.begin(), state_.u.end(), 0.0);
+    for (const FlexiblePart& part : model_.parts) {
+      if (part.is_start_given) continue;
+      for (std::size_t k = 0; k < part.modes; ++k) {
+        free_.push_back({static_cast<std::size_t>(part.q) + k, static_cast<std::size_t>(part.u) + k});
+      }
+    }
+  }
 
   bool run() {
-    std::fill(state_.u.begin(), state_.u.end(), 0.0);
+    const std::vector<double> start = state_.q;
+    if (settles([this] { return correction_of_bodies(); })) return keep();
+    state_.q = start;
+    return settles([this] { return correction_of_all(); }) && keep();
+  }
+
+ private:
+  struct Mode {
+    std::size_t q, u;
+  };
+
+  // correction: false if there is none, else it is in step_.
+  template <typename Correction>
+  bool settles(Correction correction) {
     double before = 0;
     for (int i = 0; i < kMostModeCorrections; ++i) {
-      const double change = correct();
+      if (!correction()) return false;
+      const double change = apply();
       if (!std::isfinite(change)) return false;
-      if (change <= kModesSettled) return keep();
+      if (change <= kModesSettled) return true;
       // differences of a potential are limited by its rounding
-      if (i > 1 && change >= before && change < 1e3 * kModesSettled) return keep();
+      if (i > 1 && change >= before && change < 1e3 * kModesSettled) return true;
       before = change;
     }
     return false;
   }
 
- private:
   [[nodiscard]] double potential() {
     observe(model_, state_, ws_);
     return multibody::energy(model_, ws_).potential;
@@ -61,43 +83,113 @@ class ModalSettling {
     return power;
   }
 
-  // one step of (1) for all bodies; the largest change over the largest coordinate
-  double correct() {
-    double scale = 0;
-    for_each_mode(model_, [&](std::size_t q, std::size_t) { scale = std::max(scale, std::fabs(state_.q[q])); });
-    const double probe = kModeProbe * (scale > 0 ? scale : 1);
+  [[nodiscard]] double largest_coordinate() const {
     double largest = 0;
-    std::vector<std::vector<double>> steps(model_.parts.size());
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      const FlexiblePart& part = model_.parts[i];
+    for_each_mode(model_, [&](std::size_t q, std::size_t) { largest = std::max(largest, std::fabs(state_.q[q])); });
+    return largest;
+  }
+
+  [[nodiscard]] double scale() const {
+    const double largest = largest_coordinate();
+    return largest > 0 ? largest : 1;
+  }
+
+  // Q - dV/dq of the free modes, in step_
+  void find_force() {
+    const double probe = kModeProbe * scale();
+    step_.resize(free_.size());
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      double& q = state_.q[free_[k].q];
+      const double held = q;
+      q = held + probe;
+      const double above = potential();
+      q = held - probe;
+      const double below = potential();
+      q = held;
+      step_[k] = load_on(free_[k].u) - (above - below) / (2 * probe);
+    }
+  }
+
+  // one step of (1) for all bodies
+  bool correction_of_bodies() {
+    find_force();
+    std::size_t first = 0;
+    for (const FlexiblePart& part : model_.parts) {
       if (part.is_start_given) continue;
-      std::vector<double>& step = steps[i];
-      step.resize(part.modes);
-      for (std::size_t k = 0; k < part.modes; ++k) {
-        double& q = state_.q[static_cast<std::size_t>(part.q) + k];
-        const double held = q;
-        q = held + probe;
-        const double above = potential();
-        q = held - probe;
-        const double below = potential();
-        q = held;
-        step[k] = load_on(static_cast<std::size_t>(part.u) + k) - (above - below) / (2 * probe);
-      }
       std::vector<double> factor = part.stiffness;
       const int modes = static_cast<int>(part.modes);
-      if (!math::factorize_cholesky(factor.data(), modes)) return std::numeric_limits<double>::quiet_NaN();
-      math::substitute_forward(factor.data(), modes, step.data());
-      math::substitute_backward(factor.data(), modes, step.data());
+      if (!math::factorize_cholesky(factor.data(), modes)) return false;
+      math::substitute_forward(factor.data(), modes, &step_[first]);
+      math::substitute_backward(factor.data(), modes, &step_[first]);
+      first += part.modes;
     }
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      for (std::size_t k = 0; k < steps[i].size(); ++k) {
-        double& q = state_.q[static_cast<std::size_t>(model_.parts[i].q) + k];
-        q += steps[i][k];
-        largest = std::max(largest, std::fabs(steps[i][k]));
-        scale = std::max(scale, std::fabs(q));
+    return true;
+  }
+
+  // one step of (2), halved until the potential without the work of the loads falls
+  bool correction_of_all() {
+    const std::size_t n = free_.size();
+    const int size = static_cast<int>(n);
+    find_force();
+    const std::vector<double> force = step_;
+    std::vector<double> factor = curvature();
+    if (!math::factorize_cholesky(factor.data(), size)) return false;
+    math::substitute_forward(factor.data(), size, step_.data());
+    math::substitute_backward(factor.data(), size, step_.data());
+    const double here = potential();
+    std::vector<double> loads(n);
+    for (std::size_t k = 0; k < n; ++k) loads[k] = load_on(free_[k].u);
+    const std::vector<double> from = state_.q;
+    for (int halving = 0; halving < kMostHalvings; ++halving) {
+      double work = 0, expected = 0;
+      for (std::size_t k = 0; k < n; ++k) {
+        state_.q[free_[k].q] = from[free_[k].q] + step_[k];
+        work += loads[k] * step_[k];
+        expected += force[k] * step_[k];
+      }
+      const double fallen = here - potential() + work;
+      state_.q = from;
+      const double rounding = 1e-12 * std::fabs(here);
+      if (fallen > -rounding && (expected < rounding || fallen > 1e-4 * expected)) break;
+      for (double& x : step_) x *= 0.5;
+    }
+    return true;
+  }
+
+  // d2V/dq2 of the free modes, lower triangle
+  [[nodiscard]] std::vector<double> curvature() {
+    const std::size_t n = free_.size();
+    const double probe = kCurvatureProbe * scale();
+    std::vector<double> K(n * n);
+    const auto moved = [&](std::size_t k, double dk, std::size_t l, double dl) {
+      const std::vector<double> from = state_.q;
+      state_.q[free_[k].q] += dk;
+      state_.q[free_[l].q] += dl;
+      const double V = potential();
+      state_.q = from;
+      return V;
+    };
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t l = 0; l <= k; ++l) {
+        const double same = moved(k, probe, l, probe) + moved(k, -probe, l, -probe);
+        const double opposite = moved(k, probe, l, -probe) + moved(k, -probe, l, probe);
+        K[k * n + l] = (same - opposite) / (4 * probe * probe);
       }
     }
-    return scale > 0 ? largest / scale : 0;
+    return K;
+  }
+
+  // adds the step; the largest change over the largest coordinate
+  double apply() {
+    const double before = largest_coordinate();
+    double largest = 0;
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      state_.q[free_[k].q] += step_[k];
+      // also one that is no number
+      if (!(std::fabs(step_[k]) <= largest)) largest = std::fabs(step_[k]);
+    }
+    const double size = std::max(before, largest_coordinate());
+    return size > 0 ? largest / size : 0;
   }
 
   bool keep() {
@@ -108,6 +200,8 @@ class ModalSettling {
   Model& model_;
   Workspace ws_;
   State state_;
+  std::vector<Mode> free_;    // those of bodies without a given start
+  std::vector<double> step_;  // by free mode
 };
 
 }  // namespace

@@ -9,7 +9,9 @@ namespace slew::multibody {
 // Static equilibrium, in the start pose of the joints, of flexible bodies without a given start: modal coordinates at
 // which gravity, the springs of the mechanism and the point loads of time zero, all joints held, balance the modes,
 //   q <- q + K^-1 (Q - dV/dq),   V the potential energy, Q the generalised forces of the loads            (1)
-// Row forces are not in it. False: (1) does not settle, as beyond a buckling load; the modes start at zero.
+// with the stiffness K of each body, which settles while the springs on the bodies are softer than these; else
+//   q <- q + (d2V/dq2)^-1 (Q - dV/dq)                                                                     (2)
+// Row forces are not in it. False: neither settles, as beyond a buckling load; the modes start at zero.
 [[nodiscard]] bool settle_modes(Model& model);
 
 }  // namespace slew::multibody

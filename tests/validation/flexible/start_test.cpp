@@ -79,6 +79,27 @@ TEST_P(FlexibleStarts, StandStill) {
   EXPECT_NEAR(boom.value("Boom.deflection.y"), before, 1e-7 * std::fabs(before));
 }
 
+// A prop under the load, from much softer to much stiffer than the boom: the sag without it over 1 + K c.
+TEST_P(FlexibleStarts, RestOnASpring) {
+  const auto sag_under = [](double load) {
+    return Mechanism(level_boom(load, 2e11, lowest(2))).value("Boom.deflection.y");
+  };
+  const double free_sag = sag_under(500), compliance = (free_sag - sag_under(600)) / (100 * kGravity);
+  for (const double share : {0.1, 0.9, 1.1, 10.0, 1e4}) {
+    MechanicsDef def = level_boom(500, 2e11, lowest(2));
+    TranslationalForceDef prop{.name = "Prop", .body1 = "Ground", .point1 = def.bodies[1].position, .body2 = "Load"};
+    prop.point1[1] -= 2;
+    prop.free_length = 2;
+    prop.spring_constant = share / compliance;
+    def.translational_forces = {prop};
+    Formulated boom = start(def);
+    const double expected = free_sag / (1 + share);
+    EXPECT_NEAR(boom.value("Boom.deflection.y"), expected, 1e-4 * std::fabs(expected)) << share;
+    boom.run(0.02, 2.5e-4);
+    EXPECT_NEAR(boom.value("Boom.deflection.y"), expected, 1e-4 * std::fabs(expected)) << share;
+  }
+}
+
 // Two modes on a fixed root, without gravity: q_1 = q cos(omega_1 t), q_2 = q'/omega_2 sin(omega_2 t).
 TEST_P(FlexibleStarts, SwingFromGivenCoordinatesAndRates) {
   MechanicsDef def = level_boom(500, 2e11, {1, 2});
