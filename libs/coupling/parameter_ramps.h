@@ -55,6 +55,11 @@ class ParameterRamps {
   [[nodiscard]] bool is_under_way(int handle) const noexcept {
     return std::any_of(ramps_.begin(), ramps_.end(), [&](const Ramp& r) { return r.handle == handle; });
   }
+  // Calls see(handle, to, steps) for every change under way with its steps from step n on.
+  template <typename See>
+  void follow(StepIndex n, See&& see) const {
+    for (const Ramp& ramp : ramps_) see(ramp.handle, ramp.to, std::max<StepIndex>(1, ramp.begin + ramp.steps - n));
+  }
   void clear() noexcept { ramps_.clear(); }
   [[nodiscard]] bool empty() const noexcept { return ramps_.empty(); }
 
