@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ends a session whose circuit is no longer solved while its pressures are still finite.
+// Ends a session whose circuit is no longer solved, or no longer that of the scene, while its pressures are still
+// finite.
 //
-// Three rules, checked after every step:
+// Four rules, checked after every step:
 //   - The excess of steps accepted with their error over sound ones reaches kMostUnsolved: steps that are not
 //   converged,
 //     and steps over the sub-step budget whose error exceeded the tolerance. The count decreases by one with each sound
 //     step, down to zero, so that single steps never add up to an end.
 //   - No sub-step keeps the oil of a volume, or has less than a gross error (math::StiffReport::is_impossible).
 //   - No chamber of level tlm hardens within a step by more than its waves can follow (Circuit::beyond_waves()).
+//   - No piston is out of its barrel (Circuit::first_out_of_barrel()), also in a step that another integrator computes.
 // Not covered: pressures that are converged and wrong.
 #pragma once
 
@@ -18,6 +20,7 @@
 
 #include "core/state_hash.h"
 #include "core/step_report.h"
+#include "hydraulics/circuit.h"
 #include "hydraulics/circuit_integrator.h"
 #include "hydraulics/hydraulics_def.h"
 
@@ -35,6 +38,14 @@ class ConvergenceWatch {
   // the third rule. Does not allocate.
   [[nodiscard]] bool ends_run(const StepReport& report, const hydraulics::CircuitIntegrator& integrator,
                               std::string_view offender, std::string_view beyond_waves) noexcept;
+  // The last rule, for the state of the circuit; name: that of each actuator's cylinder.
+  template <typename NameOf>
+  [[nodiscard]] bool ends_out_of_barrel(const hydraulics::Circuit& circuit, const double* y, NameOf&& name) noexcept {
+    const int j = circuit.first_out_of_barrel(y);
+    if (j < 0) return false;
+    write_out_of_barrel(name(j), circuit.actuators()[static_cast<std::size_t>(j)].barrel, y[circuit.position(j)]);
+    return true;
+  }
   [[nodiscard]] std::string_view text() const noexcept { return {text_.data(), text_length_}; }
 
   // Adds nothing while all recent steps are sound: the hash of a sound run is that of its circuit.
@@ -49,6 +60,7 @@ class ConvergenceWatch {
   }
 
  private:
+  void write_out_of_barrel(std::string_view cylinder, const hydraulics::Barrel& barrel, double stroke) noexcept;
   template <typename... Values>
   void write(const char* form, const Values&... values) noexcept;
 

@@ -181,7 +181,8 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   report.flags |= taken.flags;
   alarm_.raise_flags(levels_, report);
   const std::string_view hardened = offender_name(integrator_->beyond_waves());
-  if (convergence_.ends_run(report, *integrator_, offender_name(report.offender), hardened)) {
+  if (convergence_.ends_run(report, *integrator_, offender_name(report.offender), hardened) ||
+      is_out_of_barrel(integrator_->state().data())) {
     report.raise(StepFlag::ended);
   }
   if (report.has_failed()) {
@@ -217,11 +218,17 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
   report.flags = circuit_->flags(step.state.data());
   report.offender = circuit_->farthest_beyond_oil_law(step.state.data());
   if (report.offender < 0) report.offender = circuit_->first_cavitating(step.state.data());
+  if (is_out_of_barrel(step.state.data())) report.raise(StepFlag::ended);
   publish(sample.actuators, report.flags, false);
   std::copy(step.work.begin(), step.work.end(), sample.actuators.work.begin());
   std::copy(step.impulse.begin(), step.impulse.end(), sample.actuators.impulse.begin());
   published_ = sample.actuators;
   return report;
+}
+
+bool HydraulicsSubsystem::is_out_of_barrel(const double* y) noexcept {
+  return convergence_.ends_out_of_barrel(
+      *circuit_, y, [this](int j) -> std::string_view { return scene_.ports[static_cast<std::size_t>(j)].name; });
 }
 
 // adds_up: work and impulse continue those of the sample before, since there was no exchange in between

@@ -79,6 +79,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
                       StepReport& report) noexcept;
   void align(const coupling::MechanismSample& mechanism, StepIndex age) noexcept;
   void publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up) noexcept;
+  [[nodiscard]] bool is_out_of_barrel(const double* y) noexcept;
   void list_variables();
   [[nodiscard]] std::size_t cross_count() const noexcept { return shared_.any() ? m_ * m_ : 0; }
 

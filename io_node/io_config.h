@@ -16,6 +16,7 @@
 #include "node/session_member.h"
 #include "node/step_timing.h"
 #include "scene/defs.h"
+#include "scene/live_course.h"
 
 namespace slew::io_node {
 
@@ -33,6 +34,12 @@ struct ResumeState {
   std::vector<wire::Command> changes;  // parameter changes at this step
 };
 
+// Values of live parameters from a step on.
+struct LiveCourse {
+  std::vector<std::pair<std::string, double>> present;
+  std::vector<scene::LiveChange> changes;  // in order of steps
+};
+
 struct IoConfig {
   std::string session_name;
   scene::SessionDef session;
@@ -45,6 +52,9 @@ struct IoConfig {
   std::vector<TimedChange> changes;                   // in order of time
   // Check of a requested change; over_ns: -1 if the request leaves it open.
   std::function<ParameterCheck(const std::string& path, double value, std::int64_t over_ns)> check_parameter;
+  // Reason against a value that check_parameter accepts, with the values before step n and all changes from then on;
+  // empty: none.
+  std::function<std::string(const wire::Command& change, const LiveCourse& course)> check_course;
   std::vector<LiveParameter> parameters;       // parameters that may change while the session runs
   StepIndex variables_every = 10;              // steps between two blocks of variables
   StepIndex flexible_every = 1;                // steps between two samples of flexible bodies

@@ -19,6 +19,20 @@ int LiveParameters::find(std::string_view path) const noexcept {
   return found == index_.end() ? -1 : found->second;
 }
 
+std::vector<std::pair<std::string, double>> LiveParameters::all() const {
+  std::vector<std::pair<std::string, double>> values;
+  for (std::size_t i = 0; i < scene_.size(); ++i) values.emplace_back(scene_[i].path, values_[i]);
+  return values;
+}
+
+std::vector<scene::LiveChange> LiveParameters::under_way(StepIndex n) const {
+  std::vector<scene::LiveChange> changes;
+  ramps_.follow(n, [&](int parameter, double to, StepIndex steps) {
+    changes.push_back({scene_[static_cast<std::size_t>(parameter)].path, to, n, steps});
+  });
+  return changes;
+}
+
 void LiveParameters::begin(const wire::Command& command, StepIndex n) noexcept {
   const int parameter = find(command.path);
   if (parameter >= 0) ramps_.begin(parameter, value(parameter), command.value, n, {command.over_ns}, step_);

@@ -8,11 +8,13 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/state_bytes.h"
 #include "core/time.h"
 #include "coupling/parameter_ramps.h"
+#include "scene/live_course.h"
 #include "transport/wire.h"
 
 namespace slew::io_node {
@@ -31,6 +33,11 @@ class LiveParameters {
   // SI, at the step of the last advance().
   [[nodiscard]] double value(int parameter) const noexcept { return values_[static_cast<std::size_t>(parameter)]; }
   [[nodiscard]] bool is_changing(int parameter) const noexcept { return ramps_.is_under_way(parameter); }
+
+  // All values, at the step of the last advance().
+  [[nodiscard]] std::vector<std::pair<std::string, double>> all() const;
+  // The rest of each change under way, from step n on.
+  [[nodiscard]] std::vector<scene::LiveChange> under_way(StepIndex n) const;
 
   // A change in the tick of step n.
   void begin(const wire::Command& command, StepIndex n) noexcept;

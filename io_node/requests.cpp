@@ -106,7 +106,12 @@ ControlAnswer Requests::set_parameter(const wire::ControlRequest& request, StepI
                 " changes already wait for the next step; send it again after that step",
             n};
   }
-  inputs_.add_change({request.request, request.path, request.value, check.over_ns});
+  wire::Command change{request.request, request.path, request.value, check.over_ns};
+  if (config_.check_course) {
+    std::string refusal = config_.check_course(change, inputs_.course_with(change, n));
+    if (!refusal.empty()) return {request, false, std::move(refusal), n};
+  }
+  inputs_.add_change(std::move(change));
   return {request, true, "", n};
 }
 

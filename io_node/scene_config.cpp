@@ -110,6 +110,9 @@ IoConfig make_config(const scene::Scene& scene, std::string session_name, Record
     const scene::Assignment assignment = directory->check(path, value, over);
     return ParameterCheck{assignment.status.is_ok(), assignment.status.text, assignment.over.ns};
   };
+  config.check_course = [directory](const wire::Command& change, const LiveCourse& course) {
+    return directory->refusal_of_course(change.path, change.value, course.present, course.changes);
+  };
   config.variables_every = scene.recording.every;
   config.flexible_every = scene.flexible_every();
   return config;

@@ -39,6 +39,19 @@ SessionInputs::SessionInputs(const IoConfig& config, std::vector<std::unique_ptr
   gate_.reserve(sources_.most_pieces());
 }
 
+LiveCourse SessionInputs::course_with(const wire::Command& change, StepIndex n) const {
+  LiveCourse course{parameters_.all(), parameters_.under_way(n)};
+  const auto add = [&](const wire::Command& command, StepIndex step) {
+    course.changes.push_back({command.path, command.value, step, std::max<StepIndex>(1, command.over_ns / step_.ns)});
+  };
+  for (const wire::Command& command : waiting_) add(command, n);
+  add(change, n);
+  for (const TimedChange& later : changes_) {
+    if (const StepIndex step = later.at.ns / step_.ns; step >= n) add(later.command, step);
+  }
+  return course;
+}
+
 void SessionInputs::advance(StepIndex n, std::int64_t now_ns, std::vector<wire::Command>& changes) {
   const SimTime t = start_of(n, step_);
   gate_.advance(n, sources_.read(t, t + step_), now_ns);

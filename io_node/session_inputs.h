@@ -27,6 +27,8 @@ class SessionInputs {
 
   // A change for the next tick, or a later one if that is full.
   void add_change(wire::Command change) { waiting_.push_back(std::move(change)); }
+  // Values of the parameters from step n on with one more change, which the tick of step n is to carry.
+  [[nodiscard]] LiveCourse course_with(const wire::Command& change, StepIndex n) const;
   // Changes that no tick has carried yet.
   [[nodiscard]] std::span<const wire::Command> waiting() const noexcept { return waiting_; }
 

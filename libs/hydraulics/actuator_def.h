@@ -3,6 +3,8 @@
 // type. Every ComponentDef that drives a force element through a power port returns them from actuator().
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <string>
 
 #include "core/field.h"
@@ -62,6 +64,14 @@ enum class Motion { linear, rotary };
 // How an actuator shares the static load between its chambers at an equilibrium start.
 enum class StartRule { return_pressure, mean_pressure };
 
+// Way of a piston in its barrel [m]; a motor's shaft has no end.
+struct Barrel {
+  double begin = -std::numeric_limits<double>::infinity(), end = std::numeric_limits<double>::infinity();
+
+  // How far the piston at x is beyond an end [m]; 0: it is in the barrel.
+  [[nodiscard]] double beyond(double x) const noexcept { return std::max({0.0, begin - x, x - end}); }
+};
+
 struct ActuatorDef {
   std::string force;              // force element that it drives
   std::string port_a, port_b;     // volumes
@@ -70,6 +80,7 @@ struct ActuatorDef {
   PortCoordinate coordinate = {};
   LineForceParameters line_force = {};
   PortCoupling coupling = PortCoupling::session;
+  Barrel barrel = {};
   StartRule start = StartRule::return_pressure;
   bool has_stages = false;  // the areas are the largest, and fall with the stroke (staged_area.h)
   // typical sizes, for the error measure

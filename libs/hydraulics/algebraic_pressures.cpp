@@ -17,8 +17,20 @@ constexpr double kLargestCorrection = 0.5;  // share of a pressure and its scale
 constexpr int kMostSweeps = 20;             // over all quasi-static volumes
 constexpr int kMostWidenings = 40;          // of a bracket, each to 1.5 or 0.5 of the pressure
 constexpr int kMostHalvings = 60;           // of a bracket
+constexpr int kMostMarches = 400;           // steps in time
+constexpr double kMostMarch = 0.25;         // share of a pressure and its scale, per step in time
+constexpr double kFirstMarch = 1e-2;        // the same, of the first step in time
+constexpr double kMarched = 1e-3;           // the same, from which on Newton is tried
+
+std::size_t place_of(StateIndex row) noexcept {
+  return static_cast<std::size_t>(row);
+}
 
 }  // namespace
+
+double CircuitIntegrator::size_of(StateIndex row) const noexcept {
+  return options_.scale[place_of(row)] + std::fabs(y_[place_of(row)]);
+}
 
 // False: no pressures balance the flows, and those before stay.
 bool CircuitIntegrator::make_consistent() noexcept {
@@ -44,25 +56,66 @@ bool CircuitIntegrator::make_consistent() noexcept {
     if (correct_by_newton()) return true;
     put(balanced_);
   }
+  // where volumes that a wide opening joins must rise together, which goes slowly one by one
+  put(before_);
+  if (march_to_balance()) return true;
   put(before_);
   return false;
+}
+
+// The pressures as those of small volumes that fill and empty: steps of implicit Euler with one iteration each, which
+// grow as the pressures come to rest. Their matrix, 1/h - J, has an inverse also where no flow has a slope.
+bool CircuitIntegrator::march_to_balance() noexcept {
+  const std::size_t n = quasi_static_.size();
+  circuit_.rates(y_.data(), f_.data());
+  double per_step = 0;  // 1/h
+  for (const StateIndex row : quasi_static_) {
+    per_step = std::max(per_step, std::fabs(f_[place_of(row)]) / (kFirstMarch * size_of(row)));
+  }
+  for (int k = 0; k < kMostMarches; ++k) {
+    fill_algebraic(per_step);
+    if (!algebraic_.factorise()) return false;
+    algebraic_.solve({outflow_.data(), n});
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      largest = std::max(largest, std::fabs(outflow_[i]) / size_of(quasi_static_[i]));
+    }
+    if (!std::isfinite(largest)) return false;
+    per_step *= largest > kMostMarch ? 4 : 0.5;
+    if (largest > kMostMarch) continue;
+    for (std::size_t i = 0; i < n; ++i) y_[place_of(quasi_static_[i])] += outflow_[i];
+    static_cast<void>(circuit_.bound(y_.data()));
+    circuit_.rates(y_.data(), f_.data());
+    if (largest > kMarched) continue;
+    for (std::size_t i = 0; i < n; ++i) balanced_[i] = y_[place_of(quasi_static_[i])];
+    if (correct_by_newton()) return true;
+    for (std::size_t i = 0; i < n; ++i) y_[place_of(quasi_static_[i])] = balanced_[i];
+    circuit_.rates(y_.data(), f_.data());
+  }
+  return false;
+}
+
+// 1/h - J of the quasi-static pressures and their flows over C, at the rates of the present state; flows in outflow_.
+void CircuitIntegrator::fill_algebraic(double per_step) noexcept {
+  const std::size_t n = quasi_static_.size();
+  const auto stride = static_cast<std::size_t>(circuit_.state_count());
+  const double* const J = circuit_.jacobian(y_.data(), f_.data());
+  const std::span<double> a = algebraic_.matrix();
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t row = place_of(quasi_static_[i]);
+    for (std::size_t j = 0; j < n; ++j) a[i * n + j] = -J[row * stride + place_of(quasi_static_[j])];
+    a[i * n + i] += per_step - f_[row] * circuit_.capacity_growth(quasi_static_[i], y_.data());
+    outflow_[i] = f_[row];
+  }
 }
 
 // Newton on the pressures of the quasi-static volumes, all other states held, for flows that add up to zero. The rows
 // are those flows over C: without the slope of C the iteration would converge to soft oil instead of balanced flows.
 bool CircuitIntegrator::correct_by_newton() noexcept {
   const std::size_t n = quasi_static_.size();
-  const auto stride = static_cast<std::size_t>(circuit_.state_count());
   for (int k = 0; k < kMostCorrections; ++k) {
     circuit_.rates(y_.data(), f_.data());
-    const double* const J = circuit_.jacobian(y_.data(), f_.data());
-    const std::span<double> a = algebraic_.matrix();
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto row = static_cast<std::size_t>(quasi_static_[i]);
-      for (std::size_t j = 0; j < n; ++j) a[i * n + j] = -J[row * stride + static_cast<std::size_t>(quasi_static_[j])];
-      a[i * n + i] -= f_[row] * circuit_.capacity_growth(quasi_static_[i], y_.data());
-      outflow_[i] = f_[row];
-    }
+    fill_algebraic(0);
     if (!algebraic_.factorise()) return false;
     algebraic_.solve({outflow_.data(), n});
     double largest = 0;

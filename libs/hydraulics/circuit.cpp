@@ -283,6 +283,14 @@ int Circuit::farthest_beyond_oil_law(const double* y) const noexcept {
   return farthest < 0 && has_temperatures() ? first_beyond_temperatures() : farthest;
 }
 
+int Circuit::first_out_of_barrel(const double* y) const noexcept {
+  for (int j = 0; j < actuator_count(); ++j) {
+    const Barrel& barrel = actuators_[at(j)].barrel;
+    if (barrel.beyond(y[position(j)]) > kMostBeyondBarrel * (barrel.end - barrel.begin)) return j;
+  }
+  return -1;
+}
+
 std::uint32_t Circuit::flags(const double* y) noexcept {
   std::uint32_t flags = first_cavitating(y) < 0 ? 0 : static_cast<std::uint32_t>(StepFlag::cavitating);
   if (farthest_beyond_oil_law(y) >= 0) flags |= static_cast<std::uint32_t>(StepFlag::beyond_oil_law);

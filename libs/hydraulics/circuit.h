@@ -54,6 +54,10 @@ struct StartDemand {
 // Limit assumed for a volume without a relief or shock valve of its own: hoses and cylinders burst.
 inline constexpr double kMostHeld = 1000e5;  // Pa absolute
 
+// A piston may be pressed out of its barrel by this share of its way: stops are springs. Beyond, the machine is not
+// that of the scene.
+inline constexpr double kMostBeyondBarrel = 0.1;
+
 enum class ParameterResult { ok, unknown, out_of_range };
 
 class Circuit {
@@ -226,6 +230,9 @@ class Circuit {
   [[nodiscard]] int first_cavitating(const double* y) noexcept;
   // The volume with the highest pressure beyond the oil's law, else one with a temperature beyond it; -1: none.
   [[nodiscard]] int farthest_beyond_oil_law(const double* y) const noexcept;
+
+  // The actuator whose piston is out of its barrel by more than kMostBeyondBarrel; -1: none.
+  [[nodiscard]] int first_out_of_barrel(const double* y) const noexcept;
 
   // variables of all volumes and components, in a fixed order
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept { return variables_; }

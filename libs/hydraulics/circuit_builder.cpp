@@ -71,6 +71,7 @@ int CircuitBuilder::add_actuator(const std::string& component, const ActuatorDef
                         .area_b = actuator.area_b,
                         .coordinate = actuator.coordinate,
                         .line_force = actuator.line_force,
+                        .barrel = actuator.barrel,
                         .start = actuator.start,
                         .position_scale = actuator.position_scale,
                         .speed_scale = actuator.speed_scale});

@@ -73,6 +73,7 @@ struct Actuator {
   double area_a = 0, area_b = 0;   // m2; F = e (p_A area_a - p_B area_b) + b brake.force
   PortCoordinate coordinate = {};  // x = offset + ratio * element coordinate
   LineForceParameters line_force = {};
+  Barrel barrel = {};
   StartRule start = StartRule::return_pressure;
   double position_scale = 1, speed_scale = 1;  // m, m/s, typical sizes
   Setting setting = {};

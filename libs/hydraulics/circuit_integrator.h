@@ -149,6 +149,9 @@ class CircuitIntegrator final : private math::StiffSystem {
   [[nodiscard]] bool make_consistent() noexcept;
   [[nodiscard]] bool correct_by_newton() noexcept;
   [[nodiscard]] bool balance(std::size_t row) noexcept;
+  [[nodiscard]] bool march_to_balance() noexcept;
+  void fill_algebraic(double per_step) noexcept;
+  [[nodiscard]] double size_of(StateIndex row) const noexcept;  // of a pressure, for the error
   [[nodiscard]] StepFlag failure_flag() const noexcept {
     return report_.is_impossible ? StepFlag::ended : StepFlag::non_finite;
   }

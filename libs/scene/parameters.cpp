@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/suggestion.h"
+#include "hydraulics/live_rules.h"
 #include "multibody/build/validate.h"
 #include "multibody/formulations/element_speeds.h"
 #include "multibody/joints/joint_axes.h"
@@ -127,7 +128,10 @@ double mechanics_substep(const SessionDef& session, const multibody::MechanicsDe
 }
 
 ParameterDirectory::ParameterDirectory(const Scene& scene)
-    : session_(scene.session), ports_(scene.ports), parameters_(parameters(scene)) {
+    : session_(scene.session),
+      ports_(scene.ports),
+      circuit_(std::make_shared<const hydraulics::HydraulicsDef>(hydraulics::copy_of(scene.hydraulics))),
+      parameters_(parameters(scene)) {
   // without the tables of files, or the files of flexible bodies, no mechanism can be built
   const multibody::MechanicsDef& parts = scene.mechanics;
   const bool is_whole = std::all_of(scene.table_files.begin(), scene.table_files.end(),
@@ -306,6 +310,20 @@ Assignment ParameterDirectory::check(std::string_view path, double value, std::o
   assignment.value = value;
   assignment.over = whole_steps(over.value_or(duration_of_seconds(parameter->ramp)), session_.step_duration());
   return assignment;
+}
+
+std::string ParameterDirectory::refusal_of_course(std::string_view path, double value,
+                                                  std::span<const std::pair<std::string, double>> present,
+                                                  std::span<const LiveChange> changes) const {
+  const ParameterInfo* const parameter = find(path);
+  if (parameter == nullptr || changes.empty()) return {};
+  const std::optional<BrokenRule> broken = find_broken_rule(*circuit_, present, changes);
+  if (!broken) return {};
+  const SimDuration step = session_.step_duration();
+  const bool is_later = broken->step > changes.front().step;
+  const std::string when = is_later ? fmt::format(" at {:g} s", start_of(broken->step, step).seconds()) : std::string();
+  return fmt::format("{}: {} is refused: {}{}: {}; expected {}", path, with_unit(value, parameter->dimension),
+                     broken->problem.path, when, broken->problem.what, broken->problem.expected);
 }
 
 Assignment ParameterDirectory::parse_choice(const ParameterInfo& parameter, std::string_view name,

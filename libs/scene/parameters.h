@@ -10,11 +10,13 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/field.h"
 #include "core/status.h"
 #include "core/time.h"
+#include "scene/live_course.h"
 #include "scene/scene.h"
 #include "scene/units.h"
 
@@ -68,6 +70,11 @@ class ParameterDirectory {
   // The same for a value in SI, as received over the wire. over: the requested time; default: the parameter's own. A
   // choice changes at once, or is refused.
   [[nodiscard]] Assignment check(std::string_view path, double value, std::optional<SimDuration> over = {}) const;
+  // Why a session refuses this value because of a rule between the fields of a hydraulic component, which need the
+  // present values of the others and all changes that follow (find_broken_rule()); empty: it takes it.
+  [[nodiscard]] std::string refusal_of_course(std::string_view path, double value,
+                                              std::span<const std::pair<std::string, double>> present,
+                                              std::span<const LiveChange> changes) const;
 
  private:
   [[nodiscard]] Assignment parse_choice(const ParameterInfo& parameter, std::string_view name,
@@ -80,6 +87,7 @@ class ParameterDirectory {
 
   SessionDef session_;
   std::vector<PortDef> ports_;
+  std::shared_ptr<const hydraulics::HydraulicsDef> circuit_;
   std::shared_ptr<const multibody::MechanicsDef> mechanics_;        // null: no bodies, or no integration in sub-steps
   std::shared_ptr<const multibody::MechanicsDef> whole_mechanics_;  // null: the machine cannot be checked
   std::vector<ParameterInfo> parameters_;

@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
+#include <vector>
 
-#include "hydraulics/component_def.h"
+#include "scene/live_course.h"
 
 namespace slew::scene {
 
@@ -17,63 +16,19 @@ StepIndex first_step_at(double at, SimDuration step) noexcept {
   return step.ns > 0 ? (duration_of_seconds(at).ns + step.ns - 1) / step.ns : 0;
 }
 
-namespace {
-
-constexpr std::string_view kStallingFriction = ".friction_torque";
-
-// Number of a component's field; null: the path names none.
-double* number_at(hydraulics::ComponentDef& component, std::string_view path) {
-  const std::string_view name = component.name;
-  if (!path.starts_with(name) || path.size() <= name.size() || path[name.size()] != '.') return nullptr;
-  for (const Field& field : hydraulics::find_component_type(component.type_name())->fields) {
-    if (field.type != FieldType::number || field.key != path.substr(name.size() + 1)) continue;
-    return static_cast<double*>(field.member(component.address()));
-  }
-  return nullptr;
-}
-
-// Adds the first problem of the component.
-void check_component(const hydraulics::HydraulicsDef& circuit, const hydraulics::ComponentDef& component,
-                     const std::string& path, const std::string& set, Problems& errors) {
-  const auto validate = hydraulics::find_component_type(component.type_name())->validate;
-  if (validate == nullptr) return;
-  Problems found, warnings;
-  validate(circuit, component, found, warnings);
-  for (const Problem& problem : found) {
-    if (problem.path.ends_with(kStallingFriction)) continue;
-    errors.push_back({path, fmt::format("{} is refused: {}: {}", set, problem.path, problem.what), problem.expected,
-                      problem.suggestion});
-    return;
-  }
-}
-
-}  // namespace
-
-void check_changes(Scene& scene, Problems& errors) {
-  const std::vector<ScriptChange>& changes = scene.script.changes;
+void check_changes(const Scene& scene, Problems& errors) {
   const SimDuration step = scene.session.step_duration();
-  std::vector<std::pair<double*, double>> before;
-  std::map<const hydraulics::ComponentDef*, std::size_t> changed;  // in one step, by the change with this number
-  for (std::size_t i = 0; i < changes.size() && errors.empty(); ++i) {
-    for (const auto& component : scene.hydraulics.components) {
-      double* const value = number_at(*component, changes[i].set);
-      if (value == nullptr) continue;
-      before.emplace_back(value, *value);
-      *value = changes[i].value;
-      changed[component.get()] = i;
-    }
-    const bool is_last =
-        i + 1 == changes.size() || first_step_at(changes[i + 1].at, step) != first_step_at(changes[i].at, step);
-    if (!is_last) continue;
-    for (const auto& component : scene.hydraulics.components) {
-      const auto found = changed.find(component.get());
-      if (found == changed.end()) continue;
-      const std::string path = fmt::format("script.parameters[{}]", found->second);
-      check_component(scene.hydraulics, *component, path, changes[found->second].set, errors);
-    }
-    changed.clear();
+  std::vector<LiveChange> changes;
+  for (const ScriptChange& change : scene.script.changes) {
+    const SimDuration over = whole_steps(duration_of_seconds(change.over), step);
+    changes.push_back({change.set, change.value, first_step_at(change.at, step), step.ns > 0 ? over.ns / step.ns : 1});
   }
-  for (auto value = before.rbegin(); value != before.rend(); ++value) *value->first = value->second;
+  const std::optional<BrokenRule> broken = find_broken_rule(scene.hydraulics, {}, changes);
+  if (!broken) return;
+  const Problem& problem = broken->problem;
+  errors.push_back({fmt::format("script.parameters[{}]", broken->change),
+                    fmt::format("{} is refused: {}: {}", changes[broken->change].path, problem.path, problem.what),
+                    problem.expected, problem.suggestion});
 }
 
 SimDuration whole_steps(SimDuration over, SimDuration step) noexcept {

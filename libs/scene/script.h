@@ -21,9 +21,8 @@ namespace slew::scene {
 [[nodiscard]] SimDuration whole_steps(SimDuration over, SimDuration step) noexcept;
 
 // Changes of components whose value, with all changes before it, a rule between the component's fields refuses; an
-// engine that friction stalls is a fault that a script may cause. Pre-condition: the rules hold without the script. The
-// scene is as before afterwards.
-void check_changes(Scene& scene, Problems& errors);
+// engine that friction stalls is a fault that a script may cause. Pre-condition: the rules hold without the script.
+void check_changes(const Scene& scene, Problems& errors);
 
 // At a point of the table the value is the table's, bit for bit. Between two points: a straight line, or the earlier
 // value (interpolation step, and every digital input: a switch has no values between). Of two points at one time the

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hydraulics/components/cylinder.h"
 
+#include <algorithm>
 #include <numbers>
 #include <utility>
 
@@ -52,7 +53,8 @@ ActuatorDef actuator_of(const CylinderParameters& common) {
                          .maximum_stroke = common.maximum_stroke,
                          .breakaway_friction = common.breakaway_friction,
                          .stribeck_speed = common.stribeck_speed},
-          .coupling = common.coupling};
+          .coupling = common.coupling,
+          .barrel = {std::min(0.0, common.minimum_stroke), std::max(common.piston_travel(), common.maximum_stroke)}};
 }
 
 void set_cushions(const CylinderParameters& common, ActuatorDef& actuator) {

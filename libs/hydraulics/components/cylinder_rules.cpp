@@ -79,6 +79,17 @@ bool check_stroke_order(const std::string& name, const CylinderParameters& c, Pr
   return false;
 }
 
+void warn_of_creep(const std::string& name, const CylinderParameters& c, double area, Problems& warnings) {
+  if (c.end_stiffness > 0) return;
+  constexpr double kPressure = 100e5;
+  const std::string creep = c.end_damping > 0
+                                ? fmt::format("a piston pressed into it creeps on, by {:.3g} mm/s at {:.0f} bar",
+                                              1e3 * kPressure * area / c.end_damping, kPressure * 1e-5)
+                                : std::string("nothing holds a piston at the end of its stroke");
+  warnings.push_back({name + ".end_stiffness", "the stop has no stiffness: " + creep,
+                      "a stiffness, 5e7 N/m is the default, or an end_damping with which it creeps slowly enough", ""});
+}
+
 void check_chamber(const std::string& name, const CylinderParameters& c, const ChamberEnd& end, double piston_area,
                    Problems& errors) {
   const double compression = c.end_stiffness > 0 ? kStopPressure * piston_area / c.end_stiffness : 0;
@@ -127,6 +138,7 @@ void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const
   if (!check_stroke_order(name, c, errors)) return;
   const double D = c.piston_diameter, d = rod_diameter;
   const double piston = 0.25 * std::numbers::pi * D * D;
+  warn_of_creep(name, c, piston, warnings);
   check_chamber(name, c, {'A', piston, c.minimum_stroke, "minimum_stroke"}, piston, errors);
   if (d < D) {
     const double ring = 0.25 * std::numbers::pi * (D * D - d * d);

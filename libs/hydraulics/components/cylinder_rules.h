@@ -31,6 +31,9 @@ void check_connections(const HydraulicsDef& circuit, const std::string& name, co
 // False, with an error, where the stroke limits are swapped.
 bool check_stroke_order(const std::string& name, const CylinderParameters& cylinder, Problems& errors);
 
+// A warning where the stops have no stiffness. area: of the piston [m2].
+void warn_of_creep(const std::string& name, const CylinderParameters& cylinder, double area, Problems& warnings);
+
 // A chamber at the end of the stroke where it is smallest.
 struct ChamberEnd {
   char port;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -176,6 +177,7 @@ void validate_telescopic(const HydraulicsDef& circuit, const ComponentDef& compo
   if (!check_stroke_order(def.name, def.common, errors) || def.stages.empty()) return;
   check_stages(def, errors);
   const double A = areas_of(def).front()[1];
+  warn_of_creep(def.name, def.common, A, warnings);
   check_chamber(def.name, def.common, {'A', A, def.common.minimum_stroke, "minimum_stroke"}, A, errors);
 }
 
@@ -185,6 +187,7 @@ std::optional<ActuatorDef> TelescopicCylinderDef::actuator() const {
   ActuatorDef actuator = actuator_of(common);
   actuator.area_a = actuator.area_b = stages.empty() ? 0 : areas_of(*this).front()[1];
   actuator.has_stages = true;
+  actuator.barrel = {std::min(0.0, common.minimum_stroke), common.maximum_stroke};
   actuator.coordinate.offset = -closed_length;
   return actuator;
 }

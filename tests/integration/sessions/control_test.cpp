@@ -260,9 +260,9 @@ TEST_F(Control, PresentValueOfAParameterIsPublishedInAPauseForLateReadersAndAfte
   EXPECT_EQ(present("Bag.mass").value, 500);
   EXPECT_EQ(present("Bag.mass").reason, "a change waits for the next step");
   ASSERT_TRUE(observer_->request(ControlAction::step, 3).is_accepted);
-  ASSERT_TRUE(observer_->wait_until([&] { return present("Bag.mass").value == 1250; }));
+  ASSERT_TRUE(observer_->wait_until([&] { return present("Bag.mass").value == 1125; }));
   EXPECT_EQ(present("Bag.mass").reason, "on its way to a new value");
-  ASSERT_TRUE(observer_->request(ControlAction::step, 1).is_accepted);
+  ASSERT_TRUE(observer_->request(ControlAction::step, 2).is_accepted);
   ASSERT_TRUE(observer_->wait_until([&] { return present("Bag.mass").value == 1500; }));
   EXPECT_EQ(present("Bag.mass").reason, "");
   EXPECT_EQ(present("MainPump.set_pressure").value, 2.5e6);

@@ -11,6 +11,8 @@
 #include "hydraulics/circuit_integrator.h"
 #include "hydraulics/components/check_valves.h"
 #include "hydraulics/components/direct_relief_valve.h"
+#include "hydraulics/components/restrictions.h"
+#include "hydraulics/components/shuttle_valve.h"
 #include "hydraulics/components/sources.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
 
@@ -88,6 +90,57 @@ TEST(AlgebraicPressures, BalanceThroughAShutValveOneByOne) {
   }
   EXPECT_NEAR(integrator.state()[1], p, 1e-4 * p);
   EXPECT_GT(integrator.state()[0], integrator.state()[1]);
+}
+
+// A relieved pump, a shuttle valve with a wide seat and two orifices in a row, whose nodes must rise together from
+// pressures below and above the tank's; the pressures by bisection of the flow through the row.
+TEST(AlgebraicPressures, OfNodesInARowAreFoundFromBelowTheTank) {
+  for (const double tank : {1.0, 2.0, 5.0}) {
+    for (const double share : {0.12, 0.3, 0.9, 1.0, 4.0}) {
+      for (const double diameter : {0.4e-3, 0.6e-3, 1e-3, 3e-3}) {
+        SCOPED_TRACE(std::to_string(tank) + " " + std::to_string(share) + " " + std::to_string(diameter));
+        HydraulicsDef def;
+        def.start = StartState::table13;
+        for (const char* name : {"P", "X", "Y"}) add_volume(def, name, share * tank * kBar).quasi_static = true;
+        def.volumes[1].initial_pressure *= 1.7;
+        const DirectReliefValveDef& relief = add_relieved_source(def, "P", "P");
+        def.volumes.back().initial_pressure = tank * kBar;
+        ShuttleValveDef& shuttle = add<ShuttleValveDef>(def, "Shuttle");
+        shuttle.port_1 = "P", shuttle.port_2 = "Tank", shuttle.port_3 = "X";
+        shuttle.nominal_flow = 60 * kLitrePerMinute;
+        const auto add_orifice = [&](const char* name, const char* from, const char* to, double d) {
+          OrificeDef& orifice = add<OrificeDef>(def, name);
+          orifice.port_1 = from, orifice.port_2 = to, orifice.diameter = d;
+          return orifice.discharge_coefficient * std::numbers::pi / 4 * d * d * std::sqrt(2 / def.oil_density);
+        };
+        const double K_S = shuttle.nominal_flow / std::sqrt(shuttle.nominal_pressure_drop);
+        const double K_X = add_orifice("OX", "X", "Y", diameter), K_Y = add_orifice("OY", "Y", "Tank", 1.2e-3);
+        // above the tank, d of Q = K d/(d^2 + d_t^2)^(1/4)
+        const auto drop = [&](double Q, double K) {
+          const double s = Q * Q / (K * K), d_t = def.orifice_transition;
+          return std::sqrt(0.5 * s * (s + std::sqrt(s * s + 4 * d_t * d_t)));
+        };
+        double below = 0, above = kFlow;
+        for (int k = 0; k < 60; ++k) {
+          const double Q = (below + above) / 2, p = drop(Q, K_Y) + drop(Q, K_X) + drop(Q, K_S);
+          const double relieved = p > relief.crack_pressure ? relief_flow(relief, def.oil_density, p) : 0;
+          (Q + relieved < kFlow ? below : above) = Q;
+        }
+        const double p_Y = tank * kBar + drop(below, K_Y), p_X = p_Y + drop(below, K_X);
+        Circuit circuit(def);
+        CircuitIntegrator integrator(circuit, def);
+        integrator.start({}, {}, {});
+        for (int k = 0; k < 5; ++k) {
+          ASSERT_FALSE(integrator.step(kStep, HeldSpeed(0)).has(StepFlag::not_converged)) << k;
+        }
+        // the valve's seat has a law of its own below d_t
+        const double p_P = p_X + drop(below, K_S);
+        EXPECT_NEAR(integrator.state()[0], p_P, 1e-3 * p_P + 0.5 * def.orifice_transition);
+        EXPECT_NEAR(integrator.state()[1], p_X, 1e-3 * p_X + 0.5 * def.orifice_transition);
+        EXPECT_NEAR(integrator.state()[2], p_Y, 1e-3 * p_Y);
+      }
+    }
+  }
 }
 
 // a source into a node that nothing leaves has no pressure: reported, and the pressure stays

@@ -22,14 +22,14 @@ class Ramps : public ::testing::Test {
   std::map<int, double> values;
 };
 
-TEST_F(Ramps, ReachTheTargetInTheLastStepOfTheirTime) {
+TEST_F(Ramps, HaveTheMeanOfTheLineOverEachStepAndThenTheTarget) {
   ramps.begin(7, 10, 20, 100, milliseconds(5), kStep);
   apply(100);
-  EXPECT_DOUBLE_EQ(values[7], 12);
-  apply(103);
-  EXPECT_DOUBLE_EQ(values[7], 18);
-  EXPECT_TRUE(ramps.is_under_way(7));
+  EXPECT_DOUBLE_EQ(values[7], 11);
   apply(104);
+  EXPECT_DOUBLE_EQ(values[7], 19);
+  EXPECT_TRUE(ramps.is_under_way(7));
+  apply(105);
   EXPECT_EQ(values[7], 20);
   EXPECT_TRUE(ramps.empty());
 }
@@ -45,8 +45,30 @@ TEST_F(Ramps, OfAllParametersAtOnceAreAllCarriedOut) {
   for (int handle = 0; handle < kParameters; ++handle) ramps.begin(handle, 0, handle, 0, milliseconds(10), kStep);
   // a second change of each replaces the first and needs no further room
   for (int handle = 0; handle < kParameters; ++handle) ramps.begin(handle, 0, 2 * handle, 0, milliseconds(10), kStep);
-  apply(9);
+  apply(10);
   for (int handle = 0; handle < kParameters; ++handle) ASSERT_EQ(values[handle], 2 * handle);
+  EXPECT_TRUE(ramps.empty());
+}
+
+TEST_F(Ramps, OfOneStepHaveHalfOfTheWayInIt) {
+  ramps.begin(7, 10, 20, 100, kStep, kStep);
+  apply(100);
+  EXPECT_DOUBLE_EQ(values[7], 15);
+  apply(101);
+  EXPECT_EQ(values[7], 20);
+}
+
+TEST_F(Ramps, AreReplacedWhereTheirLineIs) {
+  ramps.begin(7, 10, 20, 100, milliseconds(5), kStep);
+  apply(100);
+  apply(101);
+  // at 14, held at 13 so far
+  ramps.begin(7, values[7], 24, 102, milliseconds(10), kStep);
+  apply(102);
+  EXPECT_DOUBLE_EQ(values[7], 14.5);
+  ramps.begin(7, values[7], 30, 103, {}, kStep);
+  apply(103);
+  EXPECT_EQ(values[7], 30);
   EXPECT_TRUE(ramps.empty());
 }
 

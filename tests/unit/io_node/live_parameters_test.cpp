@@ -27,14 +27,16 @@ TEST_F(Parameters, HaveTheScenesValueUntilTheyAreChanged) {
 
 TEST_F(Parameters, GoToTheirNewValueOverItsTime) {
   parameters.begin(command("Bag.mass", 1500, milliseconds(4)), 10);
-  EXPECT_EQ(at("Bag.mass", 10), 750);
+  EXPECT_EQ(at("Bag.mass", 10), 625);
   EXPECT_TRUE(parameters.is_changing(parameters.find("Bag.mass")));
   EXPECT_FALSE(parameters.is_changing(parameters.find("MainPump.set_pressure")));
-  EXPECT_EQ(at("Bag.mass", 11), 1000);
-  EXPECT_EQ(at("Bag.mass", 12), 1250);
-  EXPECT_EQ(at("Bag.mass", 13), 1500);
-  EXPECT_FALSE(parameters.is_changing(parameters.find("Bag.mass")));
+  EXPECT_EQ(at("Bag.mass", 11), 875);
+  EXPECT_EQ(at("Bag.mass", 12), 1125);
+  EXPECT_EQ(at("Bag.mass", 13), 1375);
+  EXPECT_TRUE(parameters.is_changing(parameters.find("Bag.mass")));
   EXPECT_EQ(at("Bag.mass", 14), 1500);
+  EXPECT_FALSE(parameters.is_changing(parameters.find("Bag.mass")));
+  EXPECT_EQ(at("Bag.mass", 15), 1500);
 }
 
 TEST_F(Parameters, AreTheScenesAgainAfterAReset) {

@@ -62,8 +62,12 @@ TEST(LiveParameters, OfJointsWithAndWithoutFrictionAndLimitsAreTakenOrRefused) {
                    "joints");
 }
 
-// The step that a change is given for is the first one computed with it, and a change over k steps has 1/k of its way
-// in that step: m v = H (sum of the forces so far).
+// Share of a change in step n of those from its begin on: the mean of the line over the step.
+double share_of(int n, int over) {
+  return n < 0 ? 0 : over == 0 ? 1 : std::min(1.0, (n + 0.5) / over);
+}
+
+// The step that a change is given for is the first one computed with it: m v = H (sum of the forces so far).
 TEST(LiveParameters, OfMechanicsActInTheStepThatTheyAreGivenFor) {
   for (const int over : {0, 4}) {
     SCOPED_TRACE(over);
@@ -77,7 +81,7 @@ TEST(LiveParameters, OfMechanicsActInTheStepThatTheyAreGivenFor) {
     double force_sum = 0;
     for (int n = 0; n < 12; ++n) {
       if (n == 5) ASSERT_TRUE(m.subsystem.change_parameter(n, {"D.force", 100, milliseconds(over)}));
-      if (n >= 5) force_sum += 100 * std::min(1.0, (n - 5 + 1) / std::max(1.0, static_cast<double>(over)));
+      force_sum += 100 * share_of(n - 5, over);
       m.step();
       EXPECT_NEAR(m.value("R.velocity"), 1e-3 * force_sum / 2, 1e-14) << n;
     }
@@ -106,8 +110,7 @@ TEST(LiveParameters, OfHydraulicsActInTheStepThatTheyAreGivenFor) {
       if (n == 5) ASSERT_TRUE(hydraulics.change_parameter(n, {"F.flow", 1e-3, milliseconds(over)}));
       hydraulics.step(n, {}, {}, sample);
       hydraulics.read_variables(values);
-      const double share = n < 5 ? 0 : std::min(1.0, (n - 5 + 1) / std::max(1.0, static_cast<double>(over)));
-      EXPECT_NEAR(values[flow], 1e-3 * share, 1e-18) << n;
+      EXPECT_NEAR(values[flow], 1e-3 * share_of(n - 5, over), 1e-18) << n;
     }
   }
 }

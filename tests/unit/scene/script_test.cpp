@@ -242,6 +242,11 @@ TEST(Script, AChangeThatTheComponentsRulesRefuseIsRefused) {
   const std::string out = change("1 s", "cut_out_pressure", "150 bar");
   EXPECT_EQ(problems_of(circuit + out + change("2 s", "cut_in_pressure", "120 bar")), "");
   EXPECT_EQ(problems_of(circuit + change("1 s", "cut_in_pressure", "120 bar") + out), "") << "in one step";
+  // at 2 s the ramp is at 105 bar
+  const std::string slow = "    - {at: 1 s, set: U.cut_out_pressure, value: 150 bar, over: 10 s}\n";
+  EXPECT_NE(problems_of(circuit + slow + change("2 s", "cut_in_pressure", "110 bar")).find("script.parameters[1]: "),
+            std::string::npos);
+  EXPECT_EQ(problems_of(circuit + slow + change("2 s", "cut_in_pressure", "104 bar")), "");
   const Scene scene = load_text(circuit + out, "test");
   EXPECT_EQ(load_text(scene.expanded_text, "test").expanded_text, scene.expanded_text);
   EXPECT_EQ(ParameterDirectory(scene).find("U.cut_out_pressure")->value, 100e5);

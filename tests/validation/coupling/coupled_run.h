@@ -60,6 +60,10 @@ class CoupledRun {
   [[nodiscard]] const hydraulics_node::HydraulicsSubsystem& hydraulics() const {
     return dynamic_cast<const hydraulics_node::HydraulicsSubsystem&>(*session_.subsystem(wire::Role::hydraulics));
   }
+  // Reason of the circuit for the end of the run, of a monolith too.
+  [[nodiscard]] std::string_view failure_text() const {
+    return session_.subsystem(wire::Role::hydraulics)->failure_text();
+  }
 
  private:
   const scene::Scene& scene_;

@@ -4,8 +4,11 @@
 // The bore is so small that its oil weighs nothing against the blow.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
+#include <string>
 
 #include "tests/validation/coupling/coupled_run.h"
 
@@ -99,6 +102,40 @@ TEST(CylinderEnd, ThatDampsGivesNothingBack) {
       ASSERT_LT(run.mechanism().v[0], 1e-4 * kSpeed) << n;
     }
     EXPECT_NEAR(run.mechanism().x[0], 0.2, 2e-4);
+  }
+}
+
+// 100 bar on 63 mm press the piston against a stop that only damps: it creeps on by F/d, and the run ends by name where
+// it is a tenth of its way of 1 m out of its barrel.
+TEST(CylinderEnd, ThatOnlyDampsLetsThePistonCreepOutOfItsBarrelByName) {
+  const double A = std::numbers::pi / 4 * 0.063 * 0.063, B = A - std::numbers::pi / 4 * 0.036 * 0.036;
+  const double creep = (100e5 * A - 1e5 * B) / 1e5;
+  for (const char* solution : {"split", "monolithic"}) {
+    SCOPED_TRACE(solution);
+    scene::Scene scene = load(0, 1e5, "integrator: rk4", "two", kOut);
+    scene = scene::load_text(scene.expanded_text, "cylinder_end",
+                             {"Cyl.piston_diameter=63 mm", "Cyl.rod_diameter=36 mm", "Vol_A.initial_pressure=100 bar",
+                              "hydraulics.start=table13", std::string("session.solution=") + solution});
+    EXPECT_TRUE(std::any_of(scene.warnings.begin(), scene.warnings.end(), [](const std::string& warning) {
+      return warning.find(
+                 "Cyl.end_stiffness: the stop has no stiffness: a piston pressed into it creeps on, by 312 "
+                 "mm/s at 100 bar") != std::string::npos;
+    }));
+    CoupledRun run(scene);
+    ASSERT_TRUE(run.start().is_ok());
+    double last = 0;
+    for (int n = 0; n < 2000 && !run.has_failed(); ++n) {
+      last = run.mechanism().x[0];
+      run.step({});
+      if (last > 1.05 && !run.has_failed()) {
+        EXPECT_NEAR(run.mechanism().v[0], creep, 1e-3 * creep);
+      }
+    }
+    ASSERT_TRUE(run.has_failed());
+    EXPECT_NEAR(last, 1.1, 1e-3 * creep);
+    const std::string text(run.failure_text());
+    EXPECT_EQ(text.substr(0, 5), "Cyl: ") << text;
+    EXPECT_NE(text.find("out of its barrel, in which it goes from 0 to 1 m"), std::string::npos) << text;
   }
 }
 
