@@ -220,10 +220,12 @@ class SceneReader {
         multibody::find_unlikely_inertia(scene_.mechanics, warnings);
         multibody::find_start_changes(scene_.mechanics, warnings);
         multibody::find_unlikely_contacts(scene_.mechanics, warnings);
+        multibody::find_overshoots(scene_.mechanics, warnings);
         if (scene_.session.solution == Solution::split) {
           const double substep = mechanics_substep(scene_.session, scene_.mechanics);
           multibody::find_lost_rebounds(scene_.mechanics, substep, warnings);
           multibody::find_short_pulses(scene_.mechanics, substep, warnings);
+          multibody::find_fast_motions(scene_.mechanics, substep, warnings);
         }
       }
     });

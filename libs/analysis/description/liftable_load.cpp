@@ -17,6 +17,8 @@
 #include "core/json.h"
 #include "core/report_table.h"
 #include "hydraulics/circuit.h"
+#include "hydraulics/component_def.h"
+#include "hydraulics/pump_lines.h"
 #include "mechanics_node/payload.h"
 
 namespace slew::analysis {
@@ -24,6 +26,19 @@ namespace {
 
 constexpr double kLowered = 0.01;    // part of a setting
 constexpr double kOfSetting = 0.25;  // effect from which a setting limits
+constexpr double kTank = 5e5;        // Pa absolute, the most of a tank
+
+// Whether a pump, a source, an accumulator or a fixed volume above the pressure of a tank feeds the circuit.
+bool has_supply(const hydraulics::HydraulicsDef& circuit) {
+  const bool has_fixed = std::any_of(circuit.volumes.begin(), circuit.volumes.end(), [](const auto& volume) {
+    return volume.fixed && volume.initial_pressure > kTank;
+  });
+  return has_fixed || std::any_of(circuit.components.begin(), circuit.components.end(), [](const auto& component) {
+           hydraulics::PumpLines lines;
+           component->add_lines(lines);
+           return !lines.pumps.empty() || !lines.held.empty() || component->type_name() == "accumulator";
+         });
+}
 
 class Finder {
  public:
@@ -35,6 +50,9 @@ class Finder {
     for (const std::string& joint : pose_.joints) result.pose += (result.pose.empty() ? "" : ", ") + joint;
     if (!scene_.has_mechanics() || scene_.ports.empty()) return result;
     find_static_forces(result);
+    if (!result.payload.empty() && result.refusal.empty() && !has_supply(scene_.hydraulics)) {
+      result.refusal = "nothing feeds the cylinders: the circuit has no pump, source or accumulator";
+    }
     if (result.payload.empty() || !result.refusal.empty()) return result;
     find_limits(result);
     if (settings == ListedSettings::named && result.has_answer()) {

@@ -14,6 +14,7 @@
 #include "multibody/build/assembly.h"
 #include "multibody/constraints/constraint.h"
 #include "multibody/constraints/loops.h"
+#include "multibody/flexible/deflection.h"
 #include "multibody/formulations/passes.h"
 #include "multibody/results/observe.h"
 
@@ -26,18 +27,11 @@ inline constexpr int kMostAssemblyHalvings = 20;
 inline constexpr double kNearTurn = 0.05;  // rad, distance of the nearby positions
 inline constexpr double kSlide = 0.02;     // share of the mechanism's size
 inline constexpr double kHeavy = 1e4;      // factor of the modes' masses where joints shall move in their place
+// Ratio of a gear beyond which the speed of its slow joint sets that of the fast one before the projection. The row of
+// the slow joint differs from the gear's by the square of the ratio, where kDependentAtStart takes it as dependent.
+inline constexpr double kSteepGear = 100;
 // violation of a loop by given speeds above which it is reported
 inline constexpr double kAssembledSpeed = 1e-6;
-
-// Largest rotation of a node per unit of a mode, or displacement over the body's length. A slender body's mode of
-// torsion turns its tip by hundreds of radians per unit.
-inline double largest_turn(const FlexiblePart& part, std::size_t mode) {
-  double largest = 0;
-  for (const ModalNode& node : part.source->nodes) {
-    largest = std::max({largest, norm(node.turn[mode]), norm(node.shift[mode]) / part.length});
-  }
-  return largest > 0 ? largest : 1;
-}
 
 // Works on the model's present rows; rebuilt when they change.
 class Assembler {
@@ -120,7 +114,8 @@ class Assembler {
       if (link.joint == LinkJoint::floating) ws_.delta_alpha[i] = {step[u + 3], step[u + 4], step[u + 5]};
     }
     for (const FlexiblePart& part : model_.parts) {
-      for (std::size_t mode = 0; mode < part.modes; ++mode) step[at(part.u) + mode] /= largest_turn(part, mode);
+      for (std::size_t mode = 0; mode < part.modes; ++mode)
+        step[at(part.u) + mode] /= largest_turn(*part.source, part.length, mode);
     }
     displace(model_, ws_, step, state_.q);
   }
@@ -167,10 +162,7 @@ class Assembler {
   // Speeds that the scene gives and those of modes stay, the others follow: a projection in which they are rows of
   // their own.
   [[nodiscard]] std::vector<AssemblyReport::Speed> settle_speeds() {
-    std::vector<std::size_t> given, modal;
-    for (std::size_t j = 0; j < state_.u.size(); ++j) {
-      if (model_.start_is_given[j] != 0 && !is_prescribed(j)) given.push_back(j);
-    }
+    std::vector<std::size_t> given = given_speeds(), modal;
     for_each_mode(model_, [&](std::size_t, std::size_t u) { modal.push_back(u); });
     const bool has_modal_rates =
         std::any_of(modal.begin(), modal.end(), [&](std::size_t u) { return state_.u[u] != 0; });
@@ -238,6 +230,32 @@ class Assembler {
         update_motion(model_, from.q, from.u, ws_);
       }
     }
+  }
+
+  // Coordinates of the tree with a given speed, and those that a steep gear sets from one of them.
+  [[nodiscard]] std::vector<std::size_t> given_speeds() {
+    const std::size_t speeds = state_.u.size();
+    std::vector<char> is_given(speeds);
+    for (std::size_t j = 0; j < speeds; ++j) is_given[j] = model_.start_is_given[j] != 0 && !is_prescribed(j) ? 1 : 0;
+    // along a train of gears
+    for (bool has_found = true; has_found;) {
+      has_found = false;
+      for (const Gear& gear : model_.gears) {
+        for (std::size_t slow : {std::size_t{0}, std::size_t{1}}) {
+          const GearEnd &from = gear.ends[slow], &to = gear.ends[1 - slow];
+          if (is_given[at(from.u)] == 0 || is_given[at(to.u)] != 0 || is_prescribed(at(to.u))) continue;
+          if (!(std::fabs(from.factor) > kSteepGear * std::fabs(to.factor)) || to.factor == 0) continue;
+          state_.u[at(to.u)] = -from.factor / to.factor * state_.u[at(from.u)];
+          is_given[at(to.u)] = 1;
+          has_found = true;
+        }
+      }
+    }
+    std::vector<std::size_t> given;
+    for (std::size_t j = 0; j < speeds; ++j) {
+      if (is_given[j] != 0) given.push_back(j);
+    }
+    return given;
   }
 
   [[nodiscard]] bool is_prescribed(std::size_t speed) const {

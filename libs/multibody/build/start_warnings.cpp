@@ -10,8 +10,10 @@
 #include "multibody/build/assembly.h"
 #include "multibody/build/validate.h"
 #include "multibody/flexible/deflection.h"
+#include "multibody/formulations/formulation.h"
 #include "multibody/model/body_inertia.h"
 #include "multibody/model/topology.h"
+#include "multibody/motions/motion_pieces.h"
 #include "multibody/results/observe.h"
 
 namespace slew::multibody {
@@ -48,17 +50,21 @@ void find_start_deflections(const Model& model, Problems& warnings) {
 // values of modes that the scene gives and loops do not leave
 void find_moved_modes(const MechanicsDef& mechanics, const Model& model, Problems& warnings) {
   constexpr double kMoved = 1e-9;  // of the largest value of the body
+  // rounding of the poses, of which the joints may be open by as much: largest turn of a node, or motion over the
+  // length
+  constexpr double kRounding = kFrameTolerance;
   const auto compare = [&](const FlexiblePart& part, const char* key, const std::vector<double>& wanted,
                            const double* found) {
-    double largest = 0, moved = 0;
+    double largest = 0, moved = 0, turned = 0;
     std::size_t place = 0;
     for (std::size_t k = 0; k < wanted.size(); ++k) {
       largest = std::max({largest, std::fabs(wanted[k]), std::fabs(found[k])});
+      turned = std::max(turned, std::fabs(found[k] - wanted[k]) * largest_turn(*part.source, part.length, k));
       if (std::fabs(found[k] - wanted[k]) <= moved) continue;
       moved = std::fabs(found[k] - wanted[k]);
       place = k;
     }
-    if (!(moved > kMoved * largest)) return;
+    if (!(moved > kMoved * largest) || !(turned > kRounding)) return;
     warnings.push_back({part.name + "." + key,
                         fmt::format("the loops leave no such start: the value of mode {} is {:.6g} instead of {:.6g}",
                                     place + 1, found[place], wanted[place]),
@@ -96,6 +102,34 @@ void find_start_bends(const Model& model, Problems& warnings) {
   }
 }
 
+struct Overshoot {
+  bool is_found = false;
+  double from = 0, to = 0;  // s, interval of the points
+  double value = 0;
+  double least = 0, largest = 0;  // of the two points and their neighbours
+};
+
+// The value by which a spline is farthest out of the range of four points in a row; found: by more than that range.
+Overshoot widest_overshoot(const math::CubicSpline& spline, const Table& points) {
+  constexpr int kSamples = 32;
+  Overshoot widest;
+  double most = 1;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    double least = points[i][1], largest = least;
+    for (std::size_t k = i > 0 ? i - 1 : 0; k < std::min(i + 3, points.size()); ++k) {
+      least = std::min(least, points[k][1]), largest = std::max(largest, points[k][1]);
+    }
+    for (int k = 1; k < kSamples; ++k) {
+      const double x = points[i][0] + (points[i + 1][0] - points[i][0]) * k / kSamples;
+      const double y = math::value_at(spline, x).y, out = std::max(y - largest, least - y);
+      if (!(out > most * (largest - least)) || !(out > kFrameTolerance)) continue;
+      most = largest > least ? out / (largest - least) : std::numeric_limits<double>::infinity();
+      widest = {true, points[i][0], points[i + 1][0], y, least, largest};
+    }
+  }
+  return widest;
+}
+
 // Shortest time in which a table goes one way and then back [s]; infinite: it does not.
 double shortest_pulse(const Table& table) {
   double shortest = std::numeric_limits<double>::infinity(), begin = 0, last = 0;
@@ -125,6 +159,35 @@ void find_short_pulses(const MechanicsDef& mechanics, double substep, Problems& 
   };
   for (const PointForceDef& def : mechanics.point_forces) look(def.name + ".force_table", def.force_table);
   for (const PointTorqueDef& def : mechanics.point_torques) look(def.name + ".torque_table", def.torque_table);
+}
+
+void find_fast_motions(const MechanicsDef& mechanics, double substep, Problems& warnings) {
+  const MotionResolution resolution = motion_resolution(mechanics.formulation, step_rule(mechanics).integrator);
+  for (const MotionDef& def : mechanics.motions) {
+    const FastMotion found = find_fast_motion(motion_law(def, 0), resolution, substep);
+    if (!found.is_found) continue;
+    warnings.push_back({def.name,
+                        fmt::format("the motion is too fast for sub-steps of {:.3g} s, which are divided into {} parts "
+                                    "at most: from {:.6g} s on what hangs on it moves wrongly",
+                                    substep, kMostMotionPieces, found.time),
+                        fmt::format("mechanics.max_substep of at most {:.2g} s, or a slower motion", found.longest),
+                        ""});
+  }
+}
+
+void find_overshoots(const MechanicsDef& mechanics, Problems& warnings) {
+  for (const MotionDef& def : mechanics.motions) {
+    if (def.points.size() < 2) continue;
+    const Overshoot found = widest_overshoot(motion_law(def, 0).spline, def.points);
+    if (!found.is_found) continue;
+    const bool is_speed = def.shape == MotionShape::speed;
+    const std::string unit = std::string(def.kind == MotionKind::rotation ? "rad" : "m") + (is_speed ? "/s" : "");
+    warnings.push_back({def.name + ".points",
+                        fmt::format("the cubic spline through the points reaches {:.4g} {} between {:.6g} s and {:.6g} "
+                                    "s, where the points go from {:.4g} to {:.4g} {}: it overshoots beside a jump",
+                                    found.value, unit, found.from, found.to, found.least, found.largest, unit),
+                        "more points beside the jump, of a change that is smooth, or a *_ramp", ""});
+  }
 }
 
 void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {

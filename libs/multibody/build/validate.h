@@ -33,6 +33,10 @@ void find_lost_rebounds(const MechanicsDef& mechanics, double substep, Problems&
 // Appends a warning for every table of a force over time that rises and falls within two sub-steps [s]: an integrator
 // sees a table at its stages alone, and the impulse of a shorter pulse depends on where in a sub-step it falls.
 void find_short_pulses(const MechanicsDef& mechanics, double substep, Problems& warnings);
+// Appends a warning for every motion that the parts of a sub-step [s] do not resolve (motions/motion_pieces.h), and for
+// every table of which the spline leaves the range of four points in a row by more than that range.
+void find_fast_motions(const MechanicsDef& mechanics, double substep, Problems& warnings);
+void find_overshoots(const MechanicsDef& mechanics, Problems& warnings);
 // Appends a warning for every pair whose shapes start deep in each other. Pre-condition: validate() found nothing.
 void find_unlikely_contacts(const MechanicsDef& mechanics, Problems& warnings);
 

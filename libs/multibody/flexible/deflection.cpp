@@ -32,6 +32,14 @@ std::vector<std::size_t> widest_nodes(const ModalBody& body) {
   return widest;
 }
 
+double largest_turn(const ModalBody& body, double length, std::size_t mode) noexcept {
+  double largest = 0;
+  for (const ModalNode& node : body.nodes) {
+    largest = std::max({largest, norm(node.turn[mode]), norm(node.shift[mode]) / length});
+  }
+  return largest > 0 ? largest : 1;
+}
+
 double length_of(const ModalBody& body) noexcept {
   double longest = 0;
   for (std::size_t i = 0; i < body.nodes.size(); ++i) {

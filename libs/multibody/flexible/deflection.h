@@ -23,6 +23,10 @@ inline constexpr double kLostDeflection = 3;  // in body lengths
 // Nodes that move most in one of the modes, and the last node: their number grows with the modes, not the nodes.
 [[nodiscard]] std::vector<std::size_t> widest_nodes(const ModalBody& body);
 
+// Largest rotation of a node [rad] per unit of a mode, or displacement over `length`; 1: the mode moves no node. A
+// slender body's mode of torsion turns its tip by hundreds of radians per unit.
+[[nodiscard]] double largest_turn(const ModalBody& body, double length, std::size_t mode) noexcept;
+
 // Largest distance between two nodes [m].
 [[nodiscard]] double length_of(const ModalBody& body) noexcept;
 

@@ -38,6 +38,12 @@ bool is_reachable(const ElementLaw& law, double least) {
 
 // x: coordinate at the start
 void make_steepest(ElementLaw& law, double x, Ends ends, bool is_touched) {
+  if (ends == Ends::alone) {
+    const ElementLaw own = law;
+    law = {.spring = is_touched ? own.end_spring : 0, .damping = is_touched ? own.end_damping : 0, .free = x};
+    law.is_active = is_touched;
+    return;
+  }
   const bool has_curve = !law.spring_curve.empty() || !law.damper_curve.empty();
   if (has_curve || is_touched) {
     const double force = force_of(law, x, 0, 0);
@@ -109,13 +115,21 @@ Model with_steepest_laws(const Model& given, Ends ends) {
   observe(model, start, ws);
   for (std::size_t i = 0; i < model.lines.size(); ++i) {
     ElementLaw& law = model.lines[i].law;
-    make_steepest(law, ws.lines[i].length, ends, ends == Ends::touched && is_reachable(law, 0));
+    make_steepest(law, ws.lines[i].length, ends, ends >= Ends::touched && is_reachable(law, 0));
   }
   for (std::size_t i = 0; i < model.angles.size(); ++i) {
     ElementLaw& law = model.angles[i].law;
-    make_steepest(law, ws.angles[i].angle, ends, ends == Ends::touched && is_reachable(law, -kUnlimited));
+    make_steepest(law, ws.angles[i].angle, ends, ends >= Ends::touched && is_reachable(law, -kUnlimited));
   }
-  for (Bushing& bushing : model.elements.bushings) make_steepest(bushing, ends, ws.motion);
+  if (ends == Ends::alone) {
+    for_each_force_kind([&](auto row) {
+      if (std::is_same_v<decltype(row), RopeRow> || std::is_same_v<decltype(row), TyreRow>) return;
+      auto& elements = elements_of(row, model.elements);
+      for (std::size_t i = 0; i < own_count<decltype(row)>(given); ++i) silence(row, elements[i]);
+    });
+  } else {
+    for (Bushing& bushing : model.elements.bushings) make_steepest(bushing, ends, ws.motion);
+  }
   for (Rope& rope : model.elements.ropes) {
     if (ends == Ends::slack) silence(RopeRow(), rope);
     make_steepest(rope, ws.motion);
@@ -136,6 +150,10 @@ bool has_ends(const Model& model) {
                      [](const LineElement& line) { return is_reachable(line.law, 0); }) ||
          std::any_of(model.angles.begin(), model.angles.end(),
                      [](const AngleElement& angle) { return is_reachable(angle.law, -kUnlimited); });
+}
+
+bool has_one_sided(const Model& model) {
+  return has_ends(model) || !model.elements.ropes.empty() || !model.elements.tyres.empty();
 }
 
 Model without_elements(const Model& given) {

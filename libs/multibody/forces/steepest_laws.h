@@ -19,12 +19,14 @@
 namespace slew::multibody {
 
 // slack: springs of tables, ropes and tyres do not act, since a damper that is too fast alone may be followed beside
-// them
-enum class Ends { slack, free, touched };
+// them. alone: touched ends, ropes and tyres without any other force.
+enum class Ends { slack, free, touched, alone };
 
 [[nodiscard]] Model with_steepest_laws(const Model& given, Ends ends);
 // Whether an end damper can be touched.
 [[nodiscard]] bool has_ends(const Model& model);
+// Whether a force acts on one side only: such an end damper, a rope or a tyre.
+[[nodiscard]] bool has_one_sided(const Model& model);
 
 // The same masses without any of the scene's elements; those between the segments of a body stay.
 [[nodiscard]] Model without_elements(const Model& given);

@@ -166,6 +166,11 @@ double growth_of(const std::vector<Complex>& rates, Integrator rule, double h) {
   return growth;
 }
 
+// Semi-implicit Euler takes touches whole: a mass m that a one-sided spring k throws back leaves with up
+// to 1.005, 1.022, 1.062, 1.25 and 2.9 times its speed at k h^2/m of 0.1, 0.25, 0.5, 1.5 and 3.9, the limit of the rule
+// being 4. A quarter of that sub-step is accepted, 0.25.
+constexpr double kTouchOfEuler = 4;
+
 Complex fastest_of(const std::vector<Complex>& rates) {
   Complex fastest = 0;
   for (const Complex rate : rates) {
@@ -228,13 +233,29 @@ std::optional<TooFast> find_too_fast_element(const Model& given, Integrator rule
   if (!is_explicit(rule)) return std::nullopt;
   std::optional<TooFast> found = find_in(with_steepest_laws(given, Ends::slack), rule, h);
   if (!found) found = find_in(with_steepest_laws(given, Ends::free), rule, h);
-  if (found || !has_ends(given)) return found;
-  found = find_in(with_steepest_laws(given, Ends::touched), rule, h);
-  if (found) found->is_at_end = true;
+  if (!found && has_ends(given)) {
+    found = find_in(with_steepest_laws(given, Ends::touched), rule, h);
+    if (found) found->is_at_end = true;
+  }
+  if (found || rule != Integrator::semi_implicit_euler || !has_one_sided(given)) return found;
+  found = find_in(with_steepest_laws(given, Ends::alone), rule, kTouchOfEuler * h);
+  if (!found) return found;
+  found->is_touch = true;
+  found->longest_step /= kTouchOfEuler;
   return found;
 }
 
 Problem problem_of(const TooFast& found, Integrator rule, double h) {
+  if (found.is_touch) {
+    return {found.element,
+            fmt::format("a touch of it is too short for {} in sub-steps of {:.4g} s: its rate on the masses that it "
+                        "acts on is {:.4g} 1/s, and it would throw back more than it takes up",
+                        key_of(rule), h, found.rate),
+            fmt::format("mechanics.max_substep of at most {:.2g} s, a softer force, or another mechanics.integrator "
+                        "such as rk4, which divides touches",
+                        0.95 * found.longest_step),
+            ""};
+  }
   return {found.element,
           fmt::format("it is too fast for {} in sub-steps of {:.4g} s on the masses that it acts on: {} its rate is "
                       "{:.4g} 1/s, and what swings or fades would grow {:.4g} times in each sub-step",

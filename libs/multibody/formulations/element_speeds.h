@@ -13,6 +13,9 @@
 // of 60 vectors at most (Arnoldi: Golub and Van Loan 2013, section 10.5): all of a small mechanism, the fastest of a
 // large one.
 //
+// One-sided forces (end dampers, ropes, tyres) under semi_implicit_euler, which takes touches whole: alone, in four
+// times the sub-step.
+//
 // Laws have their steepest slopes (steepest_laws.h): tables, end dampers, taut ropes, tyres on the ground with their
 // slip. A law with a bound, such as a table for friction, does not grow for ever, but a sub-step beyond the limit
 // leaves it at the bound, at rest as well. Left out: contacts, which find their own parts of a sub-step; gravity; rows,
@@ -44,6 +47,7 @@ struct TooFast {
   double longest_step = 0;  // s, that does not let it grow
   bool swings = false;      // that motion is an oscillation
   bool is_at_end = false;   // by its end dampers
+  bool is_touch = false;    // a touch that semi_implicit_euler does not resolve, otherwise stable
 };
 
 // In sub-steps of h [s]. None: the rule is implicit or follows.

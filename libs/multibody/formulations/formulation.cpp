@@ -16,6 +16,7 @@
 #include "multibody/formulations/passes.h"
 #include "multibody/formulations/step_parts.h"
 #include "multibody/formulations/stops.h"
+#include "multibody/motions/motion_pieces.h"
 #include "multibody/results/observe.h"
 
 namespace slew::multibody {
@@ -90,6 +91,12 @@ struct Dynamics::Stages {
   void keep(const State& joints, const BodyState* bodies) noexcept { start.keep(joints, bodies, &ws); }
   void go_back(State& joints, BodyState* bodies) noexcept { start.go_back(joints, bodies, &ws); }
 
+  // The lead of generalised_alpha belongs to parts of one length.
+  void forget_lead() noexcept {
+    std::fill(ws.algorithmic.begin(), ws.algorithmic.end(), 0.0);
+    std::fill(ws.algorithmic_turn.begin(), ws.algorithmic_turn.end(), math::Vec3());
+  }
+
   StepRule rule;
   BodyModel model;
   StageWorkspace ws;
@@ -163,6 +170,8 @@ Dynamics::Dynamics(Formulation formulation, const Model& model, const State& sta
       held_ = std::make_unique<HeldBodies>(formulation, model, start);
       break;
   }
+  motion_resolution_ = motion_resolution(formulation, rule.integrator);
+  piece_mean_.resize(model.rows.size());
   // semi-implicit Euler sees a force a part late, and keeps no energy over parts of different lengths
   if (formulation != Formulation::augmented && rule.integrator != Integrator::semi_implicit_euler) {
     const Touched touched = is_implicit(rule.integrator) ? Touched::tables : Touched::swings;
@@ -234,7 +243,10 @@ bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h
 bool Dynamics::advance_contacts(const Model& model, State& state, Workspace& ws, const PartOfStep& part) noexcept {
   const double length = part.h / part.parts.count;
   ContactParts pieces = part.pieces;
-  if (pieces.is_settling) {
+  if (pieces.is_settling && is_motion_fast(model.drives, motion_resolution_, state.time, length)) {
+    const ContactStep step = contact_step_of(StepKind::explicit_rule, is_euler_, stages_ != nullptr);
+    pieces = contact_parts_again(model, part.h, part.parts.count, step, ws);
+  } else if (pieces.is_settling) {
     part.put_forces(1, 0, ws.row_part);
     ++contact_parts_;
     ++settling_parts_;
@@ -279,13 +291,47 @@ bool Dynamics::settle_part(const Model& model, State& state, Workspace& ws, doub
 
 bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                             std::span<const double> slope) noexcept {
+  parts_ = iterations_ = 0;
+  if (is_motion_fast(model.drives, motion_resolution_, state.time, h)) {
+    return take_motions(model, state, ws, h, mean, slope);
+  }
   const bool is_fine_enough = is_resolved(ws, h);
   return take_substep(model, state, ws, h, mean, slope) && is_fine_enough;
 }
 
+// In pieces that resolve the prescribed motions. Their lengths differ: instead of generalised_alpha, whose lead would
+// be an impulse in another length, they are taken by sdirk2.
+bool Dynamics::take_motions(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                            std::span<const double> slope) noexcept {
+  const double start = state.time;
+  const bool leads = stages_ != nullptr && stages_->rule.integrator == Integrator::generalised_alpha;
+  if (leads) stages_->rule.integrator = Integrator::sdirk2;
+  bool is_sound = true;
+  double done = 0;
+  for (int count = 1; done < h; ++count) {
+    if (count > 1) evaluate(model, state, ws);
+    const double rest = h - done;
+    double piece = motion_piece(model.drives, motion_resolution_, start + done, rest, h);
+    if (count == kMostMotionPieces && piece < rest) {
+      piece = rest;
+      is_sound = false;
+    }
+    // the rows' forces continue along their lines
+    const double later = done + 0.5 * piece - 0.5 * h;
+    for (std::size_t k = 0; k < mean.size(); ++k) piece_mean_[k] = mean[k] + later * slope[k];
+    const bool is_fine_enough = is_resolved(ws, piece);
+    is_sound = take_substep(model, state, ws, piece, piece_mean_, slope) && is_fine_enough && is_sound;
+    done = piece < rest ? done + piece : h;
+  }
+  if (leads) {
+    stages_->rule.integrator = Integrator::generalised_alpha;
+    stages_->forget_lead();
+  }
+  return is_sound;
+}
+
 bool Dynamics::take_substep(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                             std::span<const double> slope) noexcept {
-  parts_ = iterations_ = 0;
   const bool may_touch = touches_ != nullptr && has_element_stops(model, touches_->touched);
   return may_touch ? take_touches(model, state, ws, h, mean, slope) : take_rule(model, state, ws, h, mean, slope);
 }
@@ -345,7 +391,15 @@ bool Dynamics::take_rule(const Model& model, State& state, Workspace& ws, double
                          std::span<const double> slope) noexcept {
   if (stages_ != nullptr) return advance_by_rule(model, state, ws, h, mean, slope);
   ++parts_;
-  if (is_euler_) return advance_by_euler(model, state, ws, h, mean);
+  if (is_euler_) {
+    // its sum over p'' would leave h/2 of the change of p'' as a speed of what hangs on a driven joint
+    if (!model.drives.empty()) {
+      ws.mean_over = h;
+      evaluate(model, state, ws);
+      ws.mean_over = 0;
+    }
+    return advance_by_euler(model, state, ws, h, mean);
+  }
   if (bodies_ != nullptr) {
     Bodies& b = *bodies_;
     return multibody::advance(model, b.model, b.state, state, ws, b.ws, h, mean, slope) && is_regular_;

@@ -10,12 +10,14 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "multibody/formulations/integrators.h"
 #include "multibody/model/defs.h"
 #include "multibody/model/state.h"
+#include "multibody/motions/motion_pieces.h"
 
 namespace slew::multibody {
 
@@ -25,6 +27,11 @@ enum class StepKind;
 // A sub-step in which a body turns further does not resolve the motion: a spin of one rad a sub-step loses 6e-3 of its
 // energy in 10 s under rk4 and a third under augmented. Motion driven up by a too long sub-step is also detected here.
 inline constexpr double kLargestTurn = 0.5;  // rad
+
+[[nodiscard]] constexpr MotionResolution motion_resolution(Formulation formulation, Integrator rule) noexcept {
+  const bool is_runge_kutta = formulation != Formulation::augmented && rule == Integrator::rk4;
+  return is_runge_kutta ? kResolutionOfRungeKutta : kResolutionOfOtherRules;
+}
 
 class Dynamics {
  public:
@@ -80,6 +87,8 @@ class Dynamics {
   void show_end(const Model& model, const State& state, Workspace& ws) const noexcept;
   [[nodiscard]] bool take_touches(const Model& model, State& state, Workspace& ws, double h,
                                   std::span<const double> mean, std::span<const double> slope) noexcept;
+  [[nodiscard]] bool take_motions(const Model& model, State& state, Workspace& ws, double h,
+                                  std::span<const double> mean, std::span<const double> slope) noexcept;
   [[nodiscard]] bool take_substep(const Model& model, State& state, Workspace& ws, double h,
                                   std::span<const double> mean, std::span<const double> slope) noexcept;
   [[nodiscard]] bool take_rule(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
@@ -97,6 +106,8 @@ class Dynamics {
   std::unique_ptr<Stages> stages_;    // integrators other than rk4 and semi-implicit Euler
   std::unique_ptr<Stages> settling_;  // for contacts at rest under an explicit rule; without carried values
   std::unique_ptr<Touches> touches_;  // none: `augmented`, which divides by itself
+  MotionResolution motion_resolution_;
+  std::vector<double> piece_mean_;  // means of the rows' forces in a piece
   int contact_parts_ = 1, settling_parts_ = 0, parts_ = 1, iterations_ = 0;
   bool is_euler_ = false;   // semi-implicit Euler in joint coordinates, which needs no data of its own
   bool is_regular_ = true;  // result of the last evaluation

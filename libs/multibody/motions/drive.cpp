@@ -21,7 +21,12 @@ void impose(const Model& model, const Workspace& ws, int Drive::*place, Value va
 
 void set_time(const Model& model, double time, Workspace& ws) noexcept {
   ws.time = time;
-  for (std::size_t k = 0; k < model.drives.size(); ++k) ws.drives[k] = evaluate(model.drives[k].law, time);
+  for (std::size_t k = 0; k < model.drives.size(); ++k) {
+    const MotionLaw& law = model.drives[k].law;
+    MotionValue& value = ws.drives[k];
+    value = evaluate(law, time);
+    if (ws.mean_over > 0) value.acceleration = (evaluate(law, time + ws.mean_over).speed - value.speed) / ws.mean_over;
+  }
 }
 
 void impose_positions(const Model& model, const Workspace& ws, std::span<double> q) noexcept {

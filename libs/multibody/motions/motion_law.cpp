@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "math/rotation.h"
+#include "multibody/motions/motion_pieces.h"
 
 namespace slew::multibody {
 namespace {
@@ -76,6 +77,7 @@ MotionLaw motion_law(const MotionDef& def, double start) {
     law.spline = math::cubic_spline(def.points, ends);
   }
   law.first = start - (law.spline.empty() ? 0.0 : math::value_at(law.spline, 0).integral);
+  law.resolution = table_resolution(law);
   return law;
 }
 

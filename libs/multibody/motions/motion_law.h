@@ -10,6 +10,8 @@
 // anything but time, and motion that an input gives.
 #pragma once
 
+#include <vector>
+
 #include "math/cubic_spline.h"
 #include "multibody/motions/motion_defs.h"
 
@@ -23,6 +25,7 @@ struct MotionLaw {
   double from = 0, to = 0, start = 0, duration = 1;  // rad or m, s
   double speed = 0;                                  // rad/s or m/s
   double first = 0;                                  // x(0) of (4), less the spline's integral there
+  std::vector<double> resolution;                    // s, longest sub-steps by interval (motion_pieces.h)
   bool is_refused_outside = false;                   // not defined outside of the spline's times
 };
 

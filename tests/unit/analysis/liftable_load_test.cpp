@@ -120,6 +120,18 @@ TEST(LiftableLoad, IsFoundForEachBodyOfThePayload) {
   EXPECT_EQ(found[1].limit().load, hook.limit().load);
 }
 
+// pressures at stall are those of the start: 6.7 bar in A from 10 bar on the return side
+TEST(LiftableLoad, OfACircuitWithoutASupplyHasNoFigure) {
+  const std::string file = SLEWRING_SOURCE_DIR "/tests/unit/analysis/lift_without_supply.yaml";
+  scene::Scene scene = scene::load_file(file, {});
+  const LiftableLoad found = find_liftable(scene, {}, ListedSettings::named);
+  EXPECT_FALSE(found.has_answer());
+  EXPECT_EQ(found.refusal, "nothing feeds the cylinders: the circuit has no pump, source or accumulator");
+  // a tank does not feed, a fixed volume at the pressure of a supply does
+  scene::Scene fed = scene::load_file(file, {"S.initial_pressure=200 bar"});
+  EXPECT_TRUE(find_liftable(fed, {}, ListedSettings::left_out).has_answer());
+}
+
 TEST(LiftableLoad, ASceneWithoutCylindersHasNone) {
   scene::Scene scene = load("four_bar.yaml");
   EXPECT_FALSE(find_liftable(scene, {}, ListedSettings::named).has_answer());

@@ -228,5 +228,31 @@ TEST(ElementSpeeds, LeavesImplicitRulesAlone) {
   EXPECT_TRUE(found(def, 1e-3));
 }
 
+// a mass of 1 kg on an end damper: beyond k h^2/m of 0.25 it would leave with up to 2.9 times its speed
+TEST(ElementSpeeds, TouchIsTakenWholeByEulerUpToAQuarterOfItsLimit) {
+  MechanicsDef def = slider();
+  TranslationalForceDef stop = spring_to_block();
+  stop.min_length = 0.5;
+  const double h = 1e-3;
+  for (const double share : {0.24, 0.26, 3.9}) {
+    stop.end_spring_constant = share / (h * h);
+    def.translational_forces = {stop};
+    const auto euler = found(def, h, Integrator::semi_implicit_euler);
+    ASSERT_EQ(euler.has_value(), share > 0.25) << share;
+    EXPECT_FALSE(found(def, h)) << "rk4 divides touches";
+    if (!euler) continue;
+    EXPECT_EQ(euler->element, "Spring");
+    EXPECT_TRUE(euler->is_touch);
+    EXPECT_NEAR(euler->longest_step, h * std::sqrt(0.25 / share), 1e-2 * h);
+    const Problem problem = problem_of(*euler, Integrator::semi_implicit_euler, h);
+    EXPECT_NE(problem.what.find("a touch of it is too short for semi_implicit_euler"), std::string::npos);
+  }
+  // a spring on both sides keeps the limit of the rule
+  stop.end_spring_constant = 0;
+  stop.spring_constant = 3.9 / (h * h);
+  def.translational_forces = {stop};
+  EXPECT_FALSE(found(def, h, Integrator::semi_implicit_euler));
+}
+
 }  // namespace element_speeds_test
 }  // namespace slew::multibody

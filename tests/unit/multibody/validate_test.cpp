@@ -225,6 +225,46 @@ TEST(ShortPulse, IsNamedWithTheSubStepThatSuits) {
   EXPECT_TRUE(warnings_of({{0, 0}, {0.1, 0}, {0.1001, 5000}, {1, 5000}, {1.0001, 0}}).empty());
 }
 
+TEST(FastMotion, BeyondThePartsOfASubStepIsNamedWithTheSubStepThatSuits) {
+  MechanicsDef def = sound();
+  const auto warnings_of = [&def](double frequency) {
+    def.motions = {{.name = "Shake",
+                    .shape = MotionShape::harmonic,
+                    .joint = def.joints[0].name,
+                    .amplitude = 1e-3,
+                    .frequency = frequency}};
+    Problems warnings;
+    find_fast_motions(def, 1e-3, warnings);
+    return warnings;
+  };
+  // 10 parts a period of rk4, 64 parts of a sub-step
+  EXPECT_TRUE(warnings_of(6300).empty());
+  const Problems found = warnings_of(6500);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].path, "Shake");
+  EXPECT_NE(found[0].expected.find("mechanics.max_substep of at most 0.0005 s"), std::string::npos)
+      << found[0].expected;
+}
+
+TEST(Overshoot, OfAJumpInATableIsNamed) {
+  MechanicsDef def = sound();
+  const auto warnings_of = [&def](Table points) {
+    def.motions = {{.name = "Way", .joint = def.joints[0].name, .points = std::move(points)}};
+    Problems warnings;
+    find_overshoots(def, warnings);
+    return warnings;
+  };
+  const Problems found = warnings_of({{0, 0}, {0.1, 0}, {0.101, 0.1}, {0.2, 0.1}});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].path, "Way.points");
+  EXPECT_NE(found[0].what.find("it overshoots beside a jump"), std::string::npos) << found[0].what;
+  // an even change, and a sine whose peaks lie between the points
+  EXPECT_TRUE(warnings_of({{0, 0}, {0.1, 0}, {0.2, 0.1}, {0.3, 0.1}}).empty());
+  Table sine;
+  for (int k = 0; k <= 40; ++k) sine.push_back({0.05 * k, std::sin(3.3 * k * 0.05 * 3)});
+  EXPECT_TRUE(warnings_of(sine).empty());
+}
+
 TEST(Validate, NamesPartsThatNothingKeepsFromSpinning) {
   expect_problem([](auto& d) { d.bodies[1].inertia = {}; }, "Ball", "has no inertia about one of its free directions");
   expect_problem(

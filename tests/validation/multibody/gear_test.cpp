@@ -365,5 +365,29 @@ TEST(GearRules, RefuseARatioOtherThanThatOfTheLoopOfTheirJoints) {
   }
 }
 
+// the speed of the slow joint sets that of the fast one, whatever the ratio
+TEST(SteepGear, StartsWithTheSpeedOfItsSlowJoint) {
+  for (const double ratio : {1e3, 1e4, 1e5, 1e6, 1e-5}) {
+    MechanicsDef def = geared_pendulums(1e-4, ratio);
+    const bool is_first_slow = ratio > 1;
+    if (!is_first_slow) std::swap(def.joints[0].initial_velocity, def.joints[1].initial_velocity);
+    const Mechanism m(def);
+    EXPECT_NEAR(m.value(is_first_slow ? "Pivot1.velocity" : "Pivot2.velocity"), 1e-4, 1e-16) << ratio;
+    const double fast = 1e-4 * (is_first_slow ? ratio : 1 / ratio);
+    EXPECT_NEAR(m.value(is_first_slow ? "Pivot2.velocity" : "Pivot1.velocity"), fast, 1e-12 * fast) << ratio;
+    // a speed of the fast joint that does not fit
+    if (!is_first_slow) continue;
+    def.joints[0].initial_velocity = 1;
+    def.joints[1].initial_velocity = 0.9 * ratio;
+    Problems problems;
+    validate(def, problems);
+    EXPECT_NE(text_of(problems).find("initial_velocity: the loops do not allow"), std::string::npos) << ratio;
+    def.joints[1].initial_velocity = ratio;
+    problems.clear();
+    validate(def, problems);
+    EXPECT_EQ(text_of(problems), "") << ratio;
+  }
+}
+
 }  // namespace gear_test
 }  // namespace slew::multibody
