@@ -7,6 +7,8 @@
 #include <string>
 
 #include "core/check.h"
+#include "multibody/motions/drive.h"
+#include "multibody/motions/motion_pieces.h"
 
 namespace slew::monolith {
 namespace {
@@ -53,13 +55,30 @@ void Monolith::restart_with(std::span<const double> controls, std::span<const do
   must_restart_ = false;
 }
 
+// Stops within prescribed motions that are over between two of the solver's own steps: it would step across a ramp from
+// rest to rest.
+std::string Monolith::advance_solver(double t_end) {
+  const std::vector<multibody::Drive>& drives = equations_.model().drives;
+  const double start = solver_.time(), h = t_end - start;
+  if (multibody::is_motion_fast(drives, multibody::kResolutionOfRungeKutta, start, h)) {
+    for (double done = 0; done < h;) {
+      const double rest = h - done;
+      const double piece = multibody::motion_piece(drives, multibody::kResolutionOfRungeKutta, start + done, rest, h);
+      if (piece >= rest) break;
+      done += piece;
+      if (std::string failure = solver_.advance(start + done); !failure.empty()) return failure;
+    }
+  }
+  return solver_.advance(t_end);
+}
+
 // window by window, with the loops closed in the solver's own values at the end of each
 std::string Monolith::advance_closed(SimTime t) {
   SimTime now = time_;
   while (now < t) {
     const SimTime end = closed_at_ + kWindow;
     now = std::min(t, end);
-    if (std::string failure = solver_.advance(now.seconds()); !failure.empty()) return failure;
+    if (std::string failure = advance_solver(now.seconds()); !failure.empty()) return failure;
     if (now < end) continue;
     const std::span<const double> values = solver_.y();
     std::copy(values.begin(), values.end(), y_.begin());
@@ -86,7 +105,7 @@ Status Monolith::advance_to(SimTime t, std::span<const double> controls_begin, s
     control_end_[i] = controls_end[i];
   }
   if (has_kink) restart_with(controls_begin, slope_);
-  const std::string failure = equations_.has_loops() ? advance_closed(t) : solver_.advance(t.seconds());
+  const std::string failure = equations_.has_loops() ? advance_closed(t) : advance_solver(t.seconds());
   const std::span<const double> y = solver_.y();
   time_ = t;
   equations_.observe(solver_.time(), y.data());

@@ -271,5 +271,17 @@ TEST(Monolith, GivesVariablesByName) {
   EXPECT_TRUE(std::isnan(monolith.variable("Vol_LiftCyl_C.pressure")));
 }
 
+// From rest to rest between two of the solver's own steps. Right: I q'' = -m l (g sin q + p'' cos q), integrated in the
+// pieces of p'' by a method of order 8.
+TEST(Monolith, SeesARampThatIsOverWithinAStep) {
+  const scene::Scene scene =
+      scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/tests/unit/monolith/cart_on_a_ramp.yaml", {});
+  Monolith monolith(scene);
+  ASSERT_TRUE(monolith.start().is_ok());
+  for (int k = 1; k <= 120; ++k) ASSERT_TRUE(monolith.advance_to(SimTime{k * 1'000'000}, {}).is_ok());
+  EXPECT_NEAR(monolith.variable("Pin.position"), -0.34925, 1e-4);
+  EXPECT_NEAR(monolith.variable("Pin.velocity"), -8.4935, 1e-3);
+}
+
 }  // namespace monolith_test
 }  // namespace slew::monolith
