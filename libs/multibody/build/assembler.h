@@ -26,6 +26,7 @@ inline constexpr int kMostAssemblyIterations = 100;
 inline constexpr int kMostAssemblyHalvings = 20;
 inline constexpr double kNearTurn = 0.05;  // rad, distance of the nearby positions
 inline constexpr double kSlide = 0.02;     // share of the mechanism's size
+inline constexpr double kNearBend = 2e-3;  // rad, of a mode there: well above the root of kDependentAtStart
 inline constexpr double kHeavy = 1e4;      // factor of the modes' masses where joints shall move in their place
 // Ratio of a gear beyond which the speed of its slow joint sets that of the fast one before the projection. The row of
 // the slow joint differs from the gear's by the square of the ratio, where kDependentAtStart takes it as dependent.
@@ -47,11 +48,13 @@ class Assembler {
   // what its modes describe.
   void close_by_joints() { close_with(kHeavy); }
 
-  // False where a body bends so far that its modes have masses of no body.
+  // False where bodies bend so far that the mass matrix of their modes belongs to no body: some row has no mobility.
   [[nodiscard]] bool has_masses() {
     renew(state_);
-    const std::vector<double>& found = ws_.loops.residual;
-    return std::all_of(found.begin(), found.end(), [](double value) { return std::isfinite(value); });
+    for (std::size_t k = 0; k < ws_.loops.rows.size(); ++k) {
+      if (!(ws_.loops.mobility(k) >= 0)) return false;
+    }
+    return true;
   }
 
   [[nodiscard]] std::vector<bool> dependent_rows() {
@@ -91,8 +94,9 @@ class Assembler {
     return std::min(kLargest, kRounding / ws_.loops.factor.smallest_pivot());
   }
 
-  // a nearby position, selected by seed; distance: of kNearTurn
-  void move_away(std::uint64_t seed, double distance = 1) {
+  // A nearby position, selected by seed; bend: largest turn of a node by a mode [rad]. The terms of a mass matrix that
+  // the modes leave out grow with it, beside the inertia of a slender body about its axis.
+  void move_away(std::uint64_t seed, double bend) {
     renew(state_);
     double size = 0;
     for (const LinkMotion& m : ws_.motion) size = std::max(size, norm(m.r));
@@ -102,7 +106,7 @@ class Assembler {
       return static_cast<double>(random >> 11) * 0x1p-52 - 1;
     };
     std::vector<double> step(state_.u.size());
-    for (double& x : step) x = distance * kNearTurn * uniform();
+    for (double& x : step) x = kNearTurn * uniform();
     for (std::size_t i = 1; i < model_.links.size(); ++i) {
       const Link& link = model_.links[i];
       const double slide = kSlide / kNearTurn * (size > 0 ? size : 1);
@@ -115,7 +119,7 @@ class Assembler {
     }
     for (const FlexiblePart& part : model_.parts) {
       for (std::size_t mode = 0; mode < part.modes; ++mode)
-        step[at(part.u) + mode] /= largest_turn(*part.source, part.length, mode);
+        step[at(part.u) + mode] *= bend / (kNearTurn * largest_turn(*part.source, part.length, mode));
     }
     displace(model_, ws_, step, state_.q);
   }

@@ -20,8 +20,6 @@ namespace {
 // the rounding of six digits in a scene.
 constexpr double kVanishing = 1e-4;
 
-constexpr double kNearest = 1e-3;  // least distance of a nearby position, of the usual one
-
 // properties of the rows in positions near the start
 struct Nearby {
   std::vector<bool> is_dependent;  // dependent in all positions
@@ -57,9 +55,9 @@ Nearby look_nearby(Model model) {
   Nearby result;
   for (const std::uint64_t seed : {1U, 2U}) {
     Assembler nearby(model);
-    for (double distance = 1; distance >= kNearest; distance *= 0.25) {
+    for (const double bend : {kNearBend, 0.25 * kNearBend, 0.0625 * kNearBend, 0.0}) {
       nearby.state() = start.state();
-      nearby.move_away(seed, distance);
+      nearby.move_away(seed, bend);
       nearby.close_by_joints();
       if (nearby.has_masses()) break;
     }
@@ -157,7 +155,7 @@ std::vector<AssemblyReport::Row> find_locking_gears(const Model& model) {
   Assembler start(released), nearby(released);
   start.close();
   nearby.state() = start.state();
-  nearby.move_away(kSeed);
+  nearby.move_away(kSeed, kNearBend);
   nearby.close_by_joints();
   static_cast<void>(nearby.dependent_rows());
   const double rounding = nearby.rounding_of_freedom();
