@@ -94,6 +94,12 @@ class ScriptReader {
       ScriptTrack track{.input = entry.key, .points = {}};
       read_value(entry.value, script_track_fields().front(), &track, path, context_);
       const bool is_in_file = !scene_.table_files.empty() && scene_.table_files.back().path == path;
+      if (!track.points.empty() && track.points.front()[0] > 0 && track.points.front()[1] != 0) {
+        const auto [time, first] = track.points.front();
+        add_warning(entry.value.mark, path,
+                    {fmt::format("its first point is at {} s: {} holds from 0 s on", time, first),
+                     "[0 s, 0] in front of it, if the input is neutral until then", ""});
+      }
       if (!track.points.empty() || is_in_file) add_track(std::move(track), entry.value.mark);
     }
   }

@@ -54,6 +54,21 @@ TEST(Script, HoldsTheFirstAndTheLastValue) {
   EXPECT_EQ(script.end(), at(2));
 }
 
+TEST(Script, AValueThatHoldsFromTheStartOnBeforeItsPointIsWarnedOf) {
+  const auto warnings = [](const std::string& points) {
+    std::string all;
+    for (const std::string& warning :
+         load_text(kValve + "script:\n  inputs:\n    Stick: " + points + "\n", "test").warnings) {
+      if (warning.find("script") != std::string::npos) all += warning;
+    }
+    return all;
+  };
+  EXPECT_NE(warnings("[[0.5 s, 1], [0.6 s, 1]]").find("its first point is at 0.5 s: 1 holds from 0 s on"),
+            std::string::npos);
+  EXPECT_EQ(warnings("[[0.5 s, 0], [0.6 s, 1]]"), "");
+  EXPECT_EQ(warnings("[[0 s, 1], [0.6 s, 1]]"), "");
+}
+
 TEST(Script, StepInterpolationJumpsAtThePoint) {
   const ScriptPlayer script = player("script:\n  interpolation: step\n  inputs:\n    Stick: [[0, 0], [1 s, 1]]\n");
   EXPECT_EQ(script.value(0, {999'999'999}), 0.0);
