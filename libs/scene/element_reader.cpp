@@ -9,6 +9,8 @@
 #include "core/suggestion.h"
 #include "scene/mesh_inertia.h"
 #include "scene/sections.h"
+#include "scene/shape_fields.h"
+#include "scene/shape_inertia.h"
 
 namespace slew::scene {
 namespace {
@@ -46,11 +48,15 @@ void ElementReader::read_element(std::string_view section, const Node::Entry& el
   const ElementTable* table = table_of(section, element);
   if (table == nullptr) return;
   void* def = table->append(scene_, element.key);
+  if (section == "bodies" && !table->is_default) return read_flexible_body(element, *table, def);
   if (section == "bodies" && takes_from_mesh(element.value)) {
     read_mesh_body(element, table->fields, load_context_, *static_cast<multibody::BodyDef*>(def), scene_, context_);
     return;
   }
-  if (section == "bodies" && !table->is_default) return read_flexible_body(element, *table, def);
+  if (section == "bodies" && takes_from_shapes(element.value)) {
+    read_shape_body(element, table->fields, *static_cast<multibody::BodyDef*>(def), scene_, context_);
+    return;
+  }
   std::vector<std::string_view> other_keys;
   if (!table->type.empty()) other_keys.push_back(kTypeKey[0]);
   for (const ListTable& list : table->lists) other_keys.push_back(list.key);
@@ -92,17 +98,17 @@ void ElementReader::read_list(const Node::Entry& element, const ListTable& list,
 }
 
 // The keys of a rigid body may stay, so that one line makes it flexible and back. They are read, and differences from
-// the files give a warning (flexible_bodies.h); those of a mesh are skipped.
+// the files give a warning (flexible_bodies.h); those of a mesh or of shapes are skipped.
 void ElementReader::read_flexible_body(const Node::Entry& element, const ElementTable& table, void* def) {
   std::vector<Field> fields(table.fields.begin(), table.fields.end());
   std::vector<std::string_view> other_keys = {"type"};
-  const bool has_mesh = takes_from_mesh(element.value);
+  const bool has_mesh = takes_from_mesh(element.value), has_shapes = takes_from_shapes(element.value);
   for (const ElementTable& rigid : element_tables()) {
     if (rigid.section != "bodies" || !rigid.is_default) continue;
     for (Field field : rigid.fields) {
       if (std::any_of(fields.begin(), fields.end(), [&](const Field& own) { return own.key == field.key; })) continue;
       field.presence = Presence::optional;
-      if (has_mesh) {
+      if (has_mesh || has_shapes) {
         other_keys.push_back(field.key);
       } else {
         fields.push_back(field);
@@ -112,6 +118,10 @@ void ElementReader::read_flexible_body(const Node::Entry& element, const Element
   refuse_keys_of_other_type(element, table, other_keys);
   if (has_mesh) {
     for (const Field& field : mesh_inertia_fields()) other_keys.push_back(field.key);
+  }
+  if (has_shapes) {
+    const std::vector<std::string_view> keys = keys_of_shapes();
+    other_keys.insert(other_keys.end(), keys.begin(), keys.end());
   }
   read_fields(element.value, fields, def, element.key, element.mark, other_keys, context_);
 }

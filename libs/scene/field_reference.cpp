@@ -15,6 +15,8 @@
 #include "scene/mesh_inertia.h"
 #include "scene/schema.h"
 #include "scene/sections.h"
+#include "scene/shape_fields.h"
+#include "scene/shape_inertia.h"
 
 namespace slew::scene {
 namespace {
@@ -157,6 +159,27 @@ std::string with_wrapped_prose(std::string_view text) {
   return result;
 }
 
+// Bodies from shapes: the keys of each shape, and those around it in a body and in a part.
+std::string shape_tables() {
+  PartDef part;
+  PartsDef all;
+  std::string text = fmt::format(
+      "\n`inertia: {}`: mass, centre of mass and inertia of a simple solid, by `shape`. In a list `parts` of "
+      "`inertia: {}` the keys `shape_position` and `shape_orientation` are `position` and `orientation`.\n",
+      kFromShape, kFromParts);
+  TypeTables tables;
+  for (const ShapeWord& word : shape_words()) {
+    text += fmt::format("\n`shape: {}`: {}.\n\n{}", word.name, word.doc,
+                        tables.table_of(word.name, word.body_fields, &part));
+  }
+  text += fmt::format(
+      "\n`inertia: {}`: the sum of the solids of a list `parts`. Beside the list:\n\n{}\nA part, beside the keys of "
+      "its "
+      "shape:\n\n{}",
+      kFromParts, table_of(parts_fields(), &all), table_of(part_rows(), &part));
+  return text;
+}
+
 }  // namespace
 
 std::string field_reference() {
@@ -183,6 +206,7 @@ std::string field_reference() {
       MeshInertiaDef from_mesh;
       text += fmt::format("\n`inertia: {}`: mass, centre of mass and inertia of the solid in a closed mesh.\n\n{}",
                           kFromMesh, table_of(mesh_inertia_fields(), &from_mesh));
+      text += shape_tables();
     }
   }
   ScriptDef script;

@@ -13,6 +13,9 @@
 #include "scene/mesh_inertia.h"
 #include "scene/schema.h"
 #include "scene/sections.h"
+#include "scene/shape_fields.h"
+#include "scene/shape_inertia.h"
+#include "scene/solid_inertia.h"
 #include "scene/units.h"
 
 namespace slew::scene {
@@ -145,16 +148,53 @@ Json named(Json element) {
   return {{"type", "object"}, {"additionalProperties", std::move(element)}};
 }
 
+Json density_or_mass() {
+  const Json density = {{"required", Json::array({"density"})}}, mass = {{"required", Json::array({"mass"})}};
+  return Json::array({density, mass});
+}
+
 // A body with its inertia from a mesh: the remaining fields of a body, and those of the mesh.
 Json mesh_body(const ElementTable& table) {
-  std::vector<Field> fields = fields_beside_mesh(table.fields);
+  std::vector<Field> fields = fields_beside_solid(table.fields);
   fields.insert(fields.end(), mesh_inertia_fields().begin(), mesh_inertia_fields().end());
   Json schema =
       object_of(fields, "rigid body, inertia from a closed mesh", table.type, Values::of_scene, table.is_default);
   schema["properties"]["inertia"] = {{"const", std::string(kFromMesh)}};
   schema["required"].push_back("inertia");
-  const Json density = {{"required", Json::array({"density"})}}, mass = {{"required", Json::array({"mass"})}};
-  schema["oneOf"] = Json::array({density, mass});
+  schema["oneOf"] = density_or_mass();
+  return schema;
+}
+
+// A body with its inertia from a shape: the remaining fields of a body, and those of the shape.
+Json shape_body(const ElementTable& table, const ShapeWord& word) {
+  std::vector<Field> fields = fields_beside_solid(table.fields);
+  fields.insert(fields.end(), word.body_fields.begin(), word.body_fields.end());
+  Json schema = object_of(fields, "rigid body, inertia of a " + std::string(word.name), table.type, Values::of_scene,
+                          table.is_default);
+  schema["properties"][kInertiaKey] = {{"const", std::string(kFromShape)}};
+  schema["properties"][kShapeKey] = {{"const", std::string(word.name)}};
+  for (const std::string_view key : {kInertiaKey, kShapeKey}) schema["required"].push_back(std::string(key));
+  schema["oneOf"] = density_or_mass();
+  return schema;
+}
+
+// A body with its inertia from a list of shapes.
+Json parts_body(const ElementTable& table) {
+  std::vector<Field> fields = fields_beside_solid(table.fields);
+  fields.insert(fields.end(), parts_fields().begin(), parts_fields().end());
+  Json schema =
+      object_of(fields, "rigid body, inertia from a list of shapes", table.type, Values::of_scene, table.is_default);
+  Json shapes = Json::array();
+  for (const ShapeWord& word : shape_words()) {
+    Json part = object_of(word.part_fields, word.doc, "", Values::of_scene);
+    part["properties"][kShapeKey] = {{"const", std::string(word.name)}};
+    part["required"].push_back(std::string(kShapeKey));
+    shapes.push_back(std::move(part));
+  }
+  schema["properties"][kInertiaKey] = {{"const", std::string(kFromParts)}};
+  schema["properties"][kPartsKey] = list_of({{"oneOf", std::move(shapes)}}, 0);
+  schema["properties"][kPartsKey]["description"] = "shapes whose masses, centres and inertia tensors add";
+  schema["required"] = Json::array({std::string(kInertiaKey), std::string(kPartsKey)});
   return schema;
 }
 
@@ -225,7 +265,10 @@ Json elements_of(std::string_view section) {
     }
     add_language_keys(type, table);
     types.push_back(std::move(type));
-    if (section == "bodies" && table.is_default) types.push_back(mesh_body(table));
+    if (section != "bodies" || !table.is_default) continue;
+    types.push_back(mesh_body(table));
+    for (const ShapeWord& word : shape_words()) types.push_back(shape_body(table, word));
+    types.push_back(parts_body(table));
   }
   types.push_back(element_of_template(section));
   return {{"type", "object"},

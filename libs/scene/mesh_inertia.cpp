@@ -15,6 +15,7 @@
 #include "contact/mesh_check.h"
 #include "math/rotation.h"
 #include "scene/assets.h"
+#include "scene/solid_inertia.h"
 
 namespace slew::scene {
 namespace {
@@ -24,16 +25,6 @@ using math::Mat3;
 using math::Vec3;
 
 constexpr std::string_view kUpAxes[] = {"y", "z"};
-// keys of a body that the mesh replaces
-constexpr std::string_view kDerivedKeys[] = {"center_of_mass", "products", "inertia_about"};
-constexpr std::string_view kInertiaKey = "inertia";
-constexpr std::string_view kMassKey = "mass";
-
-// m, m3, kg/m3: limits beyond which the unit is wrong; a bucket-wheel excavator is 225 m long
-constexpr double kLargestSize = 1000, kSmallestSize = 1e-5, kLargestVolume = 1e6;
-constexpr double kLightest = 0.1, kDensest = 25000;
-// m, kg: limits beyond which the unit may be wrong; single bodies of machines are smaller
-constexpr double kLikelySize = 100, kLikelySmall = 1e-3, kLikelyMass = 1e6;
 
 constexpr Field kFields[] = {
     field<&MeshInertiaDef::mesh>(
@@ -67,14 +58,6 @@ constexpr Field kFields[] = {
                                                     "instead of the solid inside; 0: the solid"}),
 };
 
-bool is_one_of(std::string_view key, std::span<const std::string_view> keys) {
-  return std::find(keys.begin(), keys.end(), key) != keys.end();
-}
-
-bool is_mesh_key(std::string_view key) {
-  return std::any_of(std::begin(kFields), std::end(kFields), [&](const Field& row) { return row.key == key; });
-}
-
 class MeshBodyReader {
  public:
   MeshBodyReader(const Node::Entry& element, const LoadContext& load_context, const ReadContext& context)
@@ -82,8 +65,9 @@ class MeshBodyReader {
 
   void read(std::span<const Field> body_fields, multibody::BodyDef& body, Scene& scene) {
     const std::size_t problems = context_.report.size();
-    read_keys(body_fields, body);
-    check_keys();
+    read_beside_solid(element_, body_fields, body, kFields, &def_, {}, context_);
+    refuse_derived_keys(element_, "the mesh", kFromMesh, context_);
+    check_density_or_mass(element_.value, element_.key, element_.mark, "the solid in the mesh", context_);
     if (context_.report.size() > problems) return;
     const std::optional<contact::MeshDef> mesh = read_solid();
     if (!mesh) return;
@@ -93,41 +77,10 @@ class MeshBodyReader {
     const double density_of_solid = std::isfinite(def_.density) ? def_.density : def_.mass / solid.volume;
     if (!is_plausible(*mesh, solid, density_of_solid, scene)) return;
     put(solid, density_of_solid, body);
-    scene.mesh_inertias.push_back({element_.key, def_.mesh, solid.volume, density_of_solid});
+    scene.solid_inertias.push_back({element_.key, def_.mesh, "", solid.volume, density_of_solid});
   }
 
  private:
-  // the element's keys in two maps: those of the mesh and those of any body
-  void read_keys(std::span<const Field> body_fields, multibody::BodyDef& body) {
-    Node of_mesh, of_body = element_.value;
-    of_mesh.kind = Node::Kind::map;
-    of_mesh.mark = element_.value.mark;
-    for (const Node::Entry& entry : element_.value.entries) {
-      if (is_mesh_key(entry.key)) of_mesh.entries.push_back(entry);
-    }
-    std::vector<std::string_view> other_keys = {"type", kInertiaKey};
-    other_keys.insert(other_keys.end(), std::begin(kDerivedKeys), std::end(kDerivedKeys));
-    for (const Field& row : kFields) other_keys.push_back(row.key);
-    read_fields(of_body, fields_beside_mesh(body_fields), &body, element_.key, element_.mark, other_keys, context_);
-    read_fields(of_mesh, kFields, &def_, element_.key, element_.mark, {}, context_);
-  }
-
-  void check_keys() {
-    for (const std::string_view key : kDerivedKeys) {
-      if (const Node::Entry* entry = element_.value.find(key)) {
-        report_problem(entry->mark, key, {"follows from the mesh", "no such key beside inertia: from_mesh", ""});
-      }
-    }
-    const Node::Entry* density_entry = element_.value.find("density");
-    const Node::Entry* mass_entry = element_.value.find(kMassKey);
-    if (density_entry != nullptr && mass_entry != nullptr) {
-      report_problem(mass_entry->mark, kMassKey, {"density and mass are both given", "one of them", ""});
-    } else if (density_entry == nullptr && mass_entry == nullptr) {
-      context_.report.add(element_.mark, element_.key,
-                          {"neither density nor mass is given", "one of them, for the solid in the mesh", ""});
-    }
-  }
-
   // The mesh in the body's unit and up axis; nothing after a reported problem.
   std::optional<contact::MeshDef> read_solid() {
     const Mark mark = element_.value.find("mesh")->value.mark;
@@ -171,12 +124,12 @@ class MeshBodyReader {
         fmt::format("the mesh is {:.3g} x {:.3g} x {:.3g} m, {:.4g} m3, {:.4g} kg at {:.4g} kg/m3", high[0] - low[0],
                     high[1] - low[1], high[2] - low[2], solid.volume, mass, density_of_solid);
     const Mark mark = element_.value.find("mesh_unit")->value.mark;
-    if (!(solid.volume > 0) || size > kLargestSize || size < kSmallestSize || solid.volume > kLargestVolume ||
-        density_of_solid > kDensest || density_of_solid < kLightest) {
+    const Plausibility plausibility = plausibility_of(size, solid.volume, density_of_solid);
+    if (plausibility == Plausibility::likely) return true;
+    if (plausibility == Plausibility::impossible) {
       report_problem(mark, "mesh_unit", {found, "the length of one unit of the file, such as 1 mm or 1 m", ""});
       return false;
     }
-    if (size <= kLikelySize && size >= kLikelySmall && mass <= kLikelyMass) return true;
     scene.warnings.push_back(context_.report
                                  .at(mark, element_.key + ".mesh_unit",
                                      {found, "the length of one unit of the file, such as 1 mm or 1 m", ""})
@@ -189,10 +142,7 @@ class MeshBodyReader {
     const Mat3 R_BM = math::rotation_zxz(def_.mesh_orientation);
     const Mat3 I_B = R_BM * (solid.inertia * density_of_solid) * transpose(R_BM);
     body.mass = std::isfinite(def_.mass) ? def_.mass : solid.volume * density_of_solid;
-    body.center_of_mass = (Vec3(def_.mesh_position) + R_BM * solid.centre).array();
-    body.inertia = {I_B(0, 0), I_B(1, 1), I_B(2, 2)};
-    body.products = {I_B(0, 1), I_B(0, 2), I_B(1, 2)};
-    body.inertia_about = multibody::InertiaPoint::center_of_mass;
+    put_inertia(Vec3(def_.mesh_position) + R_BM * solid.centre, I_B, body);
   }
 
   void report_problem(const Mark& mark, std::string_view key, ValueProblem problem) {
@@ -212,17 +162,7 @@ std::span<const Field> mesh_inertia_fields() noexcept {
 }
 
 bool takes_from_mesh(const Node& body) {
-  const Node::Entry* inertia_entry = body.find(kInertiaKey);
-  return inertia_entry != nullptr && inertia_entry->value.kind == Node::Kind::scalar &&
-         inertia_entry->value.text == kFromMesh;
-}
-
-std::vector<Field> fields_beside_mesh(std::span<const Field> body_fields) {
-  std::vector<Field> rows;
-  for (const Field& row : body_fields) {
-    if (row.key != kInertiaKey && row.key != kMassKey && !is_one_of(row.key, kDerivedKeys)) rows.push_back(row);
-  }
-  return rows;
+  return has_inertia_word(body, kFromMesh);
 }
 
 void read_mesh_body(const Node::Entry& element, std::span<const Field> body_fields, const LoadContext& load_context,

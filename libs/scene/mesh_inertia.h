@@ -48,11 +48,8 @@ struct MeshInertiaDef {
 // True if an element of the section `bodies` has inertia: from_mesh.
 [[nodiscard]] bool takes_from_mesh(const Node& body);
 
-// Fields of a body that the user still sets when its inertia comes from a mesh.
-[[nodiscard]] std::vector<Field> fields_beside_mesh(std::span<const Field> body_fields);
-
-// Reads such an element into the body, and the mesh's results into scene.mesh_inertias. Problems go to the report, also
-// an unreadable, open, non-finite or inverted mesh. Reads the mesh's file: allocates, not real-time safe.
+// Reads such an element into the body, and the mesh's results into scene.solid_inertias. Problems go to the report,
+// also an unreadable, open, non-finite or inverted mesh. Reads the mesh's file: allocates, not real-time safe.
 void read_mesh_body(const Node::Entry& element, std::span<const Field> body_fields, const LoadContext& load_context,
                     multibody::BodyDef& body, Scene& scene, const ReadContext& context);
 

@@ -55,12 +55,13 @@ struct Asset {
   bool operator==(const Asset&) const = default;
 };
 
-// A body with mass properties from a mesh, for displays of a scene; the numbers are in its BodyDef.
-struct MeshInertia {
+// A body with mass properties from a mesh or from shapes, for displays of a scene; the numbers are in its BodyDef.
+struct SolidInertia {
   std::string body;
-  std::string mesh;    // file
+  std::string mesh;    // file; empty: from shapes
+  std::string shapes;  // "tube", "3 parts"; empty: from a mesh
   double volume = 0;   // m3
-  double density = 0;  // kg/m3
+  double density = 0;  // kg/m3; of parts: the mean
 };
 
 // A body that bends, for the flex node: its reduction, and the elastic forces of its modes.
@@ -105,7 +106,7 @@ struct Scene {
   std::vector<std::string> other_payloads;     // bodies that the machine lifts beside mechanics.payload
   std::vector<std::string> started_joints;     // joints that `start:` names; none in a scene from its expanded text
   std::vector<ParameterText> parameter_texts;  // of the scene's own file; none in a scene from its expanded text
-  std::vector<MeshInertia> mesh_inertias;      // results of the files read; none in a scene from its expanded text
+  std::vector<SolidInertia> solid_inertias;    // from meshes and shapes; none in a scene from its expanded text
 
   // The scene after includes and overrides as canonical YAML in SI: reading it gives the same Scene (assets by name).
   std::string expanded_text;

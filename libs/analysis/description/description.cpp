@@ -64,9 +64,9 @@ void describe_mechanics(const scene::Scene& scene, Description& d) {
 
 void describe_bodies(const scene::Scene& scene, Description& d) {
   for (const multibody::BodyDef& body : scene.mechanics.bodies) {
-    const auto& meshes = scene.mesh_inertias;
-    const auto mesh = std::find_if(meshes.begin(), meshes.end(),
-                                   [&](const scene::MeshInertia& one) { return one.body == body.name; });
+    const auto& solids = scene.solid_inertias;
+    const auto solid = std::find_if(solids.begin(), solids.end(),
+                                    [&](const scene::SolidInertia& one) { return one.body == body.name; });
     multibody::BodyDef numbers = body;
     for (const multibody::FlexibleBodyDef& flexible : scene.mechanics.flexible_bodies) {
       if (flexible.body == body.name) multibody::take_mass(*flexible.modes, numbers);
@@ -74,7 +74,7 @@ void describe_bodies(const scene::Scene& scene, Description& d) {
     for (const multibody::SegmentedBodyDef& segmented : scene.mechanics.segmented_bodies) {
       if (segmented.body == body.name) multibody::take_mass(*segmented.chain, numbers);
     }
-    d.body_numbers.push_back({numbers, mesh == meshes.end() ? std::nullopt : std::optional(*mesh)});
+    d.body_numbers.push_back({numbers, solid == solids.end() ? std::nullopt : std::optional(*solid)});
   }
 }
 
@@ -119,8 +119,10 @@ Json body_json(const BodyNumbers& body) {
                {"inertia", body.def.inertia},
                {"products", body.def.products},
                {"inertia_about", is_about_center ? "center_of_mass" : "body_origin"}};
-  if (body.mesh) {
-    json["mesh"] = {{"file", body.mesh->mesh}, {"volume", body.mesh->volume}, {"density", body.mesh->density}};
+  if (body.solid && !body.solid->mesh.empty()) {
+    json["mesh"] = {{"file", body.solid->mesh}, {"volume", body.solid->volume}, {"density", body.solid->density}};
+  } else if (body.solid) {
+    json["shapes"] = {{"solid", body.solid->shapes}, {"volume", body.solid->volume}, {"density", body.solid->density}};
   }
   return json;
 }
@@ -130,11 +132,11 @@ std::string triple_text(const Triple& v) {
 }
 
 // "Bag from bag.stl: 0.64 m3 of 781.25 kg/m3, 500 kg; centre of mass [0, -0.6, 0] m; about it ..."
-std::string mesh_text(const BodyNumbers& body) {
+std::string solid_text(const BodyNumbers& body) {
   return fmt::format(
       "{} from {}: {:.6g} m3 of {:.6g} kg/m3, {:.6g} kg; centre of mass {} m; about it Ixx, Iyy, Izz {} and Ixy, Ixz, "
       "Iyz {} kg m2",
-      body.def.name, body.mesh->mesh, body.mesh->volume, body.mesh->density, body.def.mass,
+      body.def.name, body.solid->mesh + body.solid->shapes, body.solid->volume, body.solid->density, body.def.mass,
       triple_text(body.def.center_of_mass), triple_text(body.def.inertia), triple_text(body.def.products));
 }
 
@@ -221,7 +223,7 @@ std::string report_text(const Description& d, std::size_t width) {
   if (!d.gears.empty()) rows.add({"gears", listed(d.gears)});
   if (!d.closed.empty()) rows.add({"closed by rows", listed(d.closed)});
   for (const BodyNumbers& body : d.body_numbers) {
-    if (body.mesh) rows.add({"inertia", mesh_text(body)});
+    if (body.solid) rows.add({"inertia", solid_text(body)});
   }
   for (const NodeNeed& node : d.nodes) {
     rows.add({node.role + " node", (node.is_needed ? "needed: " : "not needed: ") + node.reason});

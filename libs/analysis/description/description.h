@@ -12,10 +12,10 @@
 
 namespace slew::analysis {
 
-// A body's inertia, and the mesh that it was computed from.
+// A body's inertia, and the mesh or the shapes that it was computed from.
 struct BodyNumbers {
   multibody::BodyDef def;
-  std::optional<scene::MeshInertia> mesh;
+  std::optional<scene::SolidInertia> solid;
 };
 
 struct NodeNeed {

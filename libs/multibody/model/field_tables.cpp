@@ -117,11 +117,11 @@ constexpr Field kBodyFields[] = {
                                    .ramp = kMassRamp,
                                    .doc = "mass; a live change scales the inertia with it"}),
     field<&BodyDef::center_of_mass>("center_of_mass", {.dimension = length, .doc = "centre of mass, body frame"}),
-    field<&BodyDef::inertia>("inertia",
-                             {.dimension = inertia,
-                              .range = kNotNegative,
-                              .presence = Presence::required,
-                              .doc = "moments Ixx, Iyy, Izz in body axes; 0, 0, 0 is a point mass; or from_mesh"}),
+    field<&BodyDef::inertia>("inertia", {.dimension = inertia,
+                                         .range = kNotNegative,
+                                         .presence = Presence::required,
+                                         .doc = "moments Ixx, Iyy, Izz in body axes; 0, 0, 0 is a point mass; or "
+                                                "from_mesh, from_shape, from_parts"}),
     field<&BodyDef::products>(
         "products",
         {.dimension = inertia, .doc = "the tensor's elements Ixy, Ixz, Iyz (minus the integral of x y dm)"}),

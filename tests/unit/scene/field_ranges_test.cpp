@@ -15,6 +15,7 @@
 #include "scene/mesh_inertia.h"
 #include "scene/scene.h"
 #include "scene/sections.h"
+#include "scene/shape_fields.h"
 #include "scene/units.h"
 
 namespace slew::scene {
@@ -110,6 +111,14 @@ std::vector<Case> cases() {
     }
   }
   all.push_back({"bodies_from_mesh", "Thing", "bodies:\n  Thing: {inertia: from_mesh, ", mesh_inertia_fields()});
+  for (const ShapeWord& word : shape_words()) {
+    all.push_back({fmt::format("bodies_from_shape_{}", word.name), "Thing",
+                   fmt::format("bodies:\n  Thing: {{inertia: from_shape, shape: {}, ", word.name), word.body_fields});
+    all.push_back({fmt::format("bodies_from_parts_{}", word.name), "Thing.parts[0]",
+                   fmt::format("bodies:\n  Thing: {{inertia: from_parts, parts: [{{shape: {}, ", word.name),
+                   word.part_fields, "}]"});
+  }
+  all.push_back({"bodies_from_parts", "Thing", "bodies:\n  Thing: {inertia: from_parts, ", parts_fields()});
   return all;
 }
 

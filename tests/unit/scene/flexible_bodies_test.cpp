@@ -142,6 +142,22 @@ TEST_F(FlexibleScene, RigidKeysMayStayAndAreComparedWithTheFiles) {
   expect_part(other[1], "Boom.center_of_mass: it has no effect: the flexible files give [-3.25");
 }
 
+// one line makes a body with a mesh or shapes flexible and back; the mesh is not read
+TEST_F(FlexibleScene, KeysOfAMeshOrOfShapesMayStay) {
+  for (const char* keys :
+       {"inertia: from_mesh\n    mesh: none.stl\n    mesh_unit: 1 m\n    mesh_up: y\n    density: 7850\n",
+        "inertia: from_shape\n    shape: sphere\n    radius: 1 m\n    mass: 3 kg\n",
+        "inertia: from_parts\n    density: 1\n    parts: [{shape: sphere, radius: 1 m}]\n"}) {
+    const std::string text = with(kBoom, "    flex_modes:", std::string("    ") + keys + "    flex_modes:");
+    EXPECT_EQ(problems(text), "");
+    const Scene scene = load(text);
+    EXPECT_TRUE(scene.solid_inertias.empty()) << keys;
+    EXPECT_TRUE(scene.warnings.empty()) << keys;
+  }
+  expect_part(problems(with(kBoom, "    flex_modes:", "    inertia: from_shape\n    shap: sphere\n    flex_modes:")),
+              "Boom.shap: unknown key; did you mean 'shape'?");
+}
+
 TEST_F(FlexibleScene, StartsByModeOrUndeformed) {
   const auto scene_with = [&](const std::string& keys) {
     return with(kBoom, "    flex_modes", keys + "    flex_modes");

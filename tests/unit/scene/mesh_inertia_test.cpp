@@ -129,10 +129,10 @@ TEST_F(FromMesh, ABoxHasItsFormulas) {
   const Solid solid = box_solid(6 * 7850, 1, 2, 3);
   const Scene scene = load("mesh: part.stl, mesh_unit: 1 m, mesh_up: y, density: 7850 kg/m3");
   expect_solid(scene, solid);
-  ASSERT_EQ(scene.mesh_inertias.size(), 1u);
-  EXPECT_EQ(scene.mesh_inertias[0].body, "Part");
-  EXPECT_NEAR(scene.mesh_inertias[0].volume, 6, 6 * kSingle);
-  EXPECT_EQ(scene.mesh_inertias[0].density, 7850);
+  ASSERT_EQ(scene.solid_inertias.size(), 1u);
+  EXPECT_EQ(scene.solid_inertias[0].body, "Part");
+  EXPECT_NEAR(scene.solid_inertias[0].volume, 6, 6 * kSingle);
+  EXPECT_EQ(scene.solid_inertias[0].density, 7850);
 }
 
 TEST_F(FromMesh, AMassInThePlaceOfTheDensityIsSpreadEvenly) {
@@ -140,7 +140,7 @@ TEST_F(FromMesh, AMassInThePlaceOfTheDensityIsSpreadEvenly) {
   const Scene scene = load("mesh: part.stl, mesh_unit: 1 m, mesh_up: y, mass: 500 kg");
   EXPECT_EQ(scene.mechanics.bodies[0].mass, 500);
   expect_solid(scene, box_solid(500, 1, 2, 3));
-  EXPECT_NEAR(scene.mesh_inertias[0].density, 500 / 6.0, 1e-4);
+  EXPECT_NEAR(scene.solid_inertias[0].density, 500 / 6.0, 1e-4);
 }
 
 TEST_F(FromMesh, TheUnitScalesLengthsAndTheUpAxisTurns) {

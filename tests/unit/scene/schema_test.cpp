@@ -16,6 +16,7 @@
 #include "scene/element_table.h"
 #include "scene/mesh_inertia.h"
 #include "scene/sections.h"
+#include "scene/shape_fields.h"
 
 namespace slew::scene {
 namespace schema_test {
@@ -38,7 +39,7 @@ TEST(Schema, HasEveryFieldOfEveryTable) {
       if (alternative["properties"].contains("use")) continue;
       if (!table.type.empty() && alternative["properties"]["type"]["const"] != std::string(table.type)) continue;
       // the other form of a body: below
-      if (alternative["properties"].contains("mesh_unit")) continue;
+      if (alternative["properties"]["inertia"].contains("const")) continue;
       is_found = true;
       for (const ListTable& list : table.lists) {
         EXPECT_EQ(alternative["properties"][std::string(list.key)]["type"], "array") << table.section << list.key;
@@ -54,9 +55,13 @@ TEST(Schema, HasEveryFieldOfEveryTable) {
 TEST(Schema, ReportsWhichFieldsAreLive) {
   const auto schema = nlohmann::json::parse(json_schema());
   const auto& bodies = schema["properties"]["bodies"]["additionalProperties"]["oneOf"];
-  ASSERT_EQ(bodies.size(), 5u);  // the last one is laid over a template
-  for (const std::size_t rigid : {0u, 1u}) EXPECT_TRUE(bodies[rigid]["properties"]["mass"]["x-live"].get<bool>());
-  for (const std::size_t bending : {2u, 3u}) EXPECT_FALSE(bodies[bending]["properties"]["mass"].contains("x-live"));
+  // numbers, mesh, each shape, parts; flexible and segmented; the last one is laid over a template
+  const std::size_t rigid_forms = 3 + shape_words().size();
+  ASSERT_EQ(bodies.size(), rigid_forms + 3);
+  for (std::size_t i = 0; i < rigid_forms; ++i) EXPECT_TRUE(bodies[i]["properties"]["mass"]["x-live"].get<bool>()) << i;
+  for (std::size_t i = rigid_forms; i < rigid_forms + 2; ++i) {
+    EXPECT_FALSE(bodies[i]["properties"]["mass"].contains("x-live")) << i;
+  }
 }
 
 TEST(Schema, HasTheFieldsOfABodyFromAMesh) {
@@ -69,6 +74,34 @@ TEST(Schema, HasTheFieldsOfABodyFromAMesh) {
   }
   EXPECT_TRUE(bodies[1]["properties"].contains("position"));
   EXPECT_FALSE(bodies[1]["properties"].contains("center_of_mass"));
+}
+
+TEST(Schema, HasTheFieldsOfABodyFromShapes) {
+  const auto schema = nlohmann::json::parse(json_schema());
+  const auto& bodies = schema["properties"]["bodies"]["additionalProperties"]["oneOf"];
+  const auto expect_fields = [](const nlohmann::json& type, std::span<const Field> fields) {
+    for (const Field& field : fields) {
+      EXPECT_TRUE(type["properties"].contains(std::string(field.key))) << field.key;
+      const bool is_required = field.presence == Presence::required;
+      const auto& required = type["required"];
+      EXPECT_EQ(std::find(required.begin(), required.end(), std::string(field.key)) != required.end(), is_required)
+          << field.key;
+    }
+  };
+  const std::size_t count = shape_words().size();
+  const auto& parts = bodies[2 + count]["properties"];
+  EXPECT_EQ(parts["inertia"]["const"], "from_parts");
+  for (std::size_t i = 0; i < count; ++i) {
+    const ShapeWord& word = shape_words()[i];
+    SCOPED_TRACE(word.name);
+    const auto& body = bodies[2 + i];
+    EXPECT_EQ(body["properties"]["inertia"]["const"], "from_shape");
+    EXPECT_EQ(body["properties"]["shape"]["const"], std::string(word.name));
+    EXPECT_TRUE(body["properties"].contains("position"));
+    EXPECT_FALSE(body["properties"].contains("center_of_mass"));
+    expect_fields(body, word.body_fields);
+    expect_fields(parts["parts"]["items"]["oneOf"][i], word.part_fields);
+  }
 }
 
 TEST(Schema, HasTheKeysThatTheLoaderResolves) {
