@@ -70,7 +70,8 @@ class Builder {
     // sagging bodies would leave loops open
     const bool has_loops = model_.has_closing_rows();
     if (has_loops) straighten_segments(model_, model_.start_q, model_.start_u);
-    const bool is_settled = has_loops || (settle_segments(model_) && settle_modes(model_));
+    // so would those in the poses of the mechanism in which they are rigid
+    const bool is_settled = has_loops || welded || (settle_segments(model_) && settle_modes(model_));
     report = assemble(model_);
     report.is_settled = is_settled;
     if (welded) take_over(*welded, model_, report);

@@ -25,9 +25,15 @@ namespace {
 // ratio by which a body's mass may extend beyond its points
 constexpr double kLargestGyration = 3;
 
+// Whether flexible bodies start undeformed, whatever their loads (Builder::run()).
+bool is_start_undeformed(const Model& model) {
+  return model.has_closing_rows() || std::any_of(model.segmented.begin(), model.segmented.end(),
+                                                 [](const SegmentedPart& part) { return !part.is_free; });
+}
+
 void find_start_deflections(const Model& model, Problems& warnings) {
   for (const FlexiblePart& part : model.parts) {
-    if (model.has_closing_rows() && !part.is_start_given) {
+    if (is_start_undeformed(model) && !part.is_start_given) {
       warnings.push_back(
           {part.name + ".flex_modes",
            "the body starts undeformed, moves as a rigid one that the joints allow, and swings: in a mechanism with "
@@ -83,7 +89,7 @@ void find_start_bends(const Model& model, Problems& warnings) {
   Workspace ws(model);
   observe(model, start_state(model), ws);
   for (const SegmentedPart& part : model.segmented) {
-    if (part.start == SegmentStart::at_rest && (!part.is_free || model.has_closing_rows())) {
+    if (part.start == SegmentStart::at_rest && is_start_undeformed(model)) {
       warnings.push_back({part.name + ".segments",
                           part.is_free
                               ? "the body starts undeformed, moves as a rigid one that the joints allow, and "
