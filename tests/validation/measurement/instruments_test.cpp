@@ -56,20 +56,23 @@ sensors:
   Weak: {type: imu, body: Rotor, point: [0.5 m, 0, 0], acceleration_range: 5 m/s2, rate_range: 1 rad/s, sample_time: 10 ms}
 )";
 
-// a scene of the repository with these lines behind it
-scene::Scene with_lines(const std::string& file, const std::string& lines) {
+// a scene of the repository with these sensors beside its own
+scene::Scene with_sensors(const std::string& file, const std::string& sensors) {
   std::ifstream in(std::string(SLEWRING_SOURCE_DIR "/scenes/") + file);
-  std::stringstream text;
-  text << in.rdbuf() << lines;
-  return scene::load_text(text.str(), file);
+  std::stringstream read;
+  read << in.rdbuf();
+  std::string text = read.str();
+  const std::string section = "\nsensors:\n";
+  if (text.find(section) == std::string::npos) text += section;
+  return scene::load_text(text.insert(text.find(section) + section.size(), sensors), file);
 }
 
 // A cold start: what a thermometer in the tank shows is the tank's temperature of 250 ms ago (of the steps of 50 ms),
 // in steps of 0.5 K and with its offset of 2 K; a second one is at the end of its range.
 TEST(Thermometer, shows_the_temperature_of_a_volume_late_and_in_steps) {
-  const scene::Scene scene = with_lines("oil_warm_up.yaml", R"(
-sensors:
-  Probe: {type: temperature, variable: Vol_Tank.temperature, lowest: -20 degC, highest: 120 degC, resolution: 0.5 K,
+  const scene::Scene scene = with_sensors(
+      "oil_warm_up.yaml",
+      R"(  Probe: {type: temperature, variable: Vol_Tank.temperature, lowest: -20 degC, highest: 120 degC, resolution: 0.5 K,
           offset: 2 K, sample_time: 50 ms, delay: 200 ms}
   Cold: {type: temperature, variable: Vol_Tank.temperature, lowest: -40 degC, highest: 0 degC}
 )");
@@ -89,12 +92,12 @@ sensors:
   EXPECT_TRUE(has_moved);
 }
 
-// the oil of a scene has one temperature unless it is asked for more; errors of a thermometer are differences
+// the oil of a scene has one temperature unless the scene states more; errors of a thermometer are differences
 TEST(Thermometer, needs_the_temperature_of_the_oil) {
   const auto problem = [](const std::string& file, const std::string& keys) {
     try {
-      static_cast<void>(with_lines(
-          file, "\nsensors:\n  Probe: {type: temperature, lowest: 0 degC, highest: 9 degC, " + keys + "}\n"));
+      static_cast<void>(
+          with_sensors(file, "  Probe: {type: temperature, lowest: 0 degC, highest: 9 degC, " + keys + "}\n"));
     } catch (const scene::LoadError& error) {
       return std::string(error.what());
     }
@@ -110,6 +113,12 @@ TEST(Thermometer, needs_the_temperature_of_the_oil) {
     EXPECT_NE(problem("oil_warm_up.yaml", std::string("variable: Vol_Tank.temperature, ") + key + ": 0.1 degC")
                   .find("'0.1 degC' is a temperature; expected a temperature difference"),
               std::string::npos)
+        << key;
+    // an expression has no such zero
+    EXPECT_NE(
+        problem("oil_warm_up.yaml", std::string("variable: Vol_Tank.temperature, ") + key + ": \"${2 * 0.1 degC}\"")
+            .find(std::string("Probe.") + key + ": 546.5 K is more than the range"),
+        std::string::npos)
         << key;
   }
 }
