@@ -45,6 +45,7 @@ constexpr std::array<DimensionInfo, static_cast<std::size_t>(Dimension::number_o
     {"control signal", "1", "500", {0, 0, 0, 0, 0}},
     {"specific heat", "J/kg/K", "1900 J/kg/K", {0, 2, -2, -1, 0}},
     {"thermal conductance", "W/K", "50 W/K", {1, 2, -3, -1, 0}},
+    {"temperature difference", "K", "0.5 K", {0, 0, 0, 1, 0}},
 }};
 
 }  // namespace

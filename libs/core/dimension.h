@@ -50,6 +50,8 @@ enum class Dimension : std::uint8_t {
   electric_signal,        // the valve's control signal, V or mA as the maker states it: a plain number
   specific_heat,          // J/(kg K)
   thermal_conductance,    // W/K
+  // K; 0.5 degC is a temperature, 273.65 K, and no difference
+  temperature_difference,
   number_of_dimensions
 };
 

@@ -35,7 +35,8 @@ constexpr std::array kSampling = {
                                                         "stays with is_valid 0"}),
 };
 
-template <Dimension D>
+// D: dimension of the value; Difference: that of its errors, which have no zero of their own.
+template <Dimension D, Dimension Difference = D>
 constexpr std::array kTransducer = {
     field<&I::variable>("variable", {.presence = Presence::required,
                                      .doc = "variable that is measured, of an element of the mechanics or hydraulics, "
@@ -45,17 +46,20 @@ constexpr std::array kTransducer = {
     field<&I::value, &C::highest>("highest",
                                   {.dimension = D, .presence = Presence::required, .doc = "upper end of the range"}),
     field<&I::value, &C::gain>("gain", {.change = Change::live, .doc = "measured change over true change"}),
-    field<&I::value, &C::offset>("offset", {.dimension = D, .change = Change::live, .doc = "added to the value"}),
-    field<&I::value, &C::noise>(
-        "noise",
-        {.dimension = D, .range = kNotNegative, .change = Change::live, .doc = "standard deviation of white noise"}),
+    field<&I::value, &C::offset>("offset",
+                                 {.dimension = Difference, .change = Change::live, .doc = "added to the value"}),
+    field<&I::value, &C::noise>("noise", {.dimension = Difference,
+                                          .range = kNotNegative,
+                                          .change = Change::live,
+                                          .doc = "standard deviation of white noise"}),
     field<&I::value, &C::drift>(
-        "drift", {.dimension = D, .change = Change::live, .doc = "growth of the offset in drift_time; 0: it stays"}),
+        "drift",
+        {.dimension = Difference, .change = Change::live, .doc = "growth of the offset in drift_time; 0: it stays"}),
     field<&I::value, &C::drift_time>("drift_time",
                                      {.dimension = time, .range = kPositive, .doc = "time that drift refers to"}),
     field<&I::value, &C::resolution>(
         "resolution",
-        {.dimension = D, .range = kNotNegative, .doc = "step of the measured value (quantisation); 0: none"}),
+        {.dimension = Difference, .range = kNotNegative, .doc = "step of the measured value (quantisation); 0: none"}),
     kSampling[0],
     kSampling[1],
     kSampling[2],
@@ -122,6 +126,7 @@ constexpr InstrumentTypeRow kTypes[] = {
     {"angular_speed", "tachometer", kTransducer<angular_velocity>, angular_velocity},
     {"force", "load cell", kTransducer<force>, force},
     {"torque", "torque transducer", kTransducer<torque>, torque},
+    {"temperature", "thermometer", kTransducer<temperature, temperature_difference>, temperature},
     {"imu", "inertial measurement unit: specific force and rates at a point of a body", kImu, none},
 };
 

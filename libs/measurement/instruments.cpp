@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace slew::measurement {
 namespace {
@@ -18,12 +19,27 @@ void check_whole(const std::string& path, double time, double step, Problems& pr
                       ""});
 }
 
+// A zero of degC in an expression, ${2 * 0.1 degC}, gives an error of hundreds of kelvin.
+void check_differences(const InstrumentDef& def, Problems& problems) {
+  const double span = def.value.highest - def.value.lowest;
+  const std::pair<const char*, double> errors[] = {{"offset", def.value.offset},
+                                                   {"noise", def.value.noise},
+                                                   {"drift", def.value.drift},
+                                                   {"resolution", def.value.resolution}};
+  for (const auto& [key, value] : errors) {
+    if (std::abs(value) <= span) continue;
+    problems.push_back({fmt::format("{}.{}", def.name, key), fmt::format("{:g} K is more than the range", value),
+                        fmt::format("a difference of temperatures up to {:g} K, without degC", span), ""});
+  }
+}
+
 }  // namespace
 
 void validate(std::span<const InstrumentDef> instruments, SimDuration step, Problems& problems) {
   for (const InstrumentDef& def : instruments) {
     check_whole(def.name + ".sample_time", def.sampling.sample_time, step.seconds(), problems);
     check_whole(def.name + ".delay", def.sampling.delay, step.seconds(), problems);
+    if (def.type == InstrumentType::temperature) check_differences(def, problems);
     if (def.type == InstrumentType::imu || def.value.lowest < def.value.highest) continue;
     problems.push_back({def.name + ".highest", "the range ends below its beginning", "a value above lowest", ""});
   }

@@ -26,7 +26,18 @@
 
 namespace slew::measurement {
 
-enum class InstrumentType : int { pressure, flow, position, angle, speed, angular_speed, force, torque, imu };
+enum class InstrumentType : int {
+  pressure,
+  flow,
+  position,
+  angle,
+  speed,
+  angular_speed,
+  force,
+  torque,
+  temperature,
+  imu
+};
 
 // One struct for every type; each type's field table lists the members that it has.
 struct InstrumentDef {

@@ -230,7 +230,7 @@ class Evaluator {
     }
     if (function != nullptr) refuse(begin, fmt::format("'{}' is a function", name), fmt::format("{}(...)", name));
     if (name == "pi") return constant({std::numbers::pi, {}, true});
-    NamedQuantity found = names_.value(name);
+    NamedQuantity found = next() == '[' ? read_entry(name) : names_.value(name);
     if (found.problem) throw ExpressionFault{{begin, std::move(*found.problem)}};
     if (!found.quantity) {
       refuse(begin, fmt::format("there is no parameter '{}'", name), "", names_.closest_of(name));
@@ -238,6 +238,21 @@ class Evaluator {
     if (!found.quantity->is_variable) return constant(*found.quantity);
     steps_.push_back({.kind = Kind::variable, .index = found.variable});
     return *found.quantity;
+  }
+
+  // edges[1]: an entry of a list, counted from 0
+  NamedQuantity read_entry(std::string_view name) {
+    const std::size_t opened = at_;
+    take('[');
+    constexpr std::size_t kLongest = 6;  // digits; no list of a scene is longer
+    std::size_t number = 0, digits = 0;
+    for (; is_digit_of(next()) && digits < kLongest; ++at_, ++digits) {
+      number = 10 * number + static_cast<std::size_t>(next() - '0');
+    }
+    skip_spaces();
+    if (digits == 0 || next() != ']') refuse(opened, "this is no entry of a list", "its number from 0, as in L[2]");
+    take(']');
+    return names_.entry(name, number);
   }
 
   [[noreturn]] static void refuse_function(std::size_t at, std::string_view name) {
@@ -287,6 +302,10 @@ ExpressionResult read(std::string_view text, ExpressionNames& names, UnitSystem&
 }
 
 }  // namespace
+
+NamedQuantity ExpressionNames::entry(std::string_view name, std::size_t) {
+  return {std::nullopt, ValueProblem{fmt::format("'{}' is no list", name), "a name without [...]", ""}};
+}
 
 ExpressionResult evaluate(std::string_view text, ExpressionNames& names, UnitSystem& units) {
   std::vector<ExpressionStep> steps;

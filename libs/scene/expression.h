@@ -53,6 +53,8 @@ class ExpressionNames {
   virtual ~ExpressionNames() = default;
   [[nodiscard]] virtual bool has(std::string_view name) const = 0;
   [[nodiscard]] virtual NamedQuantity value(std::string_view name) = 0;
+  // Entry of a name that is a list, counted from 0; no name is one by default.
+  [[nodiscard]] virtual NamedQuantity entry(std::string_view name, std::size_t number);
   [[nodiscard]] virtual std::string closest_of(std::string_view name) const = 0;
   // Names such as "Bag.position.x".
   [[nodiscard]] virtual bool have_dots() const { return false; }

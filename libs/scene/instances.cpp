@@ -291,8 +291,8 @@ class Expander {
     for (const Node::Entry& entry : given->value.entries) {
       const std::string path = fmt::format("{}.parameters.{}", instance.path, entry.key);
       Node value = entry.value;
-      if (value.kind != Node::Kind::scalar) {
-        report_.add(value.mark, path, {"is " + describe(value), "one value: a quantity, a number or a text", ""});
+      if (!is_value_of_parameter(value)) {
+        report_.add(value.mark, path, {"is " + describe(value), kValueOfParameter, ""});
         continue;
       }
       const std::size_t problems = report_.size();

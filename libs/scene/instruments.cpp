@@ -54,7 +54,13 @@ void check_instruments(const Scene& scene, Problems& problems) {
   if (scene.instruments.empty()) return;
   measurement::validate(scene.instruments, scene.session.step_duration(), problems);
   const std::vector<ElementRef> all = elements_of(scene);
+  const bool has_temperatures = scene.hydraulics.oil_temperature == hydraulics::OilTemperature::by_volume;
   for (const measurement::InstrumentDef& def : scene.instruments) {
+    if (def.type == measurement::InstrumentType::temperature && !has_temperatures) {
+      problems.push_back({def.name + ".variable", "the oil has one temperature, which no variable shows",
+                          "hydraulics.oil_temperature: by_volume", ""});
+      continue;
+    }
     if (node_of(all, def)) continue;
     const bool is_imu = def.type == measurement::InstrumentType::imu;
     problems.push_back(

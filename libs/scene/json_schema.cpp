@@ -73,7 +73,9 @@ Json point(const Field& field, Values values) {
 // a list of three, or the name of a point
 Json or_point(Json schema, const Field& field, Values values) {
   const bool may_be_point = field.key.starts_with("point") || field.key == "position";
-  if (values == Values::plain || field.dimension != Dimension::length || !may_be_point) return schema;
+  if (values == Values::plain || field.dimension != Dimension::length || !may_be_point) {
+    return or_expression(std::move(schema), values);
+  }
   return {{"anyOf", Json::array({std::move(schema), text_like(kPointPattern)})}};
 }
 
@@ -90,7 +92,7 @@ Json type_of(const Field& field, Values values) {
     case FieldType::triple:
       return or_point(list_of(quantity(field.range, values), 3), field, values);
     case FieldType::triples:
-      return list_of(or_point(list_of(quantity(field.range, values), 3), field, values), 0);
+      return or_expression(list_of(or_point(list_of(quantity(field.range, values), 3), field, values), 0), values);
     case FieldType::table: {
       Json table = list_of(point(field, values), 0);
       table["minItems"] = 1;
@@ -100,12 +102,14 @@ Json type_of(const Field& field, Values values) {
                          {"properties", {{"file", name}, {"columns", list_of(text, 2)}, {"sha256", text}}},
                          {"required", Json::array({"file"})},
                          {"additionalProperties", false}};
-      return {{"anyOf", Json::array({std::move(table), name, file})}};
+      Json forms = Json::array({std::move(table), name, file});
+      if (values == Values::of_scene) forms.push_back(text_like(kExpressionPattern));
+      return {{"anyOf", std::move(forms)}};
     }
     case FieldType::numbers:
-      return list_of(quantity(field.range, values), 0);
+      return or_expression(list_of(quantity(field.range, values), 0), values);
     case FieldType::texts:
-      return list_of({{"type", "string"}}, 0);
+      return or_expression(list_of({{"type", "string"}}, 0), values);
     case FieldType::choice:
       return or_expression({{"enum", field.choices}}, values);
   }
@@ -338,8 +342,8 @@ namespace {
 // the top-level keys that the loader resolves
 void add_language_sections(Json& properties) {
   const Json text = {{"type", "string"}}, any = {{"type", "object"}};
-  const Json value = {{"type", Json::array({"number", "string", "boolean"})}};
-  const Json declared = {{"type", Json::array({"number", "string", "boolean", "null"})}};
+  const Json value = {{"type", Json::array({"number", "string", "boolean", "array"})}};
+  const Json declared = {{"type", Json::array({"number", "string", "boolean", "null", "array"})}};
   const auto object = [](const char* first, const Json& type, std::vector<std::string> required) {
     Json schema = {{"type", "object"}, {"additionalProperties", false}, {"required", Json(required)}};
     schema["properties"] = {{first, type}, {"prefix", Json{{"type", "string"}}}};

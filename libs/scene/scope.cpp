@@ -32,7 +32,31 @@ Mark mark_in(const Node& scalar, std::size_t byte) {
   return mark;
 }
 
+std::size_t count_values(const Node& node) {
+  std::size_t count = 1;
+  for (const Node& item : node.items) count += count_values(item);
+  return count;
+}
+
+// the place of the use, and values that no longer are the file's own text
+void move_to(Node& node, const Mark& mark) {
+  node.mark = mark;
+  if (node.origin == Node::Origin::file) node.origin = Node::Origin::expression;
+  for (Node& item : node.items) move_to(item, mark);
+}
+
 }  // namespace
+
+bool is_value_of_parameter(const Node& node) {
+  const auto is_list_of_values = [](const Node& list) {
+    return list.kind == Node::Kind::sequence && std::all_of(list.items.begin(), list.items.end(), [](const Node& item) {
+             return item.kind == Node::Kind::scalar;
+           });
+  };
+  const auto is_entry = [&](const Node& item) { return item.kind == Node::Kind::scalar || is_list_of_values(item); };
+  return node.kind == Node::Kind::scalar ||
+         (node.kind == Node::Kind::sequence && std::all_of(node.items.begin(), node.items.end(), is_entry));
+}
 
 bool is_expression(std::string_view text) {
   return text.starts_with("${");
@@ -73,9 +97,8 @@ void Scope::declare(const Node& parameters, const std::string& path) {
       context_.report.add(entry.mark, own_path, {"the name is reserved in expressions", "another name", ""});
       continue;
     }
-    if (entry.value.kind != Node::Kind::scalar && entry.value.kind != Node::Kind::empty) {
-      context_.report.add(entry.value.mark, own_path,
-                          {"is " + describe(entry.value), "one value: a quantity, a number or a text", ""});
+    if (entry.value.kind != Node::Kind::empty && !is_value_of_parameter(entry.value)) {
+      context_.report.add(entry.value.mark, own_path, {"is " + describe(entry.value), kValueOfParameter, ""});
       continue;
     }
     numbers_.emplace(entry.key, parameters_.size());
@@ -138,9 +161,22 @@ bool Scope::substitute_name(Node& node, std::string_view name, const Mark& place
     return true;
   }
   const Mark mark = node.mark;
-  node = found.parameter->value;
-  node.mark = mark;
-  if (node.origin == Node::Origin::file) node.origin = Node::Origin::expression;
+  const Node& value = found.parameter->value;
+  if (value.kind == Node::Kind::sequence && context_.chain > 0) {
+    context_.report.add(place, path,
+                        {fmt::format("parameter '{}' is a list, within another parameter", name),
+                         "one value, such as an entry of it", ""});
+    return true;
+  }
+  if (value.kind == Node::Kind::sequence) context_.list_values += count_values(value);
+  if (context_.list_values > kMaxListValues) {
+    context_.report.add(
+        place, path,
+        {"the lists of parameters give the scene too many values", fmt::format("at most {}", kMaxListValues), ""});
+    return true;
+  }
+  node = value;
+  move_to(node, mark);
   return true;
 }
 
@@ -164,7 +200,7 @@ std::optional<ValueProblem> Scope::settle(Parameter& parameter) {
   parameter.state = State::running;
   ++context_.chain;
   const std::size_t problems = context_.report.size();
-  substitute_scalar(parameter.value, parameter.path);
+  substitute(parameter.value, parameter.path);
   --context_.chain;
   parameter.state = context_.report.size() == problems ? State::done : State::faulty;
   return parameter.state == State::done ? std::nullopt : std::optional(ValueProblem{});
@@ -195,6 +231,7 @@ std::vector<std::string_view> Scope::own_names() const {
 std::vector<ParameterText> Scope::own_values() const {
   std::vector<ParameterText> values;
   for (const Parameter& parameter : parameters_) {
+    if (parameter.value.kind == Node::Kind::sequence) continue;
     if (parameter.state == Parameter::State::done) values.push_back({parameter.name, parameter.value.text});
   }
   return values;
@@ -217,7 +254,29 @@ NamedQuantity Scope::value(std::string_view name) {
   if (found.parameter == nullptr) return {};
   found.parameter->is_used = true;
   if (auto problem = found.scope->settle(*found.parameter)) return {std::nullopt, std::move(problem)};
+  return quantity_at(found.parameter->value, name);
+}
+
+NamedQuantity Scope::entry(std::string_view name, std::size_t number) {
+  const Found found = look_up(name);
+  if (found.parameter == nullptr) return {};
+  found.parameter->is_used = true;
+  if (auto problem = found.scope->settle(*found.parameter)) return {std::nullopt, std::move(problem)};
   const Node& value = found.parameter->value;
+  if (value.kind != Node::Kind::sequence) {
+    return {std::nullopt, ValueProblem{fmt::format("parameter '{}' is {}, no list", name, describe(value)),
+                                       "a parameter with a list", ""}};
+  }
+  if (number >= value.items.size()) {
+    return {std::nullopt,
+            ValueProblem{fmt::format("list '{}' has {} entries, counted from 0", name, value.items.size()),
+                         fmt::format("a number below {}", value.items.size()), ""}};
+  }
+  return quantity_at(value.items[number], fmt::format("{}[{}]", name, number));
+}
+
+// name: for messages
+NamedQuantity Scope::quantity_at(const Node& value, std::string_view name) {
   NamedQuantity result = quantity_of(value.text, context_.unit_system());
   const bool is_text = value.is_quoted && result.quantity && result.quantity->is_bare;
   if (result.problem || is_text) {

@@ -21,8 +21,9 @@
 
 namespace slew::scene {
 
-inline constexpr std::size_t kMaxParameters = 1000;  // of one scope
-inline constexpr int kMaxParameterChain = 64;        // parameters that use each other, one by one
+inline constexpr std::size_t kMaxParameters = 1000;     // of one scope
+inline constexpr int kMaxParameterChain = 64;           // parameters that use each other, one by one
+inline constexpr std::size_t kMaxListValues = 1000000;  // that lists put into the scene, at all places together
 
 // `${...}`: begins with an expression. `$${`, `$$${`, ...: a text that begins so.
 [[nodiscard]] bool is_expression(std::string_view text);
@@ -33,15 +34,21 @@ struct ScopeContext {
   Report& report;
   std::optional<UnitSystem> units{};  // opened by the first quantity
   int chain = 0;                      // parameters that are being evaluated
+  std::size_t list_values = 0;        // that lists have put into the scene
   [[nodiscard]] UnitSystem& unit_system();
 };
+
+// One value, a list of values, or a list of lists of values.
+[[nodiscard]] bool is_value_of_parameter(const Node& node);
+inline constexpr const char* kValueOfParameter = "one value (a quantity, a number or a text), or a list of them";
 
 class Scope final : public ExpressionNames {
  public:
   // around: null for a file's own scope.
   Scope(ScopeContext& context, Scope* around) : context_(context), around_(around) {}
 
-  // Declares every key of a map `parameters:`. An empty value must be given before it is used. path: "parameters".
+  // Declares every key of a map `parameters:`: one value, a list of values, or a list of such lists (a table). An empty
+  // value must be given before it is used. path: "parameters".
   void declare(const Node& parameters, const std::string& path);
   // Replaces the value of a parameter of this scope by one without expression; false: there is none of this name.
   bool give(std::string_view name, Node value);
@@ -65,6 +72,7 @@ class Scope final : public ExpressionNames {
   // ExpressionNames
   [[nodiscard]] bool has(std::string_view name) const override;
   [[nodiscard]] NamedQuantity value(std::string_view name) override;
+  [[nodiscard]] NamedQuantity entry(std::string_view name, std::size_t number) override;
   [[nodiscard]] std::string closest_of(std::string_view name) const override;
 
  private:
@@ -86,6 +94,7 @@ class Scope final : public ExpressionNames {
   [[nodiscard]] Found look_up(std::string_view name);
   // Evaluates it. A problem without text: it is reported already.
   [[nodiscard]] std::optional<ValueProblem> settle(Parameter& parameter);
+  [[nodiscard]] NamedQuantity quantity_at(const Node& value, std::string_view name);
   void substitute_scalar(Node& node, const std::string& path);
   [[nodiscard]] bool substitute_name(Node& node, std::string_view name, const Mark& place, const std::string& path);
 

@@ -185,7 +185,11 @@ std::vector<Dimension> dimensions_of(const Exponents& exponent) {
   std::vector<Dimension> found;
   for (int i = 0; i < static_cast<int>(Dimension::number_of_dimensions); ++i) {
     const auto dimension = static_cast<Dimension>(i);
-    if (dimension == Dimension::flow_coefficient || dimension == Dimension::electric_signal) continue;
+    // a unit of temperatures is named by these alone
+    if (dimension == Dimension::flow_coefficient || dimension == Dimension::electric_signal ||
+        dimension == Dimension::temperature_difference) {
+      continue;
+    }
     if (info(dimension).exponent == exponent) found.push_back(dimension);
   }
   return found;

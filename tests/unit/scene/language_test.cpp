@@ -78,6 +78,99 @@ script:
   EXPECT_EQ(loaded.script.tracks.at(0).points.at(1), (std::array<double, 2>{3, 0.5}));
 }
 
+// a list, a table, and entries of both kinds of list by number
+TEST(SceneParameters, ListsStandWhereListsAreWanted) {
+  const std::string with = R"(parameters:
+  c: [500 mm, 0, 0]
+  I: [0, 1, 1]
+  m: 2 kg
+  masses: [1 kg, "${m}", "${2 * m}"]
+  push: [[0 s, 0 N], [1 s, 3 kN]]
+  names: [Hinge.position, Hinge.velocity]
+bodies:
+  Rod: {mass: "${masses[1]}", center_of_mass: ${c}, inertia: ${I}}
+joints:
+  Hinge: {type: revolute, body2: Rod}
+forces:
+  Push: {type: point_force, body: Rod, direction: [1, 0, 0], point: ["${c[0] / 5}", 0, 0], force_table: ${push}}
+recording: {variables: ${names}}
+)";
+  const std::string without = R"(bodies:
+  Rod: {mass: 2 kg, center_of_mass: [0.5 m, 0, 0], inertia: [0, 1, 1]}
+joints:
+  Hinge: {type: revolute, body2: Rod}
+forces:
+  Push: {type: point_force, body: Rod, direction: [1, 0, 0], point: [0.1 m, 0, 0], force_table: [[0 s, 0 N], [1 s, 3 kN]]}
+recording: {variables: [Hinge.position, Hinge.velocity]}
+)";
+  EXPECT_EQ(expanded(with), expanded(without));
+  EXPECT_EQ(expanded(with, {"c=[1 m, 0, 0]"}),
+            expanded(without, {"Rod.center_of_mass=[1 m, 0, 0]", "Push.point=[0.2 m, 0, 0]"}));
+  EXPECT_EQ(load_text(with, "test").parameter_texts.size(), 1U);  // m alone is a number to vary
+}
+
+TEST(SceneParameters, ListsGoToInstances) {
+  const std::string scene = R"(groups:
+  Side:
+    parameters: {c: , k: 1}
+    bodies:
+      Rod: {mass: 1 kg, center_of_mass: ${c}, inertia: [0, 1, 1]}
+    joints:
+      Hinge: {type: revolute, body2: Rod}
+parameters: {own: [1 m, 2 m, 3 m]}
+instances:
+  L_: {group: Side, parameters: {c: [1 m, 0, 0], k: 2}}
+  R_: {group: Side, parameters: {c: ${own}, k: 2}}
+)";
+  const std::string problems = problems_of(scene);
+  EXPECT_EQ(problems, "");
+  const Scene loaded = load_text(scene, "test");
+  EXPECT_EQ(loaded.mechanics.bodies.at(0).center_of_mass, (Triple{1, 0, 0}));
+  EXPECT_EQ(loaded.mechanics.bodies.at(1).center_of_mass, (Triple{1, 2, 3}));
+}
+
+TEST(SceneParameters, FaultsOfListsHaveTheirPlace) {
+  const auto problem = [](const std::string& parameters, const std::string& mass) {
+    return problems_of("parameters: " + parameters + "\nbodies:\n  Rod: {mass: \"" + mass +
+                       "\", center_of_mass: [0.5 m, 0, 0], inertia: [0, 1, 1]}\njoints:\n"
+                       "  Hinge: {type: revolute, body2: Rod}\n");
+  };
+  EXPECT_EQ(problem("{L: [1 kg, 2 kg]}", "${L[1] * 2}"), "");
+  EXPECT_EQ(problem("{L: [1 kg, 2 kg]}", "${L}"),
+            "test:3:15: Rod.mass: is a list; expected a mass such as '500 kg', or a bare number in kg");
+  EXPECT_EQ(problem("{L: [1 kg, 2 kg]}", "${2 * L}"),
+            "test:3:22: Rod.mass: parameter 'L' is a list, no quantity; expected a parameter with a number");
+  EXPECT_EQ(problem("{L: [1 kg, 2 kg]}", "${L[2]}"),
+            "test:3:18: Rod.mass: list 'L' has 2 entries, counted from 0; expected a number below 2");
+  EXPECT_EQ(problem("{L: [1 kg, 2 kg]}", "${L[x]}"),
+            "test:3:19: Rod.mass: this is no entry of a list; expected its number from 0, as in L[2]");
+  EXPECT_EQ(problem("{L: [1 kg, 2 m]}", "${L[0] + L[1]}"),
+            "test:3:23: Rod.mass: '+' between a mass and a length; expected a mass, as on the left");
+  EXPECT_EQ(problem("{L: 2 kg}", "${L[0]}"),
+            "test:3:18: Rod.mass: parameter 'L' is '2 kg', no list; expected a parameter with a list");
+  EXPECT_EQ(problem("{L: [1 kg, heavy]}", "${L[1]}"),
+            "test:3:18: Rod.mass: parameter 'L[1]' is 'heavy', no quantity; expected a parameter with a number");
+  EXPECT_EQ(problem("{L: [1 kg, \"${L[0]}\"]}", "${L[0]}"),
+            "test:1:27: parameters.L: parameter 'L' depends on itself; expected parameters that use each other in one "
+            "direction");
+  EXPECT_EQ(
+      problem("{L: [1 kg], K: [\"${L}\"]}", "${K[0]}"),
+      "test:1:32: parameters.K: parameter 'L' is a list, within another parameter; expected one value, such as an "
+      "entry of it");
+  EXPECT_EQ(problem("{L: [[1 kg, 2 kg]]}", "${L[0]}"),
+            "test:3:18: Rod.mass: parameter 'L[0]' is a list, no quantity; expected a parameter with a number");
+}
+
+// lists cannot grow a scene without bound
+TEST(SceneParameters, ListsPutAMillionValuesAtMost) {
+  std::string scene = "parameters:\n  L: [";
+  for (int i = 0; i < 2000; ++i) scene += i == 0 ? "0" : ", 0";
+  scene += "]\nbodies:\n";
+  for (int i = 0; i < 600; ++i) scene += "  B" + std::to_string(i) + ": {mass: 1, inertia: ${L}}\n";
+  EXPECT_NE(problems_of(scene).find("the lists of parameters give the scene too many values; expected at most 1000000"),
+            std::string::npos);
+}
+
 TEST(SceneParameters, FaultsHaveTheirPlace) {
   const auto problem = [](const std::string& parameters, const std::string& mass) {
     return problems_of("parameters: " + parameters + "\nbodies:\n  Rod: {mass: " + mass +
@@ -103,8 +196,12 @@ TEST(SceneParameters, FaultsHaveTheirPlace) {
   EXPECT_EQ(problem("{m: \"${2 * k}\", k: \"${m / 3}\"}", "${m}"),
             "test:1:35: parameters.k: parameter 'm' depends on itself; expected parameters that use each other in one "
             "direction");
-  EXPECT_EQ(problem("{m: [1 kg]}", "2 kg"),
-            "test:1:17: parameters.m: is a list; expected one value: a quantity, a number or a text");
+  EXPECT_EQ(
+      problem("{m: {a: 1 kg}}", "2 kg"),
+      "test:1:17: parameters.m: is a map; expected one value (a quantity, a number or a text), or a list of them");
+  EXPECT_EQ(
+      problem("{m: [[[1 kg]]]}", "2 kg"),
+      "test:1:17: parameters.m: is a list; expected one value (a quantity, a number or a text), or a list of them");
   EXPECT_EQ(problem("{sin: 1}", "2 kg"),
             "test:1:14: parameters.sin: the name is reserved in expressions; expected another name");
   EXPECT_EQ(

@@ -92,6 +92,20 @@ TEST(Units, AScaleThatIsNoShortDecimalStaysAsItIs) {
   EXPECT_NEAR(*result.value, 6894.757293168361, 1e-9);
 }
 
+// 0.5 degC is a temperature, 273.65 K, and no difference
+TEST(Units, ADifferenceOfTemperaturesHasNoZeroOfItsOwn) {
+  const auto read = [](const char* text) {
+    return read_quantity(text, Writing::plain, Dimension::temperature_difference, units());
+  };
+  EXPECT_EQ(read("0.5 K").value, 0.5);
+  EXPECT_EQ(read("0.5").value, 0.5);
+  for (const char* text : {"0.5 degC", "0.5 degF"}) {
+    EXPECT_FALSE(read(text).value) << text;
+    EXPECT_EQ(read(text).problem.what, std::string("'") + text + "' is a temperature");
+    EXPECT_EQ(read(text).problem.expected, "a temperature difference such as '0.5 K', or a bare number in K");
+  }
+}
+
 TEST(Units, TheExampleOfEveryDimensionReadsInThatDimension) {
   for (int i = 0; i < static_cast<int>(Dimension::number_of_dimensions); ++i) {
     const auto dimension = static_cast<Dimension>(i);

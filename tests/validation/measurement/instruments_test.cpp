@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <sstream>
 #include <string>
 
 #include "build_paths.h"
@@ -53,6 +55,73 @@ sensors:
   On_Mast: {type: imu, body: Mast, point: [0.5 m, 0, 0], acceleration_range: 80 m/s2, rate_range: 35 rad/s}
   Weak: {type: imu, body: Rotor, point: [0.5 m, 0, 0], acceleration_range: 5 m/s2, rate_range: 1 rad/s, sample_time: 10 ms}
 )";
+
+// a scene of the repository with these sensors beside its own
+scene::Scene with_sensors(const std::string& file, const std::string& sensors) {
+  std::ifstream in(std::string(SLEWRING_SOURCE_DIR "/scenes/") + file);
+  std::stringstream read;
+  read << in.rdbuf();
+  std::string text = read.str();
+  const std::string section = "\nsensors:\n";
+  if (text.find(section) == std::string::npos) text += section;
+  return scene::load_text(text.insert(text.find(section) + section.size(), sensors), file);
+}
+
+// A cold start: what a thermometer in the tank shows is the tank's temperature of 250 ms ago (of the steps of 50 ms),
+// in steps of 0.5 K and with its offset of 2 K; a second one is at the end of its range.
+TEST(Thermometer, shows_the_temperature_of_a_volume_late_and_in_steps) {
+  const scene::Scene scene = with_sensors(
+      "oil_warm_up.yaml",
+      R"(  Probe: {type: temperature, variable: Vol_Tank.temperature, lowest: -20 degC, highest: 120 degC, resolution: 0.5 K,
+          offset: 2 K, sample_time: 50 ms, delay: 200 ms}
+  Cold: {type: temperature, variable: Vol_Tank.temperature, lowest: -40 degC, highest: 0 degC}
+)");
+  DirectSession session(scene);
+  ASSERT_TRUE(session.start().is_ok());
+  std::vector<double> truth = {value(session, Role::hydraulics, "Vol_Tank.temperature")};
+  bool has_moved = false;
+  for (StepIndex n = 0; n < 2000; ++n) {
+    session.step(n, {}, {});
+    truth.push_back(value(session, Role::hydraulics, "Vol_Tank.temperature"));
+    const StepIndex now = n + 1, sample = now < 20 ? 0 : (now - 20) / 5 * 5;
+    const double shown = 0.5 * std::round((truth[static_cast<std::size_t>(sample)] + 2) / 0.5);
+    ASSERT_NEAR(value(session, Role::hydraulics, "Probe.value"), shown, 1e-9) << now;
+    has_moved = has_moved || shown > 282;
+    ASSERT_EQ(value(session, Role::hydraulics, "Cold.value"), 273.15);
+  }
+  EXPECT_TRUE(has_moved);
+}
+
+// the oil of a scene has one temperature unless the scene states more; errors of a thermometer are differences
+TEST(Thermometer, needs_the_temperature_of_the_oil) {
+  const auto problem = [](const std::string& file, const std::string& keys) {
+    try {
+      static_cast<void>(
+          with_sensors(file, "  Probe: {type: temperature, lowest: 0 degC, highest: 9 degC, " + keys + "}\n"));
+    } catch (const scene::LoadError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(problem("single_cylinder.yaml", "variable: Vol_Tank.temperature")
+                .find("Probe.variable: the oil has one temperature, which no variable shows; expected "
+                      "hydraulics.oil_temperature: by_volume"),
+            std::string::npos)
+      << problem("single_cylinder.yaml", "variable: Vol_Tank.temperature");
+  EXPECT_EQ(problem("oil_warm_up.yaml", "variable: Vol_Tank.temperature, noise: 0.1 K"), "");
+  for (const char* key : {"noise", "offset", "drift", "resolution"}) {
+    EXPECT_NE(problem("oil_warm_up.yaml", std::string("variable: Vol_Tank.temperature, ") + key + ": 0.1 degC")
+                  .find("'0.1 degC' is a temperature; expected a temperature difference"),
+              std::string::npos)
+        << key;
+    // an expression has no such zero
+    EXPECT_NE(
+        problem("oil_warm_up.yaml", std::string("variable: Vol_Tank.temperature, ") + key + ": \"${2 * 0.1 degC}\"")
+            .find(std::string("Probe.") + key + ": 546.5 K is more than the range"),
+        std::string::npos)
+        << key;
+  }
+}
 
 TEST(InertialMeasurementUnit, measures_what_a_turning_a_falling_and_a_standing_body_feel) {
   DirectSession session(scene::load_text(kScene, "imu"));
