@@ -307,6 +307,19 @@ TEST_F(Program, DescribeShowsWhatAMeshGave) {
   EXPECT_NEAR(cube.at("inertia").at(2).get<double>(), 4000.0 / 12 * 8, 1e-6);
 }
 
+TEST_F(Program, DescribeShowsWhatShapesGave) {
+  const std::string scene = scene_file("welded_boom.yaml");
+  const CommandResult text = slewring({"describe", scene});
+  EXPECT_TRUE(
+      contains(text.out, "Boom from 4 parts: 0.0277639 m3 of 7850 kg/m3, 217.947 kg; centre of mass [1.49476, 0, 0]"))
+      << text.out << text.err;
+  const nlohmann::json json = nlohmann::json::parse(slewring({"describe", scene, "--json"}).out);
+  const nlohmann::json& boom = json.at("mechanics").at("mass_properties").at(0);
+  EXPECT_EQ(boom.at("shapes").at("solid"), "4 parts");
+  EXPECT_NEAR(boom.at("shapes").at("density").get<double>(), 7850, 1e-9);
+  EXPECT_FALSE(boom.contains("mesh"));
+}
+
 TEST_F(Program, ImportMakesASceneThatIsCheckedAndRuns) {
   const std::string urdf = std::string(SLEWRING_SOURCE_DIR) + "/examples/urdf/two_link_arm.urdf";
   const std::string scene = work_.path() / "arm.yaml";
