@@ -39,9 +39,8 @@ void ConvergenceWatch::write(const char* form, const Values&... values) noexcept
 void ConvergenceWatch::write_out_of_barrel(std::string_view cylinder, const hydraulics::Barrel& barrel,
                                            double stroke) noexcept {
   write(
-      "{}: its piston is at {:.4g} m, {:.3g} m out of its barrel, in which it goes from {:.4g} to {:.4g} m: its stop "
-      "does "
-      "not hold it. Give it an end_stiffness, or a larger one, or limit what presses it on",
+      "{}: its piston is at {:.4g} m, {:.3g} m out of its barrel, in which it goes from {:.4g} to {:.4g} m: its "
+      "stop does not hold it. Give it an end_stiffness, or a larger one, or limit what presses it on",
       cylinder, stroke, barrel.beyond(stroke), barrel.begin, barrel.end);
 }
 

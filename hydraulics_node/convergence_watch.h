@@ -4,9 +4,8 @@
 //
 // Four rules, checked after every step:
 //   - The excess of steps accepted with their error over sound ones reaches kMostUnsolved: steps that are not
-//   converged,
-//     and steps over the sub-step budget whose error exceeded the tolerance. The count decreases by one with each sound
-//     step, down to zero, so that single steps never add up to an end.
+//     converged, and steps over the sub-step budget whose error exceeded the tolerance. The count decreases by one with
+//     each sound step, down to zero, so that single steps never add up to an end.
 //   - No sub-step keeps the oil of a volume, or has less than a gross error (math::StiffReport::is_impossible).
 //   - No chamber of level tlm hardens within a step by more than its waves can follow (Circuit::beyond_waves()).
 //   - No piston is out of its barrel (Circuit::first_out_of_barrel()), also in a step that another integrator computes.
