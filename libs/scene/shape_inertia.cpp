@@ -87,7 +87,7 @@ class ShapeBodyReader {
   // inertia: from_parts
   void read_parts(std::span<const Field> body_fields, multibody::BodyDef& body) {
     const std::string_view more[] = {kPartsKey};
-    read_beside_solid(element_, body_fields, body, kPartsFields, &all_, more, context_);
+    read_beside_solid(element_, body_fields, body, parts_fields(), &all_, more, context_);
     const Node::Entry* entry = element_.value.find(kPartsKey);
     const std::string path = fmt::format("{}.{}", element_.key, kPartsKey);
     if (entry == nullptr) {
