@@ -18,9 +18,9 @@ using testing::next;
 using wire::Topic;
 
 constexpr StepIndex kSteps = 4000;
-constexpr std::int64_t kPeriod = 250'000;  // ns: 4 kHz
+constexpr std::int64_t kPeriod = 250'000;  // ns, of the paced stream: 4 kHz
 constexpr StepIndex kStopAt = 1000;
-constexpr StepIndex kStopFor = 800;   // steps: 200 ms
+constexpr StepIndex kStopFor = 800;   // steps
 constexpr StepIndex kReported = 200;  // steps from one report of the reader to the next
 
 bool report(Transport& transport) {
@@ -61,8 +61,11 @@ bool receive_every_step(const Network& network) {
 }
 
 enum class Stream : std::uint8_t {
-  waiting,  // for the reports of a reader that runs: it never has more before it than a writer keeps
-  paced,    // as in a session: a reader that gets no processor for 50 ms behind its stop loses steps
+  // For the reports of a reader that runs: it never has more before it than a writer keeps. Without a clock, so that
+  // the
+  // stop stays far below the 2 s after which DDS takes a silent participant for gone, on a busy machine too.
+  waiting,
+  paced,  // as in a session: a reader that gets no processor for 50 ms behind its stop loses steps
 };
 
 void expect_no_step_lost(const Network& network, Stream stream) {
@@ -96,7 +99,7 @@ void expect_no_step_lost(const Network& network, Stream stream) {
     block.header.step = n;
     ASSERT_TRUE(encode(tick, bytes) && transport->publish(Topic::tick, bytes).is_ok());
     ASSERT_TRUE(encode(block, bytes) && transport->publish(Topic::variables, bytes).is_ok());
-    sleep_until_monotonic(start + (n + 1) * kPeriod);
+    if (stream == Stream::paced) sleep_until_monotonic(start + (n + 1) * kPeriod);
   }
   EXPECT_EQ(recorder.wait(), 0);
 }
