@@ -11,7 +11,6 @@ namespace {
 
 using multibody::JointType;
 
-constexpr double kSign = 6;         // px, half of a joint's sign
 constexpr double kAcross = 0.7;     // share of an axis that points to the viewer, from which it is a circle
 constexpr double kAxisLength = 22;  // px, of a frame's axes
 
