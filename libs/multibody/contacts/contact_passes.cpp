@@ -257,6 +257,12 @@ void accept_contacts(const Model& model, double h, State& state, Workspace& ws) 
 
 namespace {
 
+// Number of parts that an explicit rule requires, with impacts met at this rate.
+double explicit_parts(const Model& model, double h, double met_rate, ContactStep step, Workspace& ws) noexcept {
+  return h *
+         std::max(contact_rate(model, ws) / (met_rate > 0 ? step.reach : step.reach_at_rest), met_rate / step.reach);
+}
+
 // number of parts that fast contacts require, from the number sufficient otherwise
 ContactParts stiff_parts(const Model& model, double parts, double needed, StepKind kind, Workspace& ws) noexcept {
   if (kind == StepKind::settling && needed > kWorthSettling * parts && !has_impact(model, ws)) {
@@ -370,7 +376,7 @@ ContactParts contact_parts(const Model& model, double h, ContactStep step, Works
   }
   // resolve an imminent impact
   if (met_rate > 0 && step.kind == StepKind::settling) step.kind = StepKind::explicit_rule;
-  return stiff_parts(model, parts, h * std::max(contact_rate(model, ws), met_rate) / step.reach, step.kind, ws);
+  return stiff_parts(model, parts, explicit_parts(model, h, met_rate, step, ws), step.kind, ws);
 }
 
 ContactParts contact_parts_again(const Model& model, double h, int parts, ContactStep step, Workspace& ws) noexcept {
@@ -379,7 +385,7 @@ ContactParts contact_parts_again(const Model& model, double h, int parts, Contac
     const double finer = parts_of_blow(model, h, met_rate, ws) / parts * (1 - kContactRounding);
     return {.count = static_cast<int>(std::ceil(std::max(1.0, finer)))};
   }
-  const double needed = h * std::max(contact_rate(model, ws), met_rate) / step.reach;
+  const double needed = explicit_parts(model, h, met_rate, step, ws);
   const bool may_settle = step.kind == StepKind::settling && met_rate == 0;
   if (may_settle && needed > kWorthSettling * parts && !has_impact(model, ws)) {
     return {.is_settling = true};

@@ -42,13 +42,14 @@ enum class StepKind { explicit_rule, settling, corrected, implicit };
 // Limit of parts of a sub-step for fast contacts.
 inline constexpr double kMostStiffParts = 1024;
 // Longest part times fastest rate: Runge-Kutta's rule is stable to 2.7, with a stack of ten boxes on bristles to 2.1;
-// in the trapezoid of `augmented` corrections shrink by a half at 1; the semi-implicit Euler rule is stable to 2, but
-// at 1.5 throws back with up to 1.2 times the speed of the impact.
-inline constexpr double kReach = 1.5, kReachOfCorrections = 1.0, kReachOfEuler = 0.1;
+// in the trapezoid of `augmented` corrections shrink by a half at 1; the semi-implicit Euler rule is stable with a
+// spring and a damper of 1, but at 1.5 throws back with up to 1.2 times the speed of the impact.
+inline constexpr double kReach = 1.5, kReachOfCorrections = 1.0, kReachOfEuler = 0.1, kReachOfEulerAtRest = 1.0;
 
 struct ContactStep {
   StepKind kind = StepKind::explicit_rule;
-  double reach = kReach;
+  double reach = kReach;          // of impacts
+  double reach_at_rest = kReach;  // of present contacts where nothing lands
 };
 
 // Implicit rules are stable in any part. For the rebound, parts of a blow are that short against its spring; beyond the

@@ -227,4 +227,23 @@ bool has_impact(const Model& model, const Workspace& ws, RateOf chosen) noexcept
   return false;
 }
 
+bool stays_slow(const Model& model, double h, const Workspace& ws) noexcept {
+  const ContactWorkspace& contacts = *ws.contact;
+  const auto acceleration_of = [&](int frame, Vec3 p_W) {
+    const std::size_t i = at(model.contact->frames[at(frame)].link);
+    const LinkMotion& link = ws.motion[i];
+    const Vec3 arm = p_W - link.p;
+    return link.a + ws.delta_a[i] + cross(link.alpha + ws.delta_alpha[i], arm) + cross(link.w, cross(link.w, arm));
+  };
+  for (std::size_t k = 0; k < contacts.force_count; ++k) {
+    const ContactForce& force = contacts.forces[k];
+    const contact::ContactPair& pair = model.contact->model.pairs()[contacts.set.points()[k].pair];
+    const Vec3 apart = acceleration_of(force.frame_a, force.p_W) - acceleration_of(force.frame_b, force.p_W);
+    if (!(std::fabs(force.depth_rate) + h * std::fabs(dot(force.n_W, apart)) < pair.normal.smallest_impact_speed)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace slew::multibody

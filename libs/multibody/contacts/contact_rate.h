@@ -40,4 +40,8 @@ inline constexpr double kPlastic = 0.05;
 // law.
 [[nodiscard]] bool has_impact(const Model& model, const Workspace& ws, RateOf chosen = RateOf::all) noexcept;
 
+// True if no contact point closes or opens that fast now, or after h [s] with the accelerations of the last
+// solve_forward(). A shape at the deepest point of an impact is slow as well, but its spring drives it away.
+[[nodiscard]] bool stays_slow(const Model& model, double h, const Workspace& ws) noexcept;
+
 }  // namespace slew::multibody

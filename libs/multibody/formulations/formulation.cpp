@@ -9,6 +9,7 @@
 
 #include "core/reductions.h"
 #include "multibody/contacts/contact_passes.h"
+#include "multibody/contacts/contact_rate.h"
 #include "multibody/formulations/body_coordinates.h"
 #include "multibody/formulations/body_passes.h"
 #include "multibody/formulations/body_penalty.h"
@@ -135,12 +136,6 @@ bool is_resolved(const Workspace& ws, double h) noexcept {
   return true;
 }
 
-// has_stages: of a rule beside Runge-Kutta's and that of `augmented`
-ContactStep contact_step_of(StepKind kind, bool is_euler, bool has_stages) noexcept {
-  const bool is_first_order = is_euler || (has_stages && kind != StepKind::implicit);
-  return {kind, kind == StepKind::corrected ? kReachOfCorrections : is_first_order ? kReachOfEuler : kReach};
-}
-
 bool take_lost(Workspace& ws) noexcept {
   return ws.contact != nullptr && std::exchange(ws.contact->is_lost, false);
 }
@@ -197,11 +192,23 @@ void Dynamics::evaluate(const Model& model, State& state, Workspace& ws) noexcep
   }
 }
 
-StepKind Dynamics::contact_step() const noexcept {
+StepKind Dynamics::step_kind() const noexcept {
   if (stages_ != nullptr && is_implicit(stages_->rule.integrator)) return StepKind::implicit;
   if (settling_ != nullptr) return StepKind::settling;
   return held_ != nullptr && held_->model.formulation == Formulation::augmented ? StepKind::corrected
                                                                                 : StepKind::explicit_rule;
+}
+
+// after evaluate(), for the next h
+ContactStep Dynamics::contact_step(StepKind kind, const Model& model, double h, Workspace& ws) const noexcept {
+  if (kind == StepKind::corrected) return {kind, kReachOfCorrections, kReachOfCorrections};
+  if (is_euler_ && model.contact != nullptr && ws.contact->force_count > 0) {
+    solve_forward(model, ws, ws.residual_free, ws.udot);
+    if (stays_slow(model, h, ws)) return {kind, kReachOfEuler, kReachOfEulerAtRest};
+  }
+  // the explicit rule beside stages is semi-implicit Euler
+  const bool is_euler = is_euler_ || (stages_ != nullptr && kind != StepKind::implicit);
+  return is_euler ? ContactStep{kind, kReachOfEuler, kReachOfEuler} : ContactStep{kind, kReach, kReach};
 }
 
 // One of the parts into which contacts divide a sub-step of h.
@@ -221,8 +228,8 @@ struct Dynamics::PartOfStep {
 
 bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                        std::span<const double> slope) noexcept {
-  const ContactStep step = contact_step_of(contact_step(), is_euler_, stages_ != nullptr);
-  const ContactParts parts = multibody::contact_parts(model, h, step, ws);
+  const StepKind kind = step_kind();
+  const ContactParts parts = multibody::contact_parts(model, h, contact_step(kind, model, h, ws), ws);
   contact_parts_ = 1;
   settling_parts_ = 0;
   if (parts.count == 1 && !parts.is_settling) {
@@ -233,7 +240,8 @@ bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h
   for (int i = 0; i < parts.count; ++i) {
     if (i > 0) evaluate(model, state, ws);
     const ContactParts pieces =
-        i > 0 ? contact_parts_again(model, h, parts.count, step, ws) : ContactParts{.is_settling = parts.is_settling};
+        i > 0 ? contact_parts_again(model, h, parts.count, contact_step(kind, model, h / parts.count, ws), ws)
+              : ContactParts{.is_settling = parts.is_settling};
     is_sound = advance_contacts(model, state, ws, {h, parts, i, pieces, mean, slope}) && is_sound;
   }
   return is_right(model, state, ws) && is_sound;
@@ -244,15 +252,15 @@ bool Dynamics::advance_contacts(const Model& model, State& state, Workspace& ws,
   const double length = part.h / part.parts.count;
   ContactParts pieces = part.pieces;
   if (pieces.is_settling && is_motion_fast(model.drives, motion_resolution_, state.time, length)) {
-    const ContactStep step = contact_step_of(StepKind::explicit_rule, is_euler_, stages_ != nullptr);
-    pieces = contact_parts_again(model, part.h, part.parts.count, step, ws);
+    pieces = contact_parts_again(model, part.h, part.parts.count,
+                                 contact_step(StepKind::explicit_rule, model, length, ws), ws);
   } else if (pieces.is_settling) {
     part.put_forces(1, 0, ws.row_part);
     ++contact_parts_;
     ++settling_parts_;
     if (settle_part(model, state, ws, length, ws.row_part, part.slope)) return true;
-    const ContactStep step = contact_step_of(StepKind::explicit_rule, is_euler_, stages_ != nullptr);
-    pieces = contact_parts_again(model, part.h, part.parts.count, step, ws);
+    pieces = contact_parts_again(model, part.h, part.parts.count,
+                                 contact_step(StepKind::explicit_rule, model, length, ws), ws);
   }
   pieces.count = std::max(pieces.count, part.parts.pieces);
   bool is_sound = true;

@@ -23,6 +23,7 @@ namespace slew::multibody {
 
 struct BodyState;
 enum class StepKind;
+struct ContactStep;
 
 // A sub-step in which a body turns further does not resolve the motion: a spin of one rad a sub-step loses 6e-3 of its
 // energy in 10 s under rk4 and a third under augmented. Motion driven up by a too long sub-step is also detected here.
@@ -77,7 +78,8 @@ class Dynamics {
   [[nodiscard]] BodyState* own_state() noexcept { return const_cast<BodyState*>(std::as_const(*this).own_state()); }
   template <typename Self, typename Bytes>
   static void visit(Self& self, Bytes& bytes);
-  [[nodiscard]] StepKind contact_step() const noexcept;
+  [[nodiscard]] StepKind step_kind() const noexcept;
+  [[nodiscard]] ContactStep contact_step(StepKind kind, const Model& model, double h, Workspace& ws) const noexcept;
   [[nodiscard]] bool advance_part(const Model& model, State& state, Workspace& ws, double h,
                                   std::span<const double> mean, std::span<const double> slope) noexcept;
   [[nodiscard]] bool settle_part(const Model& model, State& state, Workspace& ws, double h,
