@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "flex/field_tables.h"
@@ -109,10 +110,34 @@ std::string row_of(const Field& field, void* defaults) {
   return row_of(field, defaults, unit_text(field.dimension));
 }
 
+// Rows under one head; keys that are alike in all else share a row.
+class Rows {
+ public:
+  void add(std::string_view key, const std::string& row) {
+    const std::string facts = row.substr(row.find("` |") + 2);
+    for (auto& [keys, other] : rows_) {
+      if (other == facts) {
+        keys += fmt::format(", `{}`", key);
+        return;
+      }
+    }
+    rows_.emplace_back(fmt::format("`{}`", key), facts);
+  }
+  [[nodiscard]] std::string text() const {
+    if (rows_.empty()) return {};
+    std::string text(kTableHead);
+    for (const auto& [keys, facts] : rows_) text += fmt::format("| {} {}", keys, facts);
+    return text;
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::string>> rows_;  // keys, and the cells behind them
+};
+
 std::string table_of(std::span<const Field> fields, void* defaults) {
-  std::string text(kTableHead);
-  for (const Field& field : fields) text += row_of(field, defaults);
-  return text;
+  Rows rows;
+  for (const Field& field : fields) rows.add(field.key, row_of(field, defaults));
+  return rows.text();
 }
 
 std::string joined(const std::vector<std::string>& keys) {
@@ -132,18 +157,18 @@ class TypeTables {
       sources.push_back(source_of(field, defaults));
       if (!sources.back().type.empty()) alike[sources.back()].emplace_back(field.key);
     }
-    std::string table;
+    Rows rows;
     std::vector<std::string> shown;
     for (std::size_t i = 0; i < fields.size(); ++i) {
       if (!sources[i].type.empty() && alike[sources[i]].size() >= kLeastShared) continue;
-      table += row_of(fields[i], defaults);
+      rows.add(fields[i].key, row_of(fields[i], defaults));
       shown.emplace_back(fields[i].key);
       types_.try_emplace(row_in_any_unit(fields[i], defaults), First{std::string(type), own_unit(fields[i])});
     }
     std::string text = references_to(alike, shown);
-    if (!text.empty()) text += table.empty() ? "\n" : "\n\n";
+    if (!text.empty()) text += shown.empty() ? "\n" : "\n\n";
     shown_[std::string(type)] = shown;
-    return table.empty() ? text : text + std::string(kTableHead) + table;
+    return text + rows.text();
   }
 
   // A list of maps, shown at the first type that has it.
