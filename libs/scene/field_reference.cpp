@@ -28,6 +28,10 @@ std::string unit_text(Dimension dimension) {
   return std::string(about.si_unit) + (dimension == Dimension::temperature_difference ? " (difference)" : "");
 }
 
+std::string with_article(std::string_view noun) {
+  return (std::string_view("aeiou").find(noun.front()) == std::string_view::npos ? "a " : "an ") + std::string(noun);
+}
+
 // `number` stands for the unit, or the kind, of one number.
 std::string type_text(const Field& field, const std::string& number) {
   switch (field.type) {
@@ -38,7 +42,7 @@ std::string type_text(const Field& field, const std::string& number) {
     case FieldType::boolean:
       return "true or false";
     case FieldType::text:
-      return field.reference.empty() ? "text" : "name of a " + std::string(field.reference);
+      return field.reference.empty() ? "text" : with_article(field.reference);
     case FieldType::triple:
       return field.dimension == Dimension::none ? "three numbers" : "three, " + number;
     case FieldType::triples:
@@ -157,10 +161,11 @@ class TypeTables {
       sources.push_back(source_of(field, defaults));
       if (!sources.back().type.empty()) alike[sources.back()].emplace_back(field.key);
     }
+    keep_worthwhile(alike);
     Rows rows;
     std::vector<std::string> shown;
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (!sources[i].type.empty() && alike[sources[i]].size() >= kLeastShared) continue;
+      if (alike.contains(sources[i])) continue;
       rows.add(fields[i].key, row_of(fields[i], defaults));
       shown.emplace_back(fields[i].key);
       types_.try_emplace(row_in_any_unit(fields[i], defaults), First{std::string(type), own_unit(fields[i])});
@@ -202,19 +207,24 @@ class TypeTables {
     return {found->second.type, unit == found->second.unit ? "" : unit};
   }
 
+  // Leaves types with several fields that are alike.
+  static void keep_worthwhile(std::map<Source, std::vector<std::string>>& alike) {
+    std::map<std::string, std::size_t> counts;
+    for (const auto& [source, keys] : alike) counts[source.type] += keys.size();
+    std::erase_if(alike, [&](const auto& entry) { return counts[entry.first.type] < kLeastShared; });
+  }
+
   // One sentence for each type and unit of fields that are alike; `shown`: keys of the rows here.
   std::string references_to(const std::map<Source, std::vector<std::string>>& alike,
                             const std::vector<std::string>& shown) const {
     std::map<std::string, std::vector<std::string>> stated;  // by type that is referred to: rows here and keys of it
     for (const auto& [source, keys] : alike) {
-      if (keys.size() < kLeastShared) continue;
       std::vector<std::string>& list = stated.try_emplace(source.type, shown).first->second;
       list.insert(list.end(), keys.begin(), keys.end());
     }
     std::string text;
     std::string_view last;
     for (const auto& [source, keys] : alike) {
-      if (keys.size() < kLeastShared) continue;
       if (!text.empty()) text += ' ';
       text += source.type == last ? fmt::format("In {}: {}.", source.unit, joined(keys))
                                   : reference_to(source, keys, stated.at(source.type));
