@@ -105,9 +105,10 @@ std::string row_of(const Field& field, void* defaults, const std::string& number
   const std::string range = has_range ? short_range(field.range) : "";
   const std::string value = default_text(field, defaults);
   const std::string live = field.change == Change::live ? "live" : "";
-  return fmt::format("| `{}` | {}{}{} | {}{}{} | {} |\n", field.key, cell(type_text(field, number)),
-                     range.empty() ? "" : ", ", range, cell(value), value.empty() || live.empty() ? "" : ", ", live,
-                     cell(meaning_text(field)));
+  const bool is_plain = field.type == FieldType::number && !has_unit(field) && !range.empty();
+  const std::string type = is_plain ? "" : cell(type_text(field, number));
+  return fmt::format("| `{}` | {}{}{} | {}{}{} | {} |\n", field.key, type, type.empty() || range.empty() ? "" : ", ",
+                     range, cell(value), value.empty() || live.empty() ? "" : ", ", live, cell(meaning_text(field)));
 }
 
 std::string row_of(const Field& field, void* defaults) {
@@ -242,8 +243,7 @@ class TypeTables {
     }
     if (!source.unit.empty()) return fmt::format("As for `{}`, in {}: {}.", source.type, source.unit, joined(keys));
     if (missing.size() >= keys.size()) return fmt::format("As for `{}`: {}.", source.type, joined(keys));
-    return fmt::format("All keys of the table of `{}`{}{}.", source.type, missing.empty() ? "" : " but ",
-                       joined(missing));
+    return fmt::format("All rows of `{}`{}{}.", source.type, missing.empty() ? "" : " but ", joined(missing));
   }
 
   std::map<std::string, First> types_;  // by row_in_any_unit()
