@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "flex/field_tables.h"
@@ -21,25 +22,35 @@
 namespace slew::scene {
 namespace {
 
-std::string type_text(const Field& field) {
+std::string unit_text(Dimension dimension) {
+  const DimensionInfo& about = info(dimension);
+  if (about.si_unit == "1") return std::string(about.name);
+  return std::string(about.si_unit) + (dimension == Dimension::temperature_difference ? " (difference)" : "");
+}
+
+std::string with_article(std::string_view noun) {
+  return (std::string_view("aeiou").find(noun.front()) == std::string_view::npos ? "a " : "an ") + std::string(noun);
+}
+
+// `number` stands for the unit, or the kind, of one number.
+std::string type_text(const Field& field, const std::string& number) {
   switch (field.type) {
     case FieldType::number:
-      return std::string(info(field.dimension).name);
+      return number;
     case FieldType::integer:
       return "integer";
     case FieldType::boolean:
       return "true or false";
     case FieldType::text:
-      return field.reference.empty() ? "text" : "name of a " + std::string(field.reference);
+      return field.reference.empty() ? "text" : with_article(field.reference);
     case FieldType::triple:
-      return field.dimension == Dimension::none ? "three numbers"
-                                                : fmt::format("three, {}", info(field.dimension).name);
+      return field.dimension == Dimension::none ? "three numbers" : "three, " + number;
     case FieldType::triples:
-      return fmt::format("list of three, {}", info(field.dimension).name);
+      return "list of three, " + number;
     case FieldType::table:
       return "points";
     case FieldType::numbers:
-      return fmt::format("list, {}", info(field.dimension).name);
+      return "list, " + number;
     case FieldType::texts:
       return "list of texts";
     case FieldType::choice:
@@ -48,11 +59,21 @@ std::string type_text(const Field& field) {
   return {};
 }
 
-std::string unit_text(const Field& field) {
+bool has_unit(const Field& field) {
   const bool is_numeric = field.type == FieldType::number || field.type == FieldType::triple ||
                           field.type == FieldType::triples || field.type == FieldType::numbers;
-  if (!is_numeric || info(field.dimension).si_unit == "1") return "";
-  return std::string(info(field.dimension).si_unit);
+  return is_numeric && info(field.dimension).si_unit != "1";
+}
+
+// "> 0", "0 to 1", ">= 0, < 1"
+std::string short_range(const Range& range) {
+  const bool has_min = std::isfinite(range.min), has_max = std::isfinite(range.max);
+  const bool is_closed = !range.min_is_open && !range.max_is_open;
+  if (has_min && has_max && is_closed) return range_text(range, Dimension::none);
+  std::string text;
+  if (has_min) text = fmt::format("{} {}", range.min_is_open ? ">" : ">=", range.min);
+  if (has_max) text += fmt::format("{}{} {}", has_min ? ", " : "", range.max_is_open ? "<" : "<=", range.max);
+  return text;
 }
 
 std::string meaning_text(const Field& field) {
@@ -74,56 +95,160 @@ std::string default_text(const Field& field, void* def) {
   return value;
 }
 
-constexpr std::string_view kTableHead =
-    "| key | takes | SI unit | range | default | live | meaning |\n|---|---|---|---|---|---|---|\n";
+constexpr std::string_view kTableHead = "| key | takes | default | meaning |\n|---|---|---|---|\n";
+
+// `number`: see type_text()
+std::string row_of(const Field& field, void* defaults, const std::string& number) {
+  const bool has_range = field.type == FieldType::integer || field.type == FieldType::table ||
+                         field.type == FieldType::number || field.type == FieldType::triple ||
+                         field.type == FieldType::triples || field.type == FieldType::numbers;
+  const std::string range = has_range ? short_range(field.range) : "";
+  const std::string value = default_text(field, defaults);
+  const std::string live = field.change == Change::live ? "live" : "";
+  const bool is_plain = field.type == FieldType::number && !has_unit(field) && !range.empty();
+  const std::string type = is_plain ? "" : cell(type_text(field, number));
+  return fmt::format("| `{}` | {}{}{} | {}{}{} | {} |\n", field.key, type, type.empty() || range.empty() ? "" : ", ",
+                     range, cell(value), value.empty() || live.empty() ? "" : ", ", live, cell(meaning_text(field)));
+}
 
 std::string row_of(const Field& field, void* defaults) {
-  const bool has_range = field.type == FieldType::number || field.type == FieldType::integer ||
-                         field.type == FieldType::triple || field.type == FieldType::triples ||
-                         field.type == FieldType::numbers || field.type == FieldType::table;
-  return fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", field.key, cell(type_text(field)), unit_text(field),
-                     has_range ? range_text(field.range, Dimension::none) : "", cell(default_text(field, defaults)),
-                     field.change == Change::live ? "live" : "", cell(meaning_text(field)));
+  return row_of(field, defaults, unit_text(field.dimension));
 }
 
-std::string table_of(std::span<const Field> fields, void* defaults) {
-  std::string text(kTableHead);
-  for (const Field& field : fields) text += row_of(field, defaults);
-  return text;
-}
-
-// The tables of a section's types. A field that an earlier type has alike is named beside that type instead of shown
-// again, where it is one of several.
-class TypeTables {
+// Rows under one head; keys that are alike in all else share a row.
+class Rows {
  public:
-  std::string table_of(std::string_view type, std::span<const Field> fields, void* defaults) {
-    std::vector<std::string> rows;
-    std::map<std::string, std::string> keys_by_type;
-    std::map<std::string, std::size_t> counts;
-    for (const Field& field : fields) {
-      rows.push_back(row_of(field, defaults));
-      const auto shown = types_.find(rows.back());
-      if (shown != types_.end()) ++counts[shown->second];
-    }
-    std::string table;
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      const auto shown = types_.find(rows[i]);
-      if (shown == types_.end() || counts[shown->second] < kLeastShared) {
-        table += rows[i];
-        types_.try_emplace(rows[i], type);
-        continue;
+  void add(std::string_view key, const std::string& row) {
+    const std::string facts = row.substr(row.find("` |") + 2);
+    for (auto& [keys, other] : rows_) {
+      if (other == facts) {
+        keys += fmt::format(", `{}`", key);
+        return;
       }
-      std::string& keys = keys_by_type[shown->second];
-      keys += fmt::format("{}`{}`", keys.empty() ? "" : ", ", fields[i].key);
     }
-    std::string text;
-    for (const auto& [other, keys] : keys_by_type) text += fmt::format("As for `{}`: {}.\n\n", other, keys);
-    return table.empty() ? text : text + std::string(kTableHead) + table;
+    rows_.emplace_back(fmt::format("`{}`", key), facts);
+  }
+  [[nodiscard]] std::string text() const {
+    if (rows_.empty()) return {};
+    std::string text(kTableHead);
+    for (const auto& [keys, facts] : rows_) text += fmt::format("| {} {}", keys, facts);
+    return text;
   }
 
  private:
-  static constexpr std::size_t kLeastShared = 3;
-  std::map<std::string, std::string> types_;  // by row: the type that shows it
+  std::vector<std::pair<std::string, std::string>> rows_;  // keys, and the cells behind them
+};
+
+std::string table_of(std::span<const Field> fields, void* defaults) {
+  Rows rows;
+  for (const Field& field : fields) rows.add(field.key, row_of(field, defaults));
+  return rows.text();
+}
+
+std::string joined(const std::vector<std::string>& keys) {
+  std::string text;
+  for (const std::string& key : keys) text += fmt::format("{}`{}`", text.empty() ? "" : ", ", key);
+  return text;
+}
+
+// The tables of a section's types. Fields that an earlier type has alike, or alike but for their unit, are named with
+// that type instead of shown again, where they are several.
+class TypeTables {
+ public:
+  std::string table_of(std::string_view type, std::span<const Field> fields, void* defaults) {
+    std::map<Source, std::vector<std::string>> alike;
+    std::vector<Source> sources;
+    for (const Field& field : fields) {
+      sources.push_back(source_of(field, defaults));
+      if (!sources.back().type.empty()) alike[sources.back()].emplace_back(field.key);
+    }
+    keep_worthwhile(alike);
+    Rows rows;
+    std::vector<std::string> shown;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (alike.contains(sources[i])) continue;
+      rows.add(fields[i].key, row_of(fields[i], defaults));
+      shown.emplace_back(fields[i].key);
+      types_.try_emplace(row_in_any_unit(fields[i], defaults), First{std::string(type), own_unit(fields[i])});
+    }
+    std::string text = references_to(alike, shown);
+    if (!text.empty()) text += shown.empty() ? "\n" : "\n\n";
+    shown_[std::string(type)] = shown;
+    return text + rows.text();
+  }
+
+  // A list of maps, shown at the first type that has it.
+  std::string list_of(std::string_view type, const ListTable& list, void* defaults) {
+    const std::string text = fmt::format("{}.\n\n{}", list.doc, scene::table_of(list.fields, defaults));
+    const auto [first, is_new] = lists_.try_emplace(fmt::format("`{}`: a list of maps. {}", list.key, text), type);
+    return is_new ? first->first : fmt::format("`{}`: as for `{}`.\n", list.key, first->second);
+  }
+
+ private:
+  static constexpr std::size_t kLeastShared = 2;
+
+  struct First {
+    std::string type, unit;  // type that shows the field, and its unit there
+  };
+  struct Source {
+    std::string type, unit;  // type that shows the field, empty without one; unit if it is another one here
+    auto operator<=>(const Source&) const = default;
+  };
+
+  static std::string own_unit(const Field& field) { return has_unit(field) ? unit_text(field.dimension) : ""; }
+
+  static std::string row_in_any_unit(const Field& field, void* defaults) {
+    return row_of(field, defaults, has_unit(field) ? "unit" : unit_text(field.dimension));
+  }
+
+  Source source_of(const Field& field, void* defaults) const {
+    const auto found = types_.find(row_in_any_unit(field, defaults));
+    if (found == types_.end()) return {};
+    const std::string unit = own_unit(field);
+    return {found->second.type, unit == found->second.unit ? "" : unit};
+  }
+
+  // Leaves types with several fields that are alike.
+  static void keep_worthwhile(std::map<Source, std::vector<std::string>>& alike) {
+    std::map<std::string, std::size_t> counts;
+    for (const auto& [source, keys] : alike) counts[source.type] += keys.size();
+    std::erase_if(alike, [&](const auto& entry) { return counts[entry.first.type] < kLeastShared; });
+  }
+
+  // One sentence for each type and unit of fields that are alike; `shown`: keys of the rows here.
+  std::string references_to(const std::map<Source, std::vector<std::string>>& alike,
+                            const std::vector<std::string>& shown) const {
+    std::map<std::string, std::vector<std::string>> stated;  // by type that is referred to: rows here and keys of it
+    for (const auto& [source, keys] : alike) {
+      std::vector<std::string>& list = stated.try_emplace(source.type, shown).first->second;
+      list.insert(list.end(), keys.begin(), keys.end());
+    }
+    std::string text;
+    std::string_view last;
+    for (const auto& [source, keys] : alike) {
+      if (!text.empty()) text += ' ';
+      text += source.type == last ? fmt::format("In {}: {}.", source.unit, joined(keys))
+                                  : reference_to(source, keys, stated.at(source.type));
+      last = source.type;
+    }
+    return text;
+  }
+
+  // Keys of an earlier type's table, or all of that table but those that are not stated here, whichever is shorter.
+  std::string reference_to(const Source& source, const std::vector<std::string>& keys,
+                           const std::vector<std::string>& stated) const {
+    std::vector<std::string> missing;
+    for (const std::string& key : shown_.at(source.type)) {
+      if (std::find(stated.begin(), stated.end(), key) == stated.end()) missing.push_back(key);
+    }
+    if (!source.unit.empty()) return fmt::format("As for `{}`, in {}: {}.", source.type, source.unit, joined(keys));
+    if (missing.size() >= keys.size()) return fmt::format("As for `{}`: {}.", source.type, joined(keys));
+    return fmt::format("All rows of `{}`{}{}.", source.type, missing.empty() ? "" : " but ", joined(missing));
+  }
+
+  std::map<std::string, First> types_;  // by row_in_any_unit()
+  std::map<std::string, std::vector<std::string>> shown_;
+  std::map<std::string, std::string> lists_;  // by text: the type that shows it
 };
 
 constexpr std::size_t kLineWidth = 120;  // of prose in documents, in characters; tests/architecture/words_test.py
@@ -199,8 +324,7 @@ std::string field_reference() {
                                                                    table.is_default ? " (or no type)" : "", table.doc);
       text += fmt::format("\n{}.\n\n{}", heading, tables.table_of(table.type, table.fields, def));
       for (const ListTable& list : table.lists) {
-        text += fmt::format("\n`{}`: a list of maps. {}.\n\n{}", list.key, list.doc,
-                            table_of(list.fields, list.append(def)));
+        text += '\n' + tables.list_of(table.type, list, list.append(def));
       }
       if (section != "bodies" || !table.is_default) continue;
       MeshInertiaDef from_mesh;

@@ -11,7 +11,8 @@ namespace slew::scene {
 // units, existing names and rules between fields.
 [[nodiscard]] std::string json_schema();
 
-// Markdown: one table for each section and type, all fields with dimension, range, default and doc.
+// Markdown: one table for each section and type, all fields with unit, range, default and doc. Fields that an earlier
+// type of the section has alike are referred to.
 [[nodiscard]] std::string field_reference();
 
 // The same for descriptions of flexible bodies (flexible_model.h).

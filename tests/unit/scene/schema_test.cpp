@@ -156,6 +156,24 @@ TEST(FormatDocument, WrapsProseAt120AndKeepsRowsAndCodeWhole) {
   EXPECT_GT(wrapped, 10u);
 }
 
+TEST(FormatDocument, RefersToFieldsThatAnEarlierTypeHasAlike) {
+  const std::string document = field_reference();
+  const auto part = [&](const std::string& type) {
+    const std::size_t begin = document.find("`type: " + type + "`");
+    return document.substr(begin, document.find("\n`type: ", begin) - begin);
+  };
+  EXPECT_NE(part("flow").find("All rows of `pressure`. In m3/s: `lowest`, `highest`, `offset`, `noise`,"),
+            std::string::npos);
+  EXPECT_EQ(part("flow").find("\n|"), std::string::npos) << part("flow");
+  // a key that another type has in another way is left out, not replaced by a second sentence
+  EXPECT_NE(part("pump").find("As for `hydraulic_motor`: `port_c`, `case_leak_flow`, `leak_pressure`."),
+            std::string::npos);
+  const std::size_t exceptions = part("pump").find("All rows of `ls_pump` but");
+  EXPECT_NE(part("pump").find("`leak_pressure`", exceptions), std::string::npos) << part("pump");
+  // a list of maps is shown once
+  EXPECT_NE(part("can_out").find("`signals`: as for `can_in`."), std::string::npos) << part("can_out");
+}
+
 TEST(FormatDocument, WithoutMarkersIsNotTouched) {
   EXPECT_EQ(with_field_reference("text"), "");
 }
