@@ -2,6 +2,7 @@
 // Named signals: the channels of a session's variables, and their values at one step.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "core/json.h"
