@@ -204,7 +204,7 @@ ExitCode set(const ParamOptions& options) {
   const auto observer = session::find_session(options.session, session::Access::steer);
   const wire::SessionDescription& session = observer->view().session();
   scene::ParameterDirectory directory(scene::load_text(session.scene_text, session.scene_name));
-  const scene::Assignment assignment = directory.parse_assignment(text, spread);
+  const scene::Assignment assignment = directory.parse_assignment(text, spread, scene::Beside::session);
   if (!assignment.status.is_ok()) {
     throw Failure(ExitCode::bad_input, "refused, nothing was changed: " + assignment.status.text);
   }

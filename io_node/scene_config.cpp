@@ -107,7 +107,7 @@ IoConfig make_config(const scene::Scene& scene, std::string session_name, Record
   }
   config.check_parameter = [directory](const std::string& path, double value, std::int64_t over_ns) {
     const auto over = over_ns >= 0 ? std::optional(SimDuration{over_ns}) : std::nullopt;
-    const scene::Assignment assignment = directory->check(path, value, over);
+    const scene::Assignment assignment = directory->check(path, value, over, scene::Beside::session);
     return ParameterCheck{assignment.status.is_ok(), assignment.status.text, assignment.over.ns};
   };
   config.check_course = [directory](const wire::Command& change, const LiveCourse& course) {

@@ -59,8 +59,9 @@ void LiveParameters::set(const std::string& name, const std::variant<double, std
                          std::optional<SimDuration> over, Requests::Owner owner, const Done& done,
                          std::int64_t now_ns) {
   const auto* const text = std::get_if<std::string>(&value);
-  const scene::Assignment assignment = text != nullptr ? directory_.parse_assignment(name + "=" + *text, over)
-                                                       : directory_.check(name, std::get<double>(value), over);
+  constexpr auto kBeside = scene::Beside::session;
+  const scene::Assignment assignment = text != nullptr ? directory_.parse_assignment(name + "=" + *text, over, kBeside)
+                                                       : directory_.check(name, std::get<double>(value), over, kBeside);
   if (!assignment.status.is_ok()) return done(assignment.status.text, kJoinStep);
   wire::ControlRequest request;
   request.action = wire::ControlAction::set_parameter;

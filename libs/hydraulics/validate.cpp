@@ -197,6 +197,60 @@ void check_volumes(const HydraulicsDef& def, Problems& errors) {
   }
 }
 
+// Volumes of a component.
+std::vector<std::string_view> volumes_of(const ComponentDef& component) {
+  std::vector<std::string_view> names;
+  const ComponentType* const type = find_component_type(component.type_name());
+  if (type == nullptr) return names;
+  for (const Field& row : type->fields) {
+    if (row.reference != "volume") continue;
+    const std::string& name = member<std::string>(row, const_cast<ComponentDef&>(component).address());
+    if (!name.empty()) names.emplace_back(name);
+  }
+  return names;
+}
+
+// The pressure of a quasi-static volume follows from volumes with storage, or a tank, that oil can reach from it. A
+// volume behind one component alone has none while that is shut.
+void check_outlets(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
+  std::set<std::string_view> reached;
+  for (const VolumeDef& volume : def.volumes) {
+    // those that cannot be quasi-static are refused above
+    const bool is_refused = volume.fixed || find_chamber(def, volume) != nullptr;
+    if (!volume.quasi_static || is_refused) reached.insert(volume.name);
+  }
+  for (std::size_t before = 0; before != reached.size();) {
+    before = reached.size();
+    for (const auto& component : def.components) {
+      const std::vector<std::string_view> names = volumes_of(*component);
+      const bool is_reached =
+          std::any_of(names.begin(), names.end(), [&](std::string_view name) { return reached.contains(name); });
+      if (is_reached) reached.insert(names.begin(), names.end());
+    }
+  }
+  for (const VolumeDef& volume : def.volumes) {
+    if (!volume.quasi_static) continue;
+    const std::string path = volume.name + ".quasi_static";
+    std::vector<std::string_view> joined;
+    for (const auto& component : def.components) {
+      const std::vector<std::string_view> names = volumes_of(*component);
+      if (std::find(names.begin(), names.end(), volume.name) != names.end()) joined.emplace_back(component->name);
+    }
+    if (!reached.contains(volume.name)) {
+      errors.push_back({path,
+                        "no volume that stores oil and no tank is connected to the volume: nothing determines its "
+                        "pressure",
+                        "a rigid_volume in the place of quasi_static: true, or an outlet", ""});
+    } else if (joined.size() == 1) {
+      warnings.push_back({path,
+                          fmt::format("'{}' alone leads to the volume: while it lets nothing through, nothing "
+                                      "determines the pressure, and the run ends with code 5",
+                                      joined.front()),
+                          "a rigid_volume in the place of quasi_static: true", ""});
+    }
+  }
+}
+
 // Components that supply load-sensing pressures to this one, with the key that names each.
 std::vector<std::pair<std::string_view, std::string_view>> ls_references(ComponentDef& component) {
   std::vector<std::pair<std::string_view, std::string_view>> names;
@@ -382,6 +436,7 @@ void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
     check_port_pair(*component, *type, component->address(), errors);
   }
   check_volumes(def, errors);
+  check_outlets(def, errors, warnings);
   warn_of_held_temperatures(def, warnings);
   if (!are_types_known) return;
   check_ls_chain(def, errors, warnings);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "core/suggestion.h"
@@ -181,19 +182,27 @@ std::string ParameterDirectory::obstacle_of_level(const ParameterInfo& parameter
   return follows ? std::string() : std::string(obstacle_of(session_, level));
 }
 
-// Only for changes that may make the mechanism faster than in the scene; costs some hundred evaluations of it.
-std::string ParameterDirectory::obstacle_of_speed(const ParameterInfo& parameter, double value) const {
-  if (mechanics_ == nullptr) return {};
-  const multibody::Integrator rule = multibody::step_rule(*mechanics_).integrator;
-  if (!multibody::is_explicit(rule)) return {};
+// Whether this change alone may make the mechanism too fast for its integrator.
+bool ParameterDirectory::may_be_faster(const ParameterInfo& parameter, double from, double to) const {
+  if (mechanics_ == nullptr || !multibody::is_explicit(multibody::step_rule(*mechanics_).integrator)) return false;
   const bool is_mass = parameter.path.ends_with(".mass");
   // a shorter rope of the same section is stiffer
   const bool is_length = parameter.path.ends_with(".free_length");
-  if (value == parameter.value || (!is_length && is_mass == (value > parameter.value))) return {};
+  return to != from && (is_length || is_mass == (to < from));
+}
+
+// Costs some hundred evaluations of the mechanism.
+std::string ParameterDirectory::obstacle_of_speed(Values values) const {
   multibody::Model model = multibody::build_model(*mechanics_);
-  const std::optional<multibody::Parameter> found = multibody::find_parameter(model, parameter.path);
-  if (!found || !multibody::may_speed_up(found->kind)) return {};
-  multibody::set_parameter(model, *found, value);
+  bool may_be_fast = false;
+  for (const auto& [path, value] : values) {
+    const std::optional<multibody::Parameter> found = multibody::find_parameter(model, path);
+    if (!found) continue;
+    may_be_fast = may_be_fast || multibody::may_speed_up(found->kind);
+    multibody::set_parameter(model, *found, value);
+  }
+  if (!may_be_fast) return {};
+  const multibody::Integrator rule = multibody::step_rule(*mechanics_).integrator;
   const double h = mechanics_substep(session_, *mechanics_);
   const std::optional<multibody::TooFast> fast = multibody::find_too_fast_element(model, rule, h);
   if (!fast) return {};
@@ -228,22 +237,30 @@ bool assign(Scene& scene, std::string_view path, double value) {
 
 }  // namespace
 
-// Problem that the loader would report for the machine with this value, at its start.
-std::string ParameterDirectory::obstacle_of_machine(const ParameterInfo& parameter, double value) const {
-  if (whole_mechanics_ == nullptr) return {};
+bool ParameterDirectory::is_of_machine(std::string_view path) const {
+  const multibody::MechanicsDef& mechanics = *whole_mechanics_;
+  Scene probe;
+  probe.mechanics = mechanics;
+  return assign(probe, path, 0);
+}
+
+// Problem that the loader would report for the machine with these values, at its start.
+std::string ParameterDirectory::obstacle_of_machine(Values values) const {
   Scene changed;
   changed.session = session_;
   changed.mechanics = *whole_mechanics_;
-  for (multibody::BodyDef& body : changed.mechanics.bodies) {
-    if (parameter.path != body.name + ".mass") continue;
-    // a live mass changes the inertia about the centre in proportion: what the scene gives about the origin is no sum
-    // of the old inertia and the new mass
-    const math::Mat3 I = multibody::inertia_about_center(body);
-    body.inertia = {I(0, 0), I(1, 1), I(2, 2)};
-    body.products = {I(0, 1), I(0, 2), I(1, 2)};
-    body.inertia_about = multibody::InertiaPoint::center_of_mass;
+  for (const auto& [path, value] : values) {
+    for (multibody::BodyDef& body : changed.mechanics.bodies) {
+      if (path != body.name + ".mass") continue;
+      // a live mass changes the inertia about the centre in proportion: what the scene gives about the origin is no sum
+      // of the old inertia and the new mass
+      const math::Mat3 I = multibody::inertia_about_center(body);
+      body.inertia = {I(0, 0), I(1, 1), I(2, 2)};
+      body.products = {I(0, 1), I(0, 2), I(1, 2)};
+      body.inertia_about = multibody::InertiaPoint::center_of_mass;
+    }
+    assign(changed, path, value);
   }
-  if (!assign(changed, parameter.path, value)) return {};
   Problems problems;
   multibody::validate(changed.mechanics, problems);
   if (problems.empty()) return {};
@@ -274,7 +291,8 @@ std::string ParameterDirectory::reason_of_no_parameter(const std::string& name) 
   return fmt::format("no parameter '{}'; expected Element.key{}", name, example);
 }
 
-Assignment ParameterDirectory::check(std::string_view path, double value, std::optional<SimDuration> over) const {
+Assignment ParameterDirectory::check(std::string_view path, double value, std::optional<SimDuration> over,
+                                     Beside beside) const {
   const std::string name(path);
   const std::string restart = "cannot be changed while the session runs; start it again with --set " + name + "=VALUE";
   const ParameterInfo* parameter = find(path);
@@ -299,11 +317,9 @@ Assignment ParameterDirectory::check(std::string_view path, double value, std::o
     return refused(fmt::format("{}: {} is out of range; expected {}", name, with_unit(value, parameter->dimension),
                                range.empty() ? "a finite number" : range));
   }
-  if (const std::string machine = obstacle_of_machine(*parameter, value); !machine.empty()) {
-    return refused(fmt::format("{}: {} is refused: {}", name, with_unit(value, parameter->dimension), machine));
-  }
-  if (const std::string speed = obstacle_of_speed(*parameter, value); !speed.empty()) {
-    return refused(fmt::format("{}: {} is refused: {}", name, with_unit(value, parameter->dimension), speed));
+  if (beside == Beside::scene) {
+    std::string refusal = refusal_of_machine(*parameter, value, {}, {});
+    if (!refusal.empty()) return refused(std::move(refusal));
   }
   Assignment assignment;
   assignment.path = name;
@@ -312,13 +328,77 @@ Assignment ParameterDirectory::check(std::string_view path, double value, std::o
   return assignment;
 }
 
+namespace {
+
+// steps at which the mechanism is looked at, for a request
+constexpr std::size_t kMostBuilds = 8;
+
+struct RampOfValue {
+  std::string path;
+  double from = 0, to = 0;
+  StepIndex begin = 0, steps = 1;
+  [[nodiscard]] StepIndex last() const noexcept { return begin + std::max<StepIndex>(1, steps) - 1; }
+  [[nodiscard]] double at(StepIndex n) const noexcept {
+    if (n >= last()) return to;
+    return from + (to - from) * (static_cast<double>(n - begin + 1) / static_cast<double>(steps));
+  }
+};
+
+}  // namespace
+
+// The refusal of a value of the mechanism beside those of a session: at the first step of the changes, and where each
+// of those that begin there ends. Without changes: beside the scene's.
+std::string ParameterDirectory::refusal_of_machine(const ParameterInfo& parameter, double value, Values present,
+                                                   std::span<const LiveChange> changes) const {
+  if (whole_mechanics_ == nullptr && mechanics_ == nullptr) return {};
+  const bool has_no_rules = whole_mechanics_ == nullptr || !is_of_machine(parameter.path);
+  std::map<std::string, double, std::less<>> now;
+  for (const auto& [path, at_present] : present) {
+    const ParameterInfo* const other = find(path);
+    if (other != nullptr && other->value != at_present) now.insert_or_assign(path, at_present);
+  }
+  const auto value_of = [&](const std::string& path, double otherwise) {
+    const auto found = now.find(path);
+    return found == now.end() ? otherwise : found->second;
+  };
+  std::vector<RampOfValue> ramps;
+  for (const LiveChange& change : changes) {
+    const ParameterInfo* const other = find(change.path);
+    if (other == nullptr || change.step != changes.front().step) continue;
+    std::erase_if(ramps, [&](const RampOfValue& ramp) { return ramp.path == change.path; });
+    ramps.push_back({change.path, value_of(change.path, other->value), change.value, change.step, change.steps});
+  }
+  if (changes.empty()) ramps.push_back({parameter.path, parameter.value, value});
+  const double from = value_of(parameter.path, parameter.value);
+  const bool may_be_fast = mechanics_ != nullptr && (may_be_faster(parameter, from, value) || ramps.size() > 1);
+  if (has_no_rules && !may_be_fast) return {};
+  std::vector<StepIndex> steps = {ramps.front().begin};
+  for (const RampOfValue& ramp : ramps) steps.push_back(ramp.last());
+  std::sort(steps.begin(), steps.end());
+  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+  if (steps.size() > kMostBuilds) steps.resize(kMostBuilds);
+  for (const StepIndex n : steps) {
+    std::map<std::string, double, std::less<>> then = now;
+    for (const RampOfValue& ramp : ramps) then.insert_or_assign(ramp.path, ramp.at(n));
+    const std::vector<std::pair<std::string, double>> values(then.begin(), then.end());
+    std::string why = has_no_rules ? std::string() : obstacle_of_machine(values);
+    if (why.empty() && may_be_fast) why = obstacle_of_speed(values);
+    if (why.empty()) continue;
+    const SimDuration step = session_.step_duration();
+    const std::string when =
+        n > ramps.front().begin ? fmt::format("at {:g} s: ", start_of(n, step).seconds()) : std::string();
+    return fmt::format("{}: {} is refused: {}{}", parameter.path, with_unit(value, parameter.dimension), when, why);
+  }
+  return {};
+}
+
 std::string ParameterDirectory::refusal_of_course(std::string_view path, double value,
                                                   std::span<const std::pair<std::string, double>> present,
                                                   std::span<const LiveChange> changes) const {
   const ParameterInfo* const parameter = find(path);
   if (parameter == nullptr || changes.empty()) return {};
   const std::optional<BrokenRule> broken = find_broken_rule(*circuit_, present, changes);
-  if (!broken) return {};
+  if (!broken) return refusal_of_machine(*parameter, value, present, changes);
   const SimDuration step = session_.step_duration();
   const bool is_later = broken->step > changes.front().step;
   const std::string when = is_later ? fmt::format(" at {:g} s", start_of(broken->step, step).seconds()) : std::string();
@@ -327,19 +407,19 @@ std::string ParameterDirectory::refusal_of_course(std::string_view path, double 
 }
 
 Assignment ParameterDirectory::parse_choice(const ParameterInfo& parameter, std::string_view name,
-                                            std::optional<SimDuration> over) const {
+                                            std::optional<SimDuration> over, Beside beside) const {
   while (name.starts_with(' ')) name.remove_prefix(1);
   while (name.ends_with(' ')) name.remove_suffix(1);
   const auto found = std::find(parameter.choices.begin(), parameter.choices.end(), name);
   if (found != parameter.choices.end()) {
-    return check(parameter.path, static_cast<double>(found - parameter.choices.begin()), over);
+    return check(parameter.path, static_cast<double>(found - parameter.choices.begin()), over, beside);
   }
   const std::string meant = closest(name, {parameter.choices.begin(), parameter.choices.end()});
   return refused(fmt::format("{}: '{}' is none of its choices; expected {}{}", parameter.path, name,
                              choice_list(parameter.choices), meant.empty() ? "" : "; did you mean '" + meant + "'?"));
 }
 
-Assignment ParameterDirectory::parse_assignment(std::string_view text, std::optional<SimDuration> over) {
+Assignment ParameterDirectory::parse_assignment(std::string_view text, std::optional<SimDuration> over, Beside beside) {
   const std::size_t equals = text.find('=');
   if (equals == std::string_view::npos || equals == 0) {
     return refused(
@@ -349,14 +429,14 @@ Assignment ParameterDirectory::parse_assignment(std::string_view text, std::opti
   const ParameterInfo* parameter = find(path);
   // an unknown or fixed parameter is refused for that reason, at any value
   if (parameter == nullptr || parameter->change == Change::restart) return check(path, 0);
-  if (parameter->is_choice()) return parse_choice(*parameter, text.substr(equals + 1), over);
+  if (parameter->is_choice()) return parse_choice(*parameter, text.substr(equals + 1), over, beside);
   const QuantityResult quantity = read_quantity(text.substr(equals + 1), Writing::plain, parameter->dimension, units_);
   if (!quantity.value) {
     std::string refusal = std::string(path) + ": " + quantity.problem.what + "; expected " + quantity.problem.expected;
     if (!quantity.problem.suggestion.empty()) refusal += "; did you mean '" + quantity.problem.suggestion + "'?";
     return refused(std::move(refusal));
   }
-  return check(path, *quantity.value, over);
+  return check(path, *quantity.value, over, beside);
 }
 
 }  // namespace slew::scene

@@ -53,6 +53,10 @@ struct Assignment {
   SimDuration over;
 };
 
+// Values beside which a change is judged where fields must fit: those of the scene, or those of a session, which has
+// refusal_of_course() for it.
+enum class Beside { scene, session };
+
 // Checks changes of live parameters. Built once for a session; a check does not read files.
 class ParameterDirectory {
  public:
@@ -65,25 +69,34 @@ class ParameterDirectory {
   // "Bag.mass=1500kg", "Cyl_Lift.coupling=linear": refused if unknown (with a suggestion), not live, of a wrong
   // dimension, out of range, none of the choices, or if the loader would refuse the machine with this value. Also
   // refused: a mass, spring or damper that is too fast for the mechanics' explicit integrator
-  // (multibody/formulations/element_speeds.h; at the start, with the other values of the scene).
-  [[nodiscard]] Assignment parse_assignment(std::string_view text, std::optional<SimDuration> over = {});
+  // (multibody/formulations/element_speeds.h; at the start). The last two beside the other values of the scene only.
+  [[nodiscard]] Assignment parse_assignment(std::string_view text, std::optional<SimDuration> over = {},
+                                            Beside beside = Beside::scene);
   // The same for a value in SI, as received over the wire. over: the requested time; default: the parameter's own. A
   // choice changes at once, or is refused.
-  [[nodiscard]] Assignment check(std::string_view path, double value, std::optional<SimDuration> over = {}) const;
-  // Why a session refuses this value because of a rule between the fields of a hydraulic component, which need the
-  // present values of the others and all changes that follow (find_broken_rule()); empty: it takes it.
+  [[nodiscard]] Assignment check(std::string_view path, double value, std::optional<SimDuration> over = {},
+                                 Beside beside = Beside::scene) const;
+  // Why a session refuses this value because of a rule between fields, which needs the present values of the others and
+  // the changes that follow; empty: it takes it. Of hydraulic components with all changes (find_broken_rule()), of the
+  // mechanism with those under way and those that wait for the same step: it is looked at where one of them ends, at
+  // most eight times, since that takes a part of a step's time.
   [[nodiscard]] std::string refusal_of_course(std::string_view path, double value,
                                               std::span<const std::pair<std::string, double>> present,
                                               std::span<const LiveChange> changes) const;
 
  private:
   [[nodiscard]] Assignment parse_choice(const ParameterInfo& parameter, std::string_view name,
-                                        std::optional<SimDuration> over) const;
+                                        std::optional<SimDuration> over, Beside beside) const;
 
   [[nodiscard]] std::string reason_of_no_parameter(const std::string& name) const;
   [[nodiscard]] std::string obstacle_of_level(const ParameterInfo& parameter, double value) const;
-  [[nodiscard]] std::string obstacle_of_machine(const ParameterInfo& parameter, double value) const;
-  [[nodiscard]] std::string obstacle_of_speed(const ParameterInfo& parameter, double value) const;
+  using Values = std::span<const std::pair<std::string, double>>;
+  [[nodiscard]] std::string obstacle_of_machine(Values values) const;
+  [[nodiscard]] std::string obstacle_of_speed(Values values) const;
+  [[nodiscard]] bool is_of_machine(std::string_view path) const;
+  [[nodiscard]] bool may_be_faster(const ParameterInfo& parameter, double from, double to) const;
+  [[nodiscard]] std::string refusal_of_machine(const ParameterInfo& parameter, double value, Values present,
+                                               std::span<const LiveChange> changes) const;
 
   SessionDef session_;
   std::vector<PortDef> ports_;

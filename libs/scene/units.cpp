@@ -227,7 +227,27 @@ std::string_view typographic_space_in(std::string_view text) {
   return {};
 }
 
+// Whether a unit has the ton in it, which is the short one of 907 kg to UDUNITS and 1000 kg to others.
+bool has_ton(std::string_view text) {
+  const auto is_of_word = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  for (std::size_t i = 0; i < text.size();) {
+    std::size_t end = i;
+    while (end < text.size() && is_of_word(text[end])) ++end;
+    std::string_view word = text.substr(i, end - i);
+    for (const std::string_view prefix : {"kilo", "mega"}) {
+      if (word.starts_with(prefix)) word.remove_prefix(prefix.size());
+    }
+    if (word == "ton" || word == "tons") return true;
+    i = end + 1;
+  }
+  return false;
+}
+
 ValueProblem unknown_unit(std::string_view text, Dimension dimension, UnitSystem& units) {
+  if (has_ton(text)) {
+    return {fmt::format("unit '{}': 'ton' has several meanings", text),
+            "t (1000 kg), short_ton (907.18474 kg) or long_ton (1016.0469088 kg)", ""};
+  }
   if (const std::string_view space = typographic_space_in(text); !space.empty()) {
     return {fmt::format("unknown unit '{}': it holds a {}, which looks like a plain space", text, space),
             expected_quantity(dimension), ""};
@@ -307,7 +327,7 @@ const Unit* UnitSystem::find(std::string_view text) {
   auto found = known_.find(text);
   if (found == known_.end()) {
     std::optional<Unit> unit;
-    if (looks_like_unit(text)) {
+    if (looks_like_unit(text) && !has_ton(text)) {
       const std::lock_guard lock(udunits_mutex());
       unit = database().parse(std::string(text));
     }

@@ -34,6 +34,19 @@ std::string joined(const std::string& word, const std::string& end) {
 
 }  // namespace
 
+namespace {
+
+// words that are no text in YAML, in any script of small and capital letters
+bool is_value_of_yaml(std::string word) {
+  for (char& c : word) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  constexpr std::string_view kValues[] = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"};
+  return std::find(std::begin(kValues), std::end(kValues), word) != std::end(kValues);
+}
+
+}  // namespace
+
 SceneNames::SceneNames() {
   taken_.emplace(multibody::kGroundName);
   for (const std::string_view key : scene::top_level_keys()) taken_.emplace(key);
@@ -42,7 +55,7 @@ SceneNames::SceneNames() {
 std::string SceneNames::take(const std::string& name, const std::string& suffix) {
   const std::string word = word_of(name);
   std::string given = joined(word, "");
-  if (taken_.contains(given)) given = joined(word, suffix);
+  if (taken_.contains(given) || is_value_of_yaml(given)) given = joined(word, suffix);
   for (int number = 2; taken_.contains(given); ++number) given = joined(word, suffix + "_" + std::to_string(number));
   taken_.insert(given);
   return given;

@@ -136,14 +136,30 @@ Overshoot widest_overshoot(const math::CubicSpline& spline, const Table& points)
   return widest;
 }
 
-// Shortest time in which a table goes one way and then back [s]; infinite: it does not.
+// Shortest time in which a table goes one way and then back [s]; infinite: it does not. Ways below a share of the
+// largest value are none.
 double shortest_pulse(const Table& table) {
-  double shortest = std::numeric_limits<double>::infinity(), begin = 0, last = 0;
-  for (std::size_t k = 0; k + 1 < table.size(); ++k) {
-    const double change = table[k + 1][1] - table[k][1];
-    if (change == 0) continue;
-    if (change * last < 0) shortest = std::min(shortest, table[k + 1][0] - begin);
-    begin = table[k][0], last = change;
+  constexpr double kNoticed = 1e-3;
+  double least = 0, largest = 0;
+  for (const auto& point : table) least = std::min(least, point[1]), largest = std::max(largest, point[1]);
+  const double noticed = kNoticed * (largest - least);
+  double shortest = std::numeric_limits<double>::infinity();
+  // extremes since the last turn, and the way there: 1 up, -1 down, 0 none yet
+  std::size_t top = 0, bottom = 0;
+  int way = 0;
+  for (std::size_t k = 1; k < table.size(); ++k) {
+    if (table[k][1] > table[top][1]) top = k;
+    if (table[k][1] < table[bottom][1]) bottom = k;
+    const bool rises = way <= 0 && table[k][1] - table[bottom][1] > noticed;
+    if (!rises && !(way >= 0 && table[top][1] - table[k][1] > noticed)) continue;
+    const std::size_t turn = rises ? bottom : top;
+    if (way != 0) {
+      std::size_t begin = turn;
+      while (std::fabs(table[begin][1] - table[turn][1]) <= noticed) --begin;
+      shortest = std::min(shortest, table[k][0] - table[begin][0]);
+    }
+    way = rises ? 1 : -1;
+    top = bottom = k;
   }
   return shortest;
 }

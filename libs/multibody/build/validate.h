@@ -26,8 +26,8 @@ void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings);
 
 // Appends an error for every pair whose impact is too fast for the shortest part of a sub-step [s] of the scene's own
 // rule, each body taken as free and hit in its centre of mass, where an impact would make energy. An implicit rule
-// loses the rebound instead, and the parts of rk4 may be too long for it: the second function appends a warning where
-// the restitution is kPlastic or more (contact_rate.h). Pre-condition: validate() found nothing.
+// loses the rebound instead, and the parts of rk4 and `augmented` may be too long for it: the second function appends a
+// warning where the restitution is kPlastic or more (contact_rate.h). Pre-condition: validate() found nothing.
 void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems& problems);
 void find_lost_rebounds(const MechanicsDef& mechanics, double substep, Problems& warnings);
 // Appends a warning for every table of a force over time that rises and falls within two sub-steps [s]: an integrator

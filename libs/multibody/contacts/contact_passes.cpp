@@ -273,12 +273,14 @@ ContactParts stiff_parts(const Model& model, double parts, double needed, StepKi
   return {.count = static_cast<int>(std::ceil(std::max(parts, std::min(needed, kMostStiffParts))))};
 }
 
-// Number of parts that an implicit rule requires for the rebound of impacts, present and met with this rate; 0: none.
-double parts_of_blow(const Model& model, double h, double met_rate, Workspace& ws) noexcept {
+// Number of parts that an implicit rule, or the trapezoid of `augmented`, requires for the rebound of impacts, present
+// and met with this rate of their springs; 0: none.
+double parts_of_blow(const Model& model, double h, double met_rate, StepKind kind, Workspace& ws) noexcept {
   const bool is_hit = has_impact(model, ws, RateOf::springs);
   const double rate = std::max(met_rate, is_hit ? contact_rate(model, ws, RateOf::springs) : 0.0);
   const double needed = h * rate / kReachOfBlow;
-  ws.contact->is_lost = ws.contact->is_lost || !(needed * kReachOfBlow <= kMostStiffParts * kLostBlow);
+  const double lost = kind == StepKind::corrected ? kLostBlowOfCorrections : kLostBlow;
+  ws.contact->is_lost = ws.contact->is_lost || !(needed * kReachOfBlow <= kMostStiffParts * lost);
   return std::min(needed, kMostStiffParts);
 }
 
@@ -357,23 +359,26 @@ ContactParts contact_parts(const Model& model, double h, ContactStep step, Works
   look_ahead(h, contacts);
   contacts.is_near = !contacts.before.states().empty() || !contacts.set.points().empty();
   // parts that are short against the thickness on their path
-  double parts = std::ceil(h / elements.substep * (1 - kContactRounding)), met_rate = 0;
+  double parts = std::ceil(h / elements.substep * (1 - kContactRounding)), met_rate = 0, met_springs = 0;
   for (std::size_t pair = 0; pair < contacts.was_touching.size(); ++pair) {
     const contact::Meeting meeting = sweep(elements.model, pair, contacts.start_poses, contacts.ahead, contacts.set);
     if (meeting.kind == contact::Meeting::Kind::none) continue;
     contacts.is_near = true;
     parts = std::max(parts, kPartsPerThickness * meeting.travel / elements.model.pairs()[pair].half_thickness);
     if (meeting.kind != contact::Meeting::Kind::found) continue;
-    const RateOf chosen = chosen_rate(step.kind);
-    met_rate =
-        std::max(met_rate, contacts.was_touching[pair] == 0 ? impact_rate(model, ws, pair, meeting, h, chosen)
-                                                            : rate_of_new_points(model, h, pair, meeting, chosen, ws));
+    const auto rate_of_meeting = [&](RateOf chosen) {
+      return contacts.was_touching[pair] == 0 ? impact_rate(model, ws, pair, meeting, h, chosen)
+                                              : rate_of_new_points(model, h, pair, meeting, chosen, ws);
+    };
+    met_rate = std::max(met_rate, rate_of_meeting(chosen_rate(step.kind)));
+    if (step.kind == StepKind::corrected) met_springs = std::max(met_springs, rate_of_meeting(RateOf::springs));
   }
   if (!contacts.is_near) return {};
   parts = std::clamp(parts, 1.0, kMostParts);
   if (step.kind == StepKind::implicit) {
-    return {.count = static_cast<int>(std::ceil(std::max(parts, parts_of_blow(model, h, met_rate, ws))))};
+    return {.count = static_cast<int>(std::ceil(std::max(parts, parts_of_blow(model, h, met_rate, step.kind, ws))))};
   }
+  if (step.kind == StepKind::corrected) parts = std::max(parts, parts_of_blow(model, h, met_springs, step.kind, ws));
   // resolve an imminent impact
   if (met_rate > 0 && step.kind == StepKind::settling) step.kind = StepKind::explicit_rule;
   return stiff_parts(model, parts, explicit_parts(model, h, met_rate, step, ws), step.kind, ws);
@@ -382,7 +387,7 @@ ContactParts contact_parts(const Model& model, double h, ContactStep step, Works
 ContactParts contact_parts_again(const Model& model, double h, int parts, ContactStep step, Workspace& ws) noexcept {
   const double met_rate = rate_of_landings(model, h / parts, step.kind, ws);
   if (step.kind == StepKind::implicit) {
-    const double finer = parts_of_blow(model, h, met_rate, ws) / parts * (1 - kContactRounding);
+    const double finer = parts_of_blow(model, h, met_rate, step.kind, ws) / parts * (1 - kContactRounding);
     return {.count = static_cast<int>(std::ceil(std::max(1.0, finer)))};
   }
   const double needed = explicit_parts(model, h, met_rate, step, ws);
@@ -391,7 +396,12 @@ ContactParts contact_parts_again(const Model& model, double h, int parts, Contac
     return {.is_settling = true};
   }
   ws.contact->is_lost = ws.contact->is_lost || !(needed <= kMostStiffParts);
-  const double finer = std::max(1.0, std::min(needed, kMostStiffParts) / parts * (1 - kContactRounding));
+  double most = std::min(needed, kMostStiffParts);
+  if (step.kind == StepKind::corrected) {
+    const double met_springs = rate_of_landings(model, h / parts, StepKind::implicit, ws);
+    most = std::max(most, parts_of_blow(model, h, met_springs, step.kind, ws));
+  }
+  const double finer = std::max(1.0, most / parts * (1 - kContactRounding));
   return {.count = static_cast<int>(std::ceil(finer))};
 }
 

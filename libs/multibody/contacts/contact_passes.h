@@ -52,9 +52,10 @@ struct ContactStep {
   double reach_at_rest = kReach;  // of present contacts where nothing lands
 };
 
-// Implicit rules are stable in any part. For the rebound, parts of a blow are that short against its spring; beyond the
-// second value a rebound is wrong by more than 0.05 of the impact speed, and flagged.
-inline constexpr double kReachOfBlow = 0.2, kLostBlow = 0.35;
+// Implicit rules are stable in any part. For the rebound, under them and under `augmented`, parts of a blow are that
+// short against its spring; beyond the second value, the third under `augmented`, a rebound is wrong by more than 0.05
+// of the impact speed, and flagged.
+inline constexpr double kReachOfBlow = 0.2, kLostBlow = 0.35, kLostBlowOfCorrections = 0.7;
 
 // An implicit part costs as much as 1.2 to 3.3 of Runge-Kutta's, least where finding the contacts costs most.
 inline constexpr double kWorthSettling = 2;
@@ -71,7 +72,7 @@ struct ContactParts {
 // Touching contacts are resolved at their rate (contact_rate.h); contacts too fast for the shortest part set
 // ws.contact->is_lost. `settling`: without an impact, and if the explicit rule would need kWorthSettling times as many
 // parts as contact_substep, the implicit rule is used, which need not resolve the damping of a load. `implicit`: the
-// contacts of impacts that rebound alone.
+// contacts of impacts that rebound alone. `corrected`: those of impacts that rebound finer.
 [[nodiscard]] ContactParts contact_parts(const Model& model, double h, ContactStep step, Workspace& ws) noexcept;
 
 // The same for one of `parts` of the sub-step, for contacts closed meanwhile and corners of touching pairs that land in

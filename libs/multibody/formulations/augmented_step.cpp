@@ -278,12 +278,20 @@ struct Parts {
 
 enum class Outcome { settled, unsettled, divide };
 
+// Corrections do not have the slopes of contacts: those that close unforeseen in a part may need a shorter one.
+bool has_contacts(const Workspace& ws) noexcept {
+  return ws.contact != nullptr && ws.contact->is_near;
+}
+
 // the end of a part by (5), or by (11) if a stop is touched or left in it
 Outcome take_part(const Parts& parts, double h, bool has_stops, bool may_divide) noexcept {
   PenaltyWorkspace& pws = parts.pws;
   const int most = has_stops && may_divide ? kMostOfADividedPart : kMostStepCorrections;
   const bool has_settled = parts.find_end(h, Rule::trapezoid, most);
-  if (!has_stops) return has_settled ? Outcome::settled : Outcome::unsettled;
+  if (!has_stops) {
+    if (has_settled) return Outcome::settled;
+    return may_divide && has_contacts(parts.ws) ? Outcome::divide : Outcome::unsettled;
+  }
   see_element_stops(parts.model, parts.ws, pws.stops);
   const Touch touch = has_settled ? touch_between(parts.model, pws.stops_0, pws.stops, {}) : Touch::harsh;
   if (touch == Touch::none) return Outcome::settled;

@@ -262,6 +262,28 @@ TEST(HydraulicsValidation, quasi_static_chambers_and_tanks_are_refused) {
   EXPECT_EQ(what_at(errors, "Vol_MainPump.quasi_static"), "");
 }
 
+// ended with code 5 and advice that does not help
+TEST(HydraulicsValidation, quasi_static_volumes_without_an_outlet_are_refused) {
+  HydraulicsDef def = crane_circuit();
+  add_volume(def, "Dead").quasi_static = true;
+  add_volume(def, "End").quasi_static = true;
+  auto orifice = std::make_unique<OrificeDef>();
+  orifice->name = "Between";
+  orifice->port_1 = "Dead";
+  orifice->port_2 = "End";
+  def.components.push_back(std::move(orifice));
+  for (const char* volume : {"Dead", "End"}) {
+    const std::string what = what_at(findings(def).errors, std::string(volume) + ".quasi_static");
+    EXPECT_NE(what.find("nothing determines its pressure"), std::string::npos) << what;
+  }
+  // with an outlet the one is determined, and the other while the orifice is open
+  static_cast<OrificeDef&>(*def.components.back()).port_1 = "Vol_MainPump";
+  Findings found = findings(def);
+  EXPECT_EQ(what_at(found.errors, "End.quasi_static"), "");
+  EXPECT_NE(what_at(found.warnings, "End.quasi_static").find("'Between' alone leads to the volume"), std::string::npos);
+  EXPECT_EQ(what_at(found.errors, "Dead.quasi_static").empty(), false) << "nothing leads to it";
+}
+
 TEST(HydraulicsValidation, a_double_rod_thicker_than_its_piston_is_refused) {
   HydraulicsDef def = bench_circuit();
   component<DoubleRodCylinderDef>(def, "Cylinder").rod_diameter = 0.2;

@@ -17,10 +17,17 @@ constexpr const char* kCircuit =
     "  D: {type: pump, port_a: P, port_b: T, speed: 150 rad/s, displacement: 10 cm3/rev}\n"
     "  R: {type: relief_valve, port_1: P, port_2: T, nominal_flow: 200 l/min, setting_pressure: 250 bar}\n";
 
+// rk4 at 1 ms follows a spring of 8e6 N/m on 1 kg
+constexpr const char* kMass =
+    "session: {step: 1 ms}\nbodies: {B: {position: [1 m, 0, 0], mass: 1 kg, inertia: [0.1, 0.1, 0.1]}}\n"
+    "joints: {J: {type: prismatic, orientation1: [0, 90 deg, 0], body2: B, orientation2: [0, 90 deg, 0]}}\n"
+    "forces:\n  S: {type: translational, body1: Ground, body2: B, free_length: 1 m, spring_constant: 6e6 N/m}\n";
+
 class LiveRules : public Io {
  protected:
-  void start(const std::string& script = {}) {
-    IoConfig with = make_config(scene::load_text(kCircuit + script, "test"), "s", Recording::none);
+  void start(const std::string& script = {}) { start_scene(kCircuit + script); }
+  void start_scene(const std::string& text) {
+    IoConfig with = make_config(scene::load_text(text, "test"), "s", Recording::none);
     with.session = config().session;
     with.required_roles = config().required_roles;
     with.name_check = {};
@@ -90,6 +97,31 @@ TEST_F(LiveRules, HoldForTheScriptsChangesThatFollow) {
   EXPECT_NE(refusal.find("U.cut_in_pressure at 0.1 s: the valve would shut"), std::string::npos) << refusal;
   run_to(250);
   EXPECT_EQ(set("U.cut_out_pressure", 90e5), "");
+}
+
+// Was judged beside the scene's 1 kg: the spring was refused, and the lost mass accepted, 1.6 times the limit of rk4.
+TEST_F(LiveRules, OfTheMechanismHoldForTheValuesOfTheSession) {
+  start_scene(kMass);
+  EXPECT_NE(set("S.spring_constant", 2e7).find("S.spring_constant: 20000000 N/m is refused: "), std::string::npos);
+  EXPECT_EQ(set("B.mass", 4), "");
+  EXPECT_EQ(set("S.spring_constant", 2e7), "") << "the change before waits for the same step";
+  run_to(20);
+  EXPECT_NE(set("B.mass", 1).find("B.mass: 1 kg is refused: "), std::string::npos) << "allowed in the scene";
+  EXPECT_EQ(set("B.mass", 3), "");
+  run_to(30);
+  EXPECT_EQ(set("S.spring_constant", 6e6), "");
+  run_to(40);
+  EXPECT_EQ(set("B.mass", 1), "");
+}
+
+TEST_F(LiveRules, OfTheMechanismHoldAlongTheRamps) {
+  start_scene(kMass);
+  EXPECT_EQ(set("B.mass", 4, milliseconds(100)), "");
+  EXPECT_NE(set("S.spring_constant", 2e7), "") << "the mass is not there yet";
+  EXPECT_EQ(set("S.spring_constant", 2e7, milliseconds(100)), "");
+  run_to(50);
+  const std::string refusal = set("B.mass", 2.2);
+  EXPECT_NE(refusal.find("is refused: at 0.1"), std::string::npos) << refusal;
 }
 
 }  // namespace live_rules_test

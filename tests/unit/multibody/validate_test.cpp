@@ -225,6 +225,27 @@ TEST(ShortPulse, IsNamedWithTheSubStepThatSuits) {
   EXPECT_TRUE(warnings_of({{0, 0}, {0.1, 0}, {0.1001, 5000}, {1, 5000}, {1.0001, 0}}).empty());
 }
 
+// the share of the load decides, at its peak too; all of a small load is a blow
+TEST(ShortPulse, OfABillionthOfTheLoadIsNone) {
+  MechanicsDef def = sound();
+  const auto warning_count = [&def](Table table) {
+    def.point_torques = {{.name = "Blow", .body = def.bodies[0].name, .torque_table = std::move(table)}};
+    Problems warnings;
+    find_short_pulses(def, 1e-3, warnings);
+    return warnings.size();
+  };
+  EXPECT_EQ(warning_count({{0, 1000}, {0.1, 1000}, {0.1001, 1000 + 1e-6}, {0.1002, 1000}, {1, 1000}}), 0u);
+  EXPECT_EQ(warning_count({{0, 0}, {0.1, 0}, {0.1001, 1e-6}, {0.1002, 0}, {1, -1000}}), 0u);
+  EXPECT_EQ(warning_count({{0, 0}, {0.1, 0}, {0.1001, 1e-6}, {0.1002, 0}, {1, 0}}), 1u);
+  // a bump within a blow does not hide it, nor does one at its foot
+  EXPECT_EQ(warning_count({{0, 0}, {0.1, 0}, {0.1001, 5000}, {0.1002, 4999.999}, {0.1003, 5000}, {0.1004, 0}}), 1u);
+  EXPECT_EQ(warning_count({{0, 1e-6}, {0.1, 0}, {0.1001, 5000}, {0.1002, 0}, {0.1003, 1e-6}, {1, 0}}), 1u);
+  // steps of less than the share each
+  Table steep = {{0, 0}, {0.1, 0}};
+  for (int k = 1; k <= 4000; ++k) steep.push_back({0.1 + 1e-7 * k, k <= 2000 ? k : 4000.0 - k});
+  EXPECT_EQ(warning_count(steep), 1u);
+}
+
 TEST(FastMotion, BeyondThePartsOfASubStepIsNamedWithTheSubStepThatSuits) {
   MechanicsDef def = sound();
   const auto warnings_of = [&def](double frequency) {

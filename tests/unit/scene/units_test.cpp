@@ -86,6 +86,21 @@ TEST(Units, CubicCentimetresPerRevolutionAreADisplacement) {
   }
 }
 
+// was the short ton of UDUNITS, 2721.55 kg, without a word
+TEST(Units, TheTonOfSeveralMeaningsIsRefusedByName) {
+  for (const char* text : {"3 ton", "3 tons", "0.003 kiloton"}) {
+    const QuantityResult result = read_quantity(text, Writing::plain, Dimension::mass, units());
+    EXPECT_FALSE(result.value) << text;
+    EXPECT_NE(result.problem.what.find("'ton' has several meanings"), std::string::npos) << result.problem.what;
+    EXPECT_EQ(result.problem.expected, "t (1000 kg), short_ton (907.18474 kg) or long_ton (1016.0469088 kg)");
+  }
+  EXPECT_FALSE(read_quantity("2 ton m2", Writing::plain, Dimension::inertia, units()).value);
+  EXPECT_EQ(read_quantity("3 t", Writing::plain, Dimension::mass, units()).value, 3000);
+  EXPECT_EQ(read_quantity("3 tonne", Writing::plain, Dimension::mass, units()).value, 3000);
+  EXPECT_NEAR(*read_quantity("1 short_ton", Writing::plain, Dimension::mass, units()).value, 907.18474, 1e-9);
+  EXPECT_NEAR(*read_quantity("1 long_ton", Writing::plain, Dimension::mass, units()).value, 1016.0469088, 1e-9);
+}
+
 TEST(Units, AScaleThatIsNoShortDecimalStaysAsItIs) {
   const QuantityResult result = read_quantity("1 psi", Writing::plain, Dimension::pressure, units());
   ASSERT_TRUE(result.value);

@@ -42,6 +42,13 @@ TEST(SceneNames, GiveEveryNameOnceAndNoReservedOne) {
   EXPECT_EQ(names.take("joints", "_link"), "joints_link");
 }
 
+TEST(SceneNames, AreNoValuesOfYaml) {
+  SceneNames names;
+  for (const std::string word : {"null", "True", "NO", "on", "y"}) EXPECT_EQ(names.take(word, "_link"), word + "_link");
+  EXPECT_EQ(names.take("~", "_link"), "_");
+  EXPECT_EQ(names.take("1.0", "_link"), "_1_0");
+}
+
 TEST(SceneNames, LoseTheirMiddleWhenTheyAreTooLong) {
   SceneNames names;
   const std::string part = "camera_mount_linear_actuator_housing_";

@@ -42,6 +42,25 @@ void expect_pose(const multibody::BodyPose& pose, const Mat3& R, Vec3 p) {
   EXPECT_LT(norm(Vec3(pose.position) - p), kRounding);
 }
 
+// Names that YAML reads as other types: the scene loads with names that it takes as text, and moves. A link named null
+// was refused with a text that named neither the line nor the cause.
+TEST(Names, ThatYamlReadsAsValuesAreNamesOfTheScene) {
+  const char* const names[] = {"null", "true", "~", "1.0", "yes", "Off", "NULL", "n", "1e5", ".nan"};
+  std::string content;
+  std::string parent = "world";
+  for (const char* name : names) {
+    const std::string hinge = std::string("on ") + name;
+    content += link(name) + joint(hinge, "continuous", parent, name, "<origin xyz=\"0.2 0 0\"/><axis xyz=\"0 1 0\"/>");
+    parent = name;
+  }
+  Imported one("<robot name=\"null\"><link name=\"world\"/>" + content + "</robot>");
+  ASSERT_EQ(one.scene.mechanics.bodies.size(), std::size(names));
+  EXPECT_EQ(one.body("null_link").mass, 1);
+  EXPECT_EQ(one.body("NULL_link").mass, 1);
+  EXPECT_EQ(one.body("_1_0").mass, 1);
+  expect_pose(one.mechanism.pose("_nan"), Mat3::identity(), {2, 0, 0});
+}
+
 // turned by q about a skew axis, after an origin that is turned as well
 TEST(JointTypes, ARevoluteJointTurnsAboutItsAxis) {
   const std::string axis = "1 -2 0.5";
