@@ -99,7 +99,7 @@ TEST_F(LiveRules, HoldForTheScriptsChangesThatFollow) {
   EXPECT_EQ(set("U.cut_out_pressure", 90e5), "");
 }
 
-// Was judged beside the scene's 1 kg: the spring was refused, and the lost mass accepted, 1.6 times the limit of rk4.
+// Was judged beside the scene's 1 kg: the spring was refused, and the lost mass accepted, 2.5 times the limit of rk4.
 TEST_F(LiveRules, OfTheMechanismHoldForTheValuesOfTheSession) {
   start_scene(kMass);
   EXPECT_NE(set("S.spring_constant", 2e7).find("S.spring_constant: 20000000 N/m is refused: "), std::string::npos);
