@@ -263,7 +263,6 @@ std::string_view MechanicsSubsystem::offender_name(std::int32_t index) const noe
 // Work, impulse and mean speed are those of the finished step and stay in the sample.
 void MechanicsSubsystem::publish(coupling::OwnSample& sample) noexcept {
   mechanism_.evaluate();
-  // variables show every element, a step moves only those that carry a force or a row
   mechanism_.observe();
   port_problem_.publish_motion(sample.mechanism);
   published_mobility_.publish(port_problem_.ports(), sample.mechanism, row_force_);

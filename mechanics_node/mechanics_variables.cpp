@@ -48,7 +48,7 @@ MechanicsVariables::Work::Work(const multibody::Model& model, PayloadSensitivity
 void MechanicsVariables::read(const Instant& instant, Work& work, std::span<double> values) const noexcept {
   const multibody::Model& model = instant.mechanism.model();
   const multibody::State& state = instant.mechanism.state();
-  multibody::read_variables(model, state, instant.mechanism.workspace(), instant.row_force, values.first(of_model_));
+  multibody::read_variables(model, state, instant.mechanism.observed(), instant.row_force, values.first(of_model_));
   multibody::joint_reactions(model, state, work.workspace, instant.row_force, work.reactions);
   multibody::read_reactions(model, work.workspace, instant.row_force, work.reactions,
                             values.subspan(of_model_, of_reactions_));

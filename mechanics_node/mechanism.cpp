@@ -74,14 +74,25 @@ bool Mechanism::advance(double h, std::span<const double> mean, std::span<const 
 }
 
 void Mechanism::observe() noexcept {
+  // evaluate() leaves it so, but for prescribed motions at a time that was set since
+  const bool is_at_time = workspace_.time == state_.time;
+  workspace_.time = state_.time;
+  if (def_.formulation == multibody::Formulation::recursive && (is_at_time || model_.drives.empty())) return;
   multibody::observe(model_, state_, workspace_);
+  is_observed_ = true;
+}
+
+const multibody::Workspace& Mechanism::observed() const noexcept {
+  if (!is_observed_) multibody::observe_elements(model_, state_, workspace_);
+  is_observed_ = true;
+  return workspace_;
 }
 
 void Mechanism::show(const multibody::State& state) noexcept {
   multibody::copy_state(state, state_);
   multibody::evaluate(model_, state_, workspace_);
   is_evaluated_ = true;
-  observe();
+  is_observed_ = false;
 }
 
 Mechanism::Snapshot Mechanism::snapshot() const {

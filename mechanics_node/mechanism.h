@@ -71,13 +71,17 @@ class Mechanism {
     if (is_evaluated_) return;
     dynamics_.evaluate(model_, state_, workspace_);
     is_evaluated_ = true;
+    is_observed_ = false;
   }
   // Free accelerations of all rows for the present motion under the loads of another time [s].
   void free_accelerations_at(double time, std::span<double> a_free) noexcept;
   // Advances by h [s] with the row forces mean + (t - h/2) slope. False: see multibody::Dynamics::advance().
   [[nodiscard]] bool advance(double h, std::span<const double> mean, std::span<const double> slope) noexcept;
-  // Computes the motion of all elements, including those without force and row, after evaluate().
+  // Shows the motion of the joint coordinates, after evaluate().
   void observe() noexcept;
+  // The workspace for variables, after observe(): with the motion of all elements, of which a step computes only those
+  // that carry a force or a row.
+  [[nodiscard]] const multibody::Workspace& observed() const noexcept;
   // Returns to a state for reading only: the evaluation is that of joint coordinates, whatever the formulation.
   void show(const multibody::State& state) noexcept;
 
@@ -115,9 +119,10 @@ class Mechanism {
   multibody::Model model_;
   multibody::State state_;
   multibody::Dynamics dynamics_;
-  multibody::Workspace workspace_;
+  mutable multibody::Workspace workspace_;  // observed() adds what a step leaves out
   std::vector<OperatedLoad> operated_;
-  bool is_evaluated_ = false;  // workspace_ belongs to state_ and model_
+  bool is_evaluated_ = false;         // workspace_ belongs to state_ and model_
+  mutable bool is_observed_ = false;  // and has the motion of all elements
 };
 
 }  // namespace slew::mechanics_node

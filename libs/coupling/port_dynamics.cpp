@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "core/reductions.h"
+#include "math/fixed_size.h"
 #include "math/small_solve.h"
 
 namespace slew::coupling {
@@ -35,6 +36,9 @@ constexpr double kNarrow = 1e-3;  // share of the step that leads out of the bra
 // speeds are converged below this fraction of the speed scale: well under any physical resolution, above round-off
 constexpr double kRelativeTolerance = 1e-12;
 constexpr double kAbsoluteTolerance = 1e-15;
+
+// rows of a crane with all its limits: their number is a constant in the iteration
+constexpr std::size_t kMostFixed = 6;
 
 // limit of the parts of micro-steps in a solve; beyond it, the rest of a micro-step is one part
 constexpr int kMostTries = 512;
@@ -94,16 +98,17 @@ void PortDynamics::prepare(double weight) noexcept {
 }
 
 // stage values x, z from the stage speeds, then force f and its total slope with respect to the own speed
-void PortDynamics::evaluate_rows(double weight, const RowLaws& laws) noexcept {
-  for (std::size_t i = 0; i < rows_; ++i) {
+template <typename Rows>
+void PortDynamics::evaluate_rows(Rows rows, double weight, const RowLaws& laws) noexcept {
+  for (std::size_t i = 0; i < rows; ++i) {
     const RowPartner& p = partner_[i];
     x_stage_[i] = x_base_[i] + weight * v_stage_[i];
     z_stage_[i] = (shrink_[i] * z_base_[i] + drive_[i]) - pull_[i] * v_stage_[i];
     pressure_force_[i] = z_stage_[i] - p.D * (v_stage_[i] - p.v_ref);
   }
   if (is_coupled_) pull_by_others();
-  laws.evaluate_all(rows_, pressure_force_.data(), x_stage_.data(), v_stage_.data(), law_.data());
-  for (std::size_t i = 0; i < rows_; ++i) {
+  laws.evaluate_all(rows, pressure_force_.data(), x_stage_.data(), v_stage_.data(), law_.data());
+  for (std::size_t i = 0; i < rows; ++i) {
     const RowForce& law = law_[i];
     f_[i] = law.force;
     slope_[i] = law.d_v + weight * law.d_x - law.d_z * (pull_[i] + partner_[i].D);
@@ -183,8 +188,10 @@ void PortDynamics::add_coupled_slopes() noexcept {
 }
 
 // v = v_base + weight (a_free + time a_free' + W f(v)) for the stage speeds
-bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept {
-  const std::size_t m = rows_;
+template <typename Rows>
+bool PortDynamics::solve_stage_of(Rows rows, double weight, double time, const RowLaws& laws,
+                                  PortStep& report) noexcept {
+  const std::size_t m = rows;
   largest_a_ = 0;
   for (std::size_t i = 0; i < m; ++i) {
     forget_bracket(i);
@@ -192,7 +199,7 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
     largest_a_ = std::max(largest_a_, std::fabs(weighted_a_[i]));
   }
   for (int iteration = 0;; ++iteration) {
-    evaluate_rows(weight, laws);
+    evaluate_rows(rows, weight, laws);
     double scale = largest_a_;
     for (std::size_t i = 0; i < m; ++i) {
       double gain = weighted_a_[i];
@@ -236,6 +243,11 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
       }
     }
   }
+}
+
+bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept {
+  return math::with_fixed_size<kMostFixed>(rows_,
+                                           [&](auto rows) { return solve_stage_of(rows, weight, time, laws, report); });
 }
 
 void PortDynamics::set_weight(double weight, RowLaws& laws) noexcept {

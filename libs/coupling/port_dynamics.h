@@ -145,7 +145,11 @@ class PortDynamics {
   bool follows_stops(const Span& span, const RowLaws& laws) noexcept;
   [[nodiscard]] double longest_in_swing(std::size_t row, double time) const noexcept;
   bool solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept;
-  void evaluate_rows(double weight, const RowLaws& laws) noexcept;
+  // rows: their number, for a few rows as a constant
+  template <typename Rows>
+  bool solve_stage_of(Rows rows, double weight, double time, const RowLaws& laws, PortStep& report) noexcept;
+  template <typename Rows>
+  void evaluate_rows(Rows rows, double weight, const RowLaws& laws) noexcept;
   void pull_by_others() noexcept;
   void add_coupled_slopes() noexcept;
   void forget_bracket(std::size_t row) noexcept;

@@ -2,7 +2,10 @@
 #include "math/small_solve.h"
 
 #include <cmath>
+#include <type_traits>
 #include <utility>
+
+#include "math/fixed_size.h"
 
 namespace slew::math {
 namespace {
@@ -12,9 +15,8 @@ void swap_rows(double* A, double* B, std::size_t n, std::size_t columns, std::si
   for (std::size_t j = 0; j < columns; ++j) std::swap(B[i * columns + j], B[k * columns + j]);
 }
 
-}  // namespace
-
-bool solve_in_place(double* A, double* B, std::size_t n, std::size_t columns) noexcept {
+template <typename Size, typename Columns>
+bool solve(double* A, double* B, Size n, Columns columns) noexcept {
   for (std::size_t k = 0; k < n; ++k) {
     // largest pivot of the column
     std::size_t pivot = k;
@@ -40,6 +42,16 @@ bool solve_in_place(double* A, double* B, std::size_t n, std::size_t columns) no
     }
   }
   return true;
+}
+
+constexpr std::size_t kMostFixed = 6;  // rows of a crane with all its limits
+
+}  // namespace
+
+bool solve_in_place(double* A, double* B, std::size_t n, std::size_t columns) noexcept {
+  if (columns != 1) return solve(A, B, n, columns);
+  return with_fixed_size<kMostFixed>(
+      n, [&](auto size) { return solve(A, B, size, std::integral_constant<std::size_t, 1>{}); });
 }
 
 }  // namespace slew::math

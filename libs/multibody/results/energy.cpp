@@ -43,6 +43,10 @@ void observe(const Model& model, const State& state, Workspace& ws) noexcept {
   update_contacts(model, ws);
 }
 
+void observe_elements(const Model& model, const State& state, Workspace& ws) noexcept {
+  update_elements(model, state.q, Elements::all, ws);
+}
+
 Energy energy(const Model& model, const Workspace& ws) noexcept {
   Energy sum;
   for (std::size_t i = 1; i < model.links.size(); ++i) {

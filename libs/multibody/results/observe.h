@@ -15,6 +15,8 @@ namespace slew::multibody {
 // Motion of all links and elements at the state; call it before the readings below that take a Workspace. Cheap, does
 // not allocate.
 void observe(const Model& model, const State& state, Workspace& ws) noexcept;
+// The same where ws shows the motion of the state already, as evaluate() of dynamics.h leaves it: what it left out.
+void observe_elements(const Model& model, const State& state, Workspace& ws) noexcept;
 
 // Kinetic energy of all masses; potential energy of gravity (zero at Ground's origin) and of the elements' springs,
 // end dampers included, of the springs of contacts and of their bristles. The owner of the rows accounts for joint

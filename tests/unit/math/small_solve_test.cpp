@@ -31,7 +31,7 @@ TEST(SolveInPlace, TakesTheLargestPivot) {
 TEST(SolveInPlace, LeavesASmallResidualOnRandomSystems) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(-1, 1);
-  for (const std::size_t n : {1u, 2u, 5u, 16u}) {
+  for (const std::size_t n : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 16u}) {
     for (int trial = 0; trial < 50; ++trial) {
       std::vector<double> A(n * n), b(n);
       for (double& value : A) value = unit(random);
@@ -44,6 +44,26 @@ TEST(SolveInPlace, LeavesASmallResidualOnRandomSystems) {
         double residual = -b[i];
         for (std::size_t j = 0; j < n; ++j) residual += A[i * n + j] * x[j];
         EXPECT_LT(std::fabs(residual), 1e-13 * size);
+      }
+    }
+  }
+}
+
+// one right-hand side has code of its own for small sizes, two have not
+TEST(SolveInPlace, HasTheSameBitsForAnyNumberOfColumns) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (std::size_t n = 1; n <= 8; ++n) {
+    for (int trial = 0; trial < 50; ++trial) {
+      std::vector<double> A(n * n), b(n), twice(2 * n);
+      for (double& value : A) value = unit(random);
+      for (std::size_t i = 0; i < n; ++i) b[i] = twice[2 * i] = twice[2 * i + 1] = unit(random);
+      std::vector<double> again = A;
+      ASSERT_TRUE(solve_in_place(A.data(), b.data(), n, 1));
+      ASSERT_TRUE(solve_in_place(again.data(), twice.data(), n, 2));
+      for (std::size_t i = 0; i < n; ++i) {
+        EXPECT_EQ(b[i], twice[2 * i]) << n;
+        EXPECT_EQ(b[i], twice[2 * i + 1]) << n;
       }
     }
   }

@@ -71,6 +71,32 @@ TEST_P(ForceScene, TyresCarryAndRoll) {
   EXPECT_NEAR(m.value("Chassis.velocity.x") - speed, (500 + resistance) / 550, 2e-3);
 }
 
+// The protractor has no law and no row: a step does not move it. Four sub-steps, whose times are rounded otherwise than
+// the step's, with and without a motion by time.
+TEST_P(ForceScene, ElementsWithoutForceShowThePresentMotion) {
+  for (const char* motion :
+       {"", "motions: {Drive: {type: rotation_harmonic, joint: Pin, amplitude: 1 rad, frequency: 1 Hz}}"}) {
+    MechanicsAlone m(scene::load_text(std::string(R"(
+session: {step: 4 ms}
+mechanics: {max_substep: 1 ms}
+bodies: {Arm: {mass: 2 kg, center_of_mass: [1, 0, 0], inertia: [0.1, 0.2, 0.2]}}
+joints: {Pin: {type: revolute, body2: Arm}}
+forces:
+  Protractor: {type: rotational, body1: Ground, f1: [1, 0, 0], g1: [0, 1, 0], body2: Arm, f2: [1, 0, 0]}
+  Tape: {type: translational, body1: Ground, point1: [0, 3, 0], body2: Arm, point2: [1, 0, 0]}
+)") + motion,
+                                      "protractor", {std::string("mechanics.formulation=") + GetParam()}));
+    for (int step = 0; step < 60; ++step) {
+      m.step();
+      const double angle = m.value("Pin.position");
+      ASSERT_NEAR(m.value("Protractor.angle"), angle, 1e-9) << step << motion;
+      ASSERT_NEAR(m.value("Tape.length"), std::hypot(std::cos(angle), 3 - std::sin(angle)), 1e-9) << step << motion;
+      ASSERT_NEAR(m.value("Protractor.rate"), m.value("Pin.velocity"), 1e-9) << step << motion;
+    }
+    EXPECT_GT(std::fabs(m.value("Pin.position")), 0.1);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Formulations, ForceScene, ::testing::Values("recursive", "lagrange"));
 
 TEST(ForceSceneReset, StartsTheClockAgain) {
