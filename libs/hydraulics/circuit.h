@@ -350,6 +350,7 @@ class Circuit {
   std::vector<char> is_fixed_;
   std::vector<double> initial_pressure_;
   std::vector<StateIndex> supply_;
+  std::vector<int> joined_;  // by volume: start_volumes.h
   std::vector<Relief> reliefs_;
   StartState start_;
   double start_return_, start_slew_, start_pump_;

@@ -8,6 +8,7 @@
 #include "core/check.h"
 #include "core/index.h"
 #include "hydraulics/circuit.h"
+#include "hydraulics/start_volumes.h"
 
 namespace slew::hydraulics {
 namespace {
@@ -51,6 +52,7 @@ Circuit::Circuit(const HydraulicsDef& def)
   control_name_ = builder.controls();
   flow_controls_ = builder.flow_controls();
   supply_ = builder.supply();
+  joined_ = joined_to_actuators(def);
   reliefs_ = builder.reliefs();
   add_contents(builder);
 

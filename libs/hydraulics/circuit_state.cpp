@@ -38,6 +38,11 @@ Circuit::Equilibrium Circuit::equilibrium(std::span<const double> F, std::span<c
     if (actuator.stages.area != nullptr) actuator.setting.at_start = actuator.setting_at(y.data());
   }
   found.start = start_pressures({at_start, is_fixed_, initial_pressure_, start_return_, start_slew_}, by_pressure, W);
+  for (std::size_t i = 0; i < joined_.size(); ++i) {
+    if (joined_[i] < 0) continue;
+    found.start.pressure[i] = found.start.pressure[static_cast<std::size_t>(joined_[i])];
+    found.start.actuator[i] = found.start.actuator[static_cast<std::size_t>(joined_[i])];
+  }
   return found;
 }
 

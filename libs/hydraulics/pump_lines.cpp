@@ -14,15 +14,6 @@ namespace {
 
 constexpr double kBar = 1e5;
 
-PumpLines lines_of(const HydraulicsDef& def) {
-  PumpLines lines{.oil_density = def.oil_density};
-  for (const VolumeDef& volume : def.volumes) {
-    if (volume.fixed) lines.held.insert(volume.name);
-  }
-  for (const auto& component : def.components) component->add_lines(lines);
-  return lines;
-}
-
 using Volumes = std::set<std::string>;
 
 // Volumes whose pressure follows the pump's: a pilot needs no flow. A held volume passes no pressure on.
@@ -65,6 +56,15 @@ bool is_relieved(const PumpLines& lines, const PumpLines::Pump& pump) {
 }
 
 }  // namespace
+
+PumpLines lines_of(const HydraulicsDef& def) {
+  PumpLines lines{.oil_density = def.oil_density};
+  for (const VolumeDef& volume : def.volumes) {
+    if (volume.fixed) lines.held.insert(volume.name);
+  }
+  for (const auto& component : def.components) component->add_lines(lines);
+  return lines;
+}
 
 void find_unrelieved_pumps(const HydraulicsDef& def, Problems& warnings) {
   const PumpLines lines = lines_of(def);

@@ -15,6 +15,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/problem.h"
@@ -43,9 +44,14 @@ struct PumpLines {
   double oil_density = 0;          // kg/m3
   std::vector<Connection> open{};  // volumes that are connected whatever the signals, by valves from a pressure on
   std::vector<Divider> dividers{};
-  std::set<std::string> held{};  // volumes at a given pressure
+  std::set<std::string> held{};                                     // volumes at a given pressure
+  std::vector<std::pair<std::string, std::string>> open_at_rest{};  // volumes beside a valve that flow alone shuts
+  std::set<std::string> supply{};  // volumes that begin at the pump pressure in an equilibrium start
   std::vector<Pump> pumps{};
 };
+
+// Pre-condition: a def whose references are valid.
+[[nodiscard]] PumpLines lines_of(const HydraulicsDef& def);
 
 // One warning for each such pump. Pre-condition: validate() found no error so far.
 void find_unrelieved_pumps(const HydraulicsDef& def, Problems& warnings);

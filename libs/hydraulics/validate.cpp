@@ -10,6 +10,7 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/hydraulics_def.h"
 #include "hydraulics/pump_lines.h"
+#include "hydraulics/start_volumes.h"
 #include "math/pattern_lu.h"
 
 namespace slew::hydraulics {
@@ -441,7 +442,10 @@ void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
   if (!are_types_known) return;
   check_ls_chain(def, errors, warnings);
   check_forces(def, errors);
-  if (errors.empty()) find_unrelieved_pumps(def, warnings);
+  if (errors.empty()) {
+    find_unrelieved_pumps(def, warnings);
+    find_replaced_pressures(def, warnings);
+  }
   if (errors.empty()) check_size(def, count_unknowns(def), errors);
 }
 

@@ -60,6 +60,15 @@ inline constexpr ReadBy kReadByBreakaway[] = {
     {"breakaway_friction", "a breakaway_friction above 0",
      [](const void* def) noexcept { return static_cast<const Def*>(def)->common.breakaway_friction != 0; }}};
 
+// An efficiency of 1 is right without a curve.
+template <typename Def>
+inline constexpr ReadBy kReadByCurve[] = {{"friction_curve", "a friction_curve",
+                                           [](const void* def) noexcept {
+                                             const CylinderParameters& common = static_cast<const Def*>(def)->common;
+                                             return !common.friction_curve.empty() || common.cylinder_coefficient == 1;
+                                           },
+                                           ReadBy::Otherwise::warning}};
+
 // Stroke, barrel, friction, leak and end dampers.
 template <typename Def>
 constexpr auto cylinder_stroke_fields() {
@@ -75,8 +84,10 @@ constexpr auto cylinder_stroke_fields() {
                                                                  .doc = "stroke at the upper end damper"}),
       cylinder_field<Def, &C::bulk_modulus>(
           "bulk_modulus", {.dimension = Dimension::pressure, .range = kPositive, .doc = "bulk modulus of the barrel"}),
-      cylinder_field<Def, &C::cylinder_coefficient>(
-          "cylinder_coefficient", {.range = kFraction, .doc = "efficiency eta; 1 - eta scales the friction curve"}),
+      cylinder_field<Def, &C::cylinder_coefficient>("cylinder_coefficient",
+                                                    {.range = kFraction,
+                                                     .read_by = kReadByCurve<Def>,
+                                                     .doc = "efficiency eta; 1 - eta scales the friction curve"}),
       cylinder_field<Def, &C::seal_friction>(
           "seal_friction",
           {.dimension = Dimension::force, .range = kNotNegative, .doc = "friction at equal pressures"}),

@@ -122,6 +122,7 @@ void validate_hose_burst_valve(const HydraulicsDef&, const ComponentDef& compone
 void HoseBurstValveDef::add_lines(PumpLines& lines) const {
   const double drops = OilCompressibility::kHighest / nominal_pressure_drop;
   lines.open.push_back({.a = port_1, .b = port_2, .flow = nominal_flow * std::sqrt(drops), .is_one_way = true});
+  lines.open_at_rest.emplace_back(port_1, port_2);
 }
 
 ComponentType hose_burst_valve_type() {

@@ -23,6 +23,10 @@ constexpr std::string_view kMotorCouplings[] = {"session", "hold", "linear", "tw
 
 constexpr ReadBy kReadByCase[] = {read_by_set<&HydraulicMotorDef::port_c>("port_c", "a port_c")};
 
+constexpr ReadBy kReadByLoss[] = {
+    {"mechanical_coefficient", "a mechanical_coefficient below 1",
+     [](const void* def) noexcept { return static_cast<const HydraulicMotorDef*>(def)->mechanical_coefficient < 1; },
+     ReadBy::Otherwise::warning}};
 constexpr ReadBy kReadByVariable[] = {read_by<&HydraulicMotorDef::is_variable, true>("variable", "variable: true")};
 constexpr ReadBy kReadByBrake[] = {read_by_set<&HydraulicMotorDef::brake_port>("brake_port", "a brake_port")};
 
@@ -49,6 +53,7 @@ constexpr Field kHydraulicMotorFields[] = {
     field<&HydraulicMotorDef::friction_curve>(
         "friction_curve",
         {.reference = "curve",
+         .read_by = kReadByLoss,
          .doc = "factor of the loss 1 - eta over the shaft's speed [rad/s], from [0, 0] on; absent: 1"}),
     field<&HydraulicMotorDef::torque_loss>(
         "torque_loss",

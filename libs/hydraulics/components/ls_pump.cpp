@@ -209,6 +209,7 @@ void validate_pump(const HydraulicsDef& circuit, const ComponentDef& component, 
 }  // namespace
 
 void LsPumpDef::add_lines(PumpLines& lines) const {
+  lines.supply.insert(port_a);
   lines.pumps.push_back({.name = name,
                          .outlet = port_a,
                          .inlet = port_b,

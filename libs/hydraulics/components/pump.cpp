@@ -313,6 +313,7 @@ void validate_plain_pump(const HydraulicsDef& circuit, const ComponentDef& compo
 }  // namespace
 
 void PumpDef::add_lines(PumpLines& lines) const {
+  lines.supply.insert(port_a);
   const double flow = greatest_speed(drive, speed) * displacement * volumetric_coefficient;
   const double pressure = maximum_pressure > 0 ? maximum_pressure : std::numeric_limits<double>::infinity();
   lines.pumps.push_back({.name = name, .outlet = port_a, .inlet = port_b, .flow = flow, .pressure = pressure});

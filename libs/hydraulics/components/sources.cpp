@@ -142,6 +142,7 @@ void validate_flow_source(const HydraulicsDef&, const ComponentDef& component, P
 }  // namespace
 
 void FlowSourceDef::add_lines(PumpLines& lines) const {
+  lines.supply.insert(port_2);
   if (flow == 0 && flow_per_signal == 0) return;
   lines.pumps.push_back({.name = name,
                          .outlet = flow < 0 ? port_1 : port_2,

@@ -276,7 +276,25 @@ void check_edge_curve(const HydraulicsDef& circuit, const std::string& path, con
   }
 }
 
-void validate_spool_valve(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
+// A live area may open what is blocked at the start, so these are warnings.
+void warn_of_blocked_edges(const SpoolValveDef& def, Problems& warnings) {
+  const auto warn = [&](std::string_view key, std::string_view area, bool is_stated, double opened) {
+    if (!is_stated || opened > 0) return;
+    warnings.push_back({fmt::format("{}.{}", def.name, key),
+                        fmt::format("it has no effect: {} is 0, so that nothing flows there", area),
+                        fmt::format("{}, or no such key", area), ""});
+  };
+  warn("curve_pa", "area_pa", !def.pa.curve.empty(), def.pa.area);
+  warn("curve_bt", "area_bt", !def.bt.curve.empty(), def.bt.area);
+  warn("curve_pb", "area_pb", !def.pb.curve.empty(), def.pb.area);
+  warn("curve_at", "area_at", !def.at.curve.empty(), def.at.area);
+  warn("port_c", "bypass_area", !def.port_c.empty(), def.bypass_area);
+  warn("port_d", "bypass_area", !def.port_d.empty(), def.bypass_area);
+  warn("bypass_curve", "bypass_area", !def.bypass_curve.empty(), def.bypass_area);
+}
+
+void validate_spool_valve(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors,
+                          Problems& warnings) {
   const SpoolValveDef& def = static_cast<const SpoolValveDef&>(component);
   check_distinct(def.name + ".port_b", def.port_a, def.port_b, errors);
   check_distinct(def.name + ".port_t", def.port_p, def.port_t, errors);
@@ -289,6 +307,7 @@ void validate_spool_valve(const HydraulicsDef& circuit, const ComponentDef& comp
     errors.push_back({def.name + ".bypass_closed", "the bypass is closed before it begins to close",
                       "more than bypass_closing", ""});
   }
+  warn_of_blocked_edges(def, warnings);
 }
 
 }  // namespace

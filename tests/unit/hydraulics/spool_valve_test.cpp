@@ -149,6 +149,24 @@ TEST(SpoolValve, curves_in_other_units_than_shares_of_the_travel_are_refused) {
   }
 }
 
+// a block of 6/3 valves whose bypass is forgotten starves those behind it
+TEST(SpoolValve, curves_and_bypass_ports_without_an_area_are_warnings) {
+  Rig rig;
+  rig.def.curves.push_back({.name = "Edge", .points = {{-1, 0}, {1, 20}}});
+  const auto paths = [&] {
+    Problems errors, warnings;
+    validate(rig.def, errors, warnings);
+    EXPECT_TRUE(errors.empty());
+    std::string found;
+    for (const Problem& warning : warnings) found += warning.path + " ";
+    return found;
+  };
+  rig.valve->pb.curve = "Edge", rig.valve->bypass_area = 1e-6;
+  EXPECT_EQ(paths(), "");
+  rig.valve->pb.area = 0, rig.valve->bypass_area = 0;
+  EXPECT_EQ(paths(), "Valve.curve_pb Valve.port_c Valve.port_d ");
+}
+
 // A flow source that fills 1 l of oil without air at B = 1.5e9 Pa: p' = Q B/V.
 TEST(FlowSource, fills_a_volume_at_its_flow_whatever_the_pressure) {
   HydraulicsDef def;

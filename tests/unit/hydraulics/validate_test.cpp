@@ -234,6 +234,28 @@ TEST(HydraulicsValidation, curves_beyond_every_speed_are_warnings) {
       << listing(findings(bench).warnings);
 }
 
+// the start takes another pressure in the place of the stated one
+TEST(HydraulicsValidation, start_pressures_that_an_equilibrium_start_replaces_are_warnings) {
+  const auto what = [](double pump_line, double chamber, StartState start) {
+    HydraulicsDef def = crane_circuit();
+    def.start = start;
+    for (VolumeDef& volume : def.volumes) {
+      if (volume.name == "Vol_MainPump") volume.initial_pressure = pump_line;
+      if (volume.name == "Vol_LiftCyl_A") volume.initial_pressure = chamber;
+    }
+    const Problems warnings = findings(def).warnings;
+    return what_at(warnings, "Vol_MainPump.initial_pressure") + "|" +
+           what_at(warnings, "Vol_LiftCyl_A.initial_pressure");
+  };
+  EXPECT_EQ(
+      what(90e5, 40e5, StartState::equilibrium),
+      "an equilibrium start does not read it: the volume begins at hydraulics.start_pump_pressure, 26 bar|"
+      "an equilibrium start does not read it: the volume begins at the pressure by which 'Cyl_Lift' holds its load");
+  EXPECT_EQ(what(1e5, 1e5, StartState::equilibrium), "|");
+  EXPECT_EQ(what(26e5, 1e5, StartState::equilibrium), "|");
+  EXPECT_EQ(what(90e5, 40e5, StartState::table13), "|");
+}
+
 TEST(HydraulicsValidation, quasi_static_volumes_are_refused_by_solvers_without_algebraic_rows) {
   HydraulicsDef def = crane_circuit();
   def.volumes[0].quasi_static = true;

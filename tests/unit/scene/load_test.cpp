@@ -301,6 +301,41 @@ TEST(Load, AKeyThatNothingReadsIsAnErrorWhereItIsStatedAndAWarningWhereALaterCho
   EXPECT_NE(refusal_of(file, {"hydraulics.oil_compressibility=6e-10"}), "");
 }
 
+// an efficiency of 80 % would else be one of 100 % without a word
+TEST(Load, AnEfficiencyWithoutAFrictionCurveIsAWarning) {
+  const TemporaryFolder folder;
+  const auto warnings = [&](const std::string& cylinder, const std::string& motor) {
+    const std::string machine = R"(
+bodies:
+  M: {mass: 1 kg, inertia: [0, 0, 0], position: [0, 1.1 m, 0]}
+  W: {mass: 1 kg, inertia: [1, 1, 1]}
+joints:
+  J: {type: prismatic, body2: M, orientation1: [-90 deg, 0, 0], orientation2: [-90 deg, 0, 0], point1: [0, 1.1 m, 0]}
+  H: {type: revolute, body2: W}
+forces:
+  F: {type: translational, body1: Ground, body2: M}
+  G: {type: rotational, body1: Ground, f1: [1, 0, 0], g1: [0, 1, 0], body2: W, f2: [1, 0, 0]}
+volumes: {A: {rigid_volume: 1 l}, B: {rigid_volume: 1 l}}
+curves: {Fr: {points: [[0, 0], [1, 1]], odd: true}}
+components:
+  C:
+    {type: double_acting_cylinder, force: F, port_a: A, port_b: B, piston_diameter: 70 mm, rod_diameter: 30 mm,
+     piston_length: 40 mm, chamber_length: 640 mm, rod_length: 0.8 m, minimum_stroke: 10 mm, maximum_stroke: 590 mm)";
+    const std::string turned =
+        "}\n  M1: {type: hydraulic_motor, force: G, port_a: A, port_b: B, displacement: 30 cc/rev";
+    return all_of(load_file(folder.write("scene.yaml", machine + cylinder + turned + motor + "}\n")).warnings);
+  };
+  const std::string curve = ", friction_curve: Fr";
+  EXPECT_NE(warnings(", cylinder_coefficient: 0.8", "")
+                .find("C.cylinder_coefficient: nothing reads this key with no friction_curve"),
+            std::string::npos);
+  EXPECT_NE(warnings("", curve).find("M1.friction_curve: nothing reads this key with mechanical_coefficient: 1"),
+            std::string::npos);
+  const std::string sound = warnings(", cylinder_coefficient: 0.8" + curve, ", mechanical_coefficient: 0.9" + curve) +
+                            warnings(", cylinder_coefficient: 1", ", mechanical_coefficient: 0.9");
+  EXPECT_EQ(sound.find("nothing reads this key"), std::string::npos) << sound;
+}
+
 TEST(Load, TheTextOfASessionStatesEveryKeyAndIsReadWithoutAWord) {
   const TemporaryFolder folder;
   const std::string file = folder.write("scene.yaml", std::string(kTank) + "hydraulics: {oil_law: density_parabola}\n");
