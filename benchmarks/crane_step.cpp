@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cost of the truck crane in one process, rigid and with two modes of its jib boom: each subsystem's step, both coupled
-// in one thread, and the whole session over the bus of one process (ticks, encoding, gate, no recorder), per simulated
-// millisecond at H = 1 ms, over the scene's own manoeuvre.
+// Cost of the truck crane in one process: rigid, with two modes of its jib boom, and with both booms of eight modes and
+// its cylinders as bodies, whose bag stands on the ground for a while (full) or hangs (full_in_the_air). Each
+// subsystem's step, both coupled in one thread, and the whole session over the bus of one process (ticks, encoding,
+// gate, no recorder), per simulated millisecond at H = 1 ms, over the scene's own manoeuvre.
 //
 //   crane_step --benchmark_min_time=2
 #include <benchmark/benchmark.h>
 
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "build_paths.h"
@@ -26,16 +29,36 @@ namespace {
 
 using namespace slew;
 
-enum class Boom { rigid, two_modes };
+enum class Boom { rigid, two_modes, full, full_in_the_air };
+
+scene::Scene load(const char* name, const std::vector<std::string>& overrides = {}) {
+  return scene::load_file(std::string(SLEWRING_SOURCE_DIR "/scenes/") + name + ".yaml", overrides);
+}
+
+scene::Scene load(Boom boom) {
+  switch (boom) {
+    case Boom::rigid:
+      return load("truck_crane");
+    case Boom::two_modes:
+      return load("truck_crane_flexible");
+    case Boom::full:
+      return load("truck_crane_full");
+    case Boom::full_in_the_air:
+      break;
+  }
+  // the levers of truck_crane.yaml
+  return load("truck_crane_full", {"script.inputs={Input_Lift: [[0 s, 0], [1 s, 1], [5.5 s, 0]], "
+                                   "Input_Slew: [[0 s, 0], [5 s, -1], [12 s, 0]]}"});
+}
 
 const scene::Scene& crane(Boom boom) {
-  static const scene::Scene rigid = scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml");
-  static const scene::Scene flexible = scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane_flexible.yaml");
-  return boom == Boom::rigid ? rigid : flexible;
+  static std::map<Boom, scene::Scene> loaded;
+  const auto found = loaded.find(boom);
+  return found != loaded.end() ? found->second : loaded.emplace(boom, load(boom)).first->second;
 }
 
 constexpr SimDuration kH = milliseconds(1);
-constexpr StepIndex kSteps = 6000;  // rest, lift, lift and slew
+constexpr StepIndex kSteps = 6000;  // rest, lift, lift and slew; full: rest, lower, stand, lift
 
 io_node::IoConfig io_config(Boom boom) {
   return io_node::make_config(crane(boom), "benchmark", io_node::Recording::none);
@@ -84,8 +107,9 @@ Tape record(Boom boom) {
 }
 
 const Tape& tape(Boom boom) {
-  static const Tape rigid = record(Boom::rigid), flexible = record(Boom::two_modes);
-  return boom == Boom::rigid ? rigid : flexible;
+  static std::map<Boom, Tape> recorded;
+  const auto found = recorded.find(boom);
+  return found != recorded.end() ? found->second : recorded.emplace(boom, record(boom)).first->second;
 }
 
 void report(benchmark::State& state, StepIndex steps_per_iteration) {
@@ -134,18 +158,24 @@ void BM_Mechanics(benchmark::State& state, Boom boom) {
 }
 BENCHMARK_CAPTURE(BM_Mechanics, rigid, Boom::rigid)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(BM_Mechanics, two_modes, Boom::two_modes)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Mechanics, full, Boom::full)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Mechanics, full_in_the_air, Boom::full_in_the_air)->Unit(benchmark::kMillisecond);
 
 void BM_Hydraulics(benchmark::State& state, Boom boom) {
   run_side(state, boom, step_hydraulics);
 }
 BENCHMARK_CAPTURE(BM_Hydraulics, rigid, Boom::rigid)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(BM_Hydraulics, two_modes, Boom::two_modes)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Hydraulics, full, Boom::full)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Hydraulics, full_in_the_air, Boom::full_in_the_air)->Unit(benchmark::kMillisecond);
 
 void BM_Coupled(benchmark::State& state, Boom boom) {
   run_side(state, boom, step_both);
 }
 BENCHMARK_CAPTURE(BM_Coupled, rigid, Boom::rigid)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(BM_Coupled, two_modes, Boom::two_modes)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Coupled, full, Boom::full)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Coupled, full_in_the_air, Boom::full_in_the_air)->Unit(benchmark::kMillisecond);
 
 // The state after a second of the manoeuvre as bytes, and put back into the same subsystems.
 enum class Saving { save, load };
@@ -218,6 +248,8 @@ void BM_Session(benchmark::State& state, Boom boom) {
 }
 BENCHMARK_CAPTURE(BM_Session, rigid, Boom::rigid)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(BM_Session, two_modes, Boom::two_modes)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Session, full, Boom::full)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Session, full_in_the_air, Boom::full_in_the_air)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -64,6 +64,9 @@ class SceneReader {
         make_ports(scene_, errors);
         if (lacks_files()) return;
         if (errors.empty()) multibody::validate_rows(scene_.mechanics, row_names(scene_), errors);
+        if (errors.empty()) {
+          for (const PortDef& port : scene_.ports) scene_.mechanics.held_forces.push_back(port.force);
+        }
         if (errors.empty() && !scene_.ports.empty()) check_start(scene_, errors);
       });
     }
@@ -81,6 +84,7 @@ class SceneReader {
       check_problems([&](Problems& errors, Problems&) { check_changes(scene_, errors); });
       check_problems([&](Problems&, Problems& warnings) {
         find_without_effect(scene_, warnings);
+        find_start_shapes(scene_, warnings);
         find_unsettled_start(scene_, warnings);
       });
     }

@@ -134,11 +134,17 @@ class StartAtRest {
 
 }  // namespace
 
+void find_start_shapes(const Scene& scene, Problems& warnings) {
+  if (!scene.has_flexible_bodies()) return;
+  const multibody::Model model = multibody::build_model(scene.mechanics, row_names(scene));
+  if (model.has_closing_rows()) multibody::find_start_deflections(model, warnings);
+}
+
 void find_unsettled_start(const Scene& scene, Problems& warnings) {
   if (scene.ports.empty() || scene.hydraulics.start != hydraulics::StartState::equilibrium) return;
   const multibody::Model model = multibody::build_model(scene.mechanics, row_names(scene));
-  // a body that bends starts undeformed in a mechanism with loops and swings, which start_warnings.cpp reports
-  if (scene.has_flexible_bodies() && model.has_closing_rows()) return;
+  // a body that bends then starts undeformed and swings, which find_start_shapes() reports
+  if (scene.has_flexible_bodies() && model.has_closing_rows() && !model.rests_in_loops) return;
   StartAtRest start(scene, model);
   start.push();
   const StartAtRest::Fastest fastest = start.fastest_carrier();

@@ -18,6 +18,10 @@
 
 namespace slew::scene {
 
+// Warnings for flexible bodies of a mechanism with loops that start undeformed, or bent beyond their theory. Builds the
+// mechanism. Pre-condition: a validated scene whose files are there.
+void find_start_shapes(const Scene& scene, Problems& warnings);
+
 // Builds the mechanism. Pre-condition: a validated scene whose files are there.
 void find_unsettled_start(const Scene& scene, Problems& warnings);
 

@@ -10,6 +10,7 @@
 #include "multibody/build/assembly.h"
 #include "multibody/build/build_forces.h"
 #include "multibody/build/build_rows.h"
+#include "multibody/build/loop_rest.h"
 #include "multibody/build/start_pose.h"
 #include "multibody/build/welded_start.h"
 #include "multibody/constraints/constraint.h"
@@ -74,6 +75,7 @@ class Builder {
     const bool is_settled = has_loops || welded || (settle_segments(model_) && settle_modes(model_));
     report = assemble(model_);
     report.is_settled = is_settled;
+    if (has_loops) rest_in_loops(def_, model_, report);
     if (welded) take_over(*welded, model_, report);
     return std::move(model_);
   }

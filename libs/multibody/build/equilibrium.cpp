@@ -33,10 +33,12 @@ constexpr int kMostEscapes = 4;            // from unstable equilibria
 constexpr double kMostDisplacement = 0.2;  // rad, or of the mechanism's size
 constexpr double kEscape = 0.02;           // the same, away from an unstable equilibrium
 constexpr double kProbe = 1e-5;            // the same, of differences
+constexpr double kNoMotion = 1e-9;         // part of a row of C by one speed, below it: none
 constexpr double kRowDepends = 1e-9;       // part of a row of C that is independent of the others, below it: none
 constexpr double kRowsClosed = 1e-12;      // the same, of the mechanism's size
 constexpr double kStill = 1e-9;            // acceleration at rest, of gravity
 constexpr double kStillByRounding = 1e-6;  // the same, where stiff elements leave no smaller one
+constexpr double kSettled = 1e-10;         // rad, or of the mechanism's size: displacement left to modes
 constexpr double kUnstable = 1e-4;         // negative square of a natural frequency, of gravity over size
 constexpr int kMostSoftenings = 30;
 constexpr double kShortestRemainder = 1e-6;  // of the scaled unit speeds without the row space
@@ -60,6 +62,7 @@ class Rest {
     scale_speeds();
     pin_speeds();
     want_start_values();
+    if (options_.moves_modes_alone) pin_unmoved_joints();
   }
 
   RestSearch find() {
@@ -69,12 +72,13 @@ class Rest {
     for (int i = 0; i < kMostDisplacements; ++i) {
       const std::vector<Vector> T = free_speeds(state_.q);
       if (T.empty()) return {.is_stable = true};
+      if (options_.moves_modes_alone && T.size() > modes_) return {};
       const Vector f = force(state_.q, T), G = masses(state_.q, T), K = stiffness(T);
       Vector a;
       if (!solve_definite(G, Vector(G.size()), 0, f, a)) return failure(T, f);
       double fastest = 0;
       for (const double one : a) fastest = std::max(fastest, std::isfinite(one) ? std::fabs(one) : HUGE_VAL);
-      bool is_still = fastest <= kStill * frequency2;
+      bool is_still = fastest <= kStill * frequency2 || is_settled(f, K, G);
       if (!is_still && !displace_by_force(T, f, K, G, mu)) {
         is_still = fastest <= kStillByRounding * frequency2;
         if (!is_still) return failure(T, a);
@@ -84,6 +88,7 @@ class Rest {
       add(kUnstable * frequency2, G, softened);
       const Vector falling = falling_direction(softened, T.size());
       if (falling.empty()) return {.is_stable = true};
+      if (options_.moves_modes_alone) return failure(T, a);
       Vector step(T.size());
       add(product(falling, f) < 0 ? -kEscape : kEscape, falling, step);
       Vector q;
@@ -128,6 +133,22 @@ class Rest {
     for (std::size_t i = 1; i < model_.links.size(); ++i) {
       if (!options_.holds_floating_joints || model_.links[i].joint != LinkJoint::floating) continue;
       std::fill_n(is_pinned_.begin() + model_.links[i].u, 6, 1);
+    }
+  }
+
+  // joints whose speeds are in no row of C, and modes with a given start
+  void pin_unmoved_joints() {
+    std::vector<char> is_mode(n_, 0);
+    for (const FlexiblePart& part : model_.parts) {
+      std::fill_n(is_mode.begin() + part.u, part.modes, 1);
+      if (part.is_start_given) std::fill_n(is_pinned_.begin() + part.u, part.modes, 1);
+      if (!part.is_start_given) modes_ += part.modes;
+    }
+    std::vector<Vector> C = rows_at(state_.q);
+    for (Vector& row : C) make_unit(row);
+    for (std::size_t j = 0; j < n_; ++j) {
+      const auto is_unmoved = [j](const Vector& row) { return std::fabs(row[j]) <= kNoMotion; };
+      if (is_mode[j] == 0 && std::all_of(C.begin(), C.end(), is_unmoved)) is_pinned_[j] = 1;
     }
   }
 
@@ -337,6 +358,12 @@ class Rest {
     return false;
   }
 
+  // Of modes, whose rounding is an acceleration by the square of their frequencies: nothing left to move.
+  [[nodiscard]] bool is_settled(const Vector& f, const Vector& K, const Vector& G) const {
+    Vector dx;
+    return options_.moves_modes_alone && solve_definite(K, G, 0, f, dx) && std::sqrt(product(dx, dx)) <= kSettled;
+  }
+
   // a: accelerations along T
   RestSearch failure(const std::vector<Vector>& T, const Vector& a) const {
     Vector u(n_);
@@ -359,6 +386,7 @@ class Rest {
   double size_ = 1, gravity_ = 1;  // m, m/s2
   Vector scale_;                   // by u: its speed per unit of the scaled one
   std::vector<char> slides_, is_pinned_;
+  std::size_t modes_ = 0;  // that move
   std::vector<HeldCoordinate> cut_coordinates_;
   Vector wanted_;  // values of the rows
 };

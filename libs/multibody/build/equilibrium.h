@@ -33,6 +33,9 @@ struct RestOptions {
   int held_rows = 0;                          // the first rows of the model, forces (lengths and angles)
   std::vector<HeldCoordinate> coordinates{};  // of revolute, prismatic, universal and cylindrical joints
   bool holds_floating_joints = false;
+  // Modal coordinates without a given start move, and the joints that follow from them by the rows; joints that no row
+  // moves stay. Not stable if the rows leave other joints free, or beyond a buckling load.
+  bool moves_modes_alone = false;
 };
 
 struct RestSearch {

@@ -31,13 +31,15 @@ bool is_start_undeformed(const Model& model) {
                                                  [](const SegmentedPart& part) { return !part.is_free; });
 }
 
+}  // namespace
+
 void find_start_deflections(const Model& model, Problems& warnings) {
   for (const FlexiblePart& part : model.parts) {
-    if (is_start_undeformed(model) && !part.is_start_given) {
+    if (is_start_undeformed(model) && !model.rests_in_loops && !part.is_start_given) {
       warnings.push_back(
           {part.name + ".flex_modes",
            "the body starts undeformed, moves as a rigid one that the joints allow, and swings: in a mechanism with "
-           "loops no static equilibrium is computed",
+           "loops a static equilibrium is computed only where actuators and loops hold all its joints",
            "nothing to do, or damping that ends it", ""});
     }
     const std::span<const double> q(model.start_q.data() + part.q, part.modes);
@@ -52,6 +54,8 @@ void find_start_deflections(const Model& model, Problems& warnings) {
          fmt::format("deflections below {:.0f} %", 100 * kSmallDeflection), ""});
   }
 }
+
+namespace {
 
 // values of modes that the scene gives and loops do not leave
 void find_moved_modes(const MechanicsDef& mechanics, const Model& model, Problems& warnings) {
@@ -233,7 +237,7 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
                      shift, turn),
          "poses that fit the joints", ""});
   }
-  find_start_deflections(model, warnings);
+  if (!model.has_closing_rows()) find_start_deflections(model, warnings);
   find_moved_modes(mechanics, model, warnings);
   find_start_bends(model, warnings);
   const Description description = describe(model);

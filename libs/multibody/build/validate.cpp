@@ -40,11 +40,6 @@ constexpr double kLargestRadius = 1e6;  // m
 constexpr double kRightAngleTolerance = 1e-3;
 // transverse moments of a cylinder as CAD prints them
 constexpr double kTransverseTolerance = 1e-2;
-// to three digits
-double rounded_down(double x) {
-  const double digit = std::pow(10, std::floor(std::log10(x)) - 2);
-  return std::floor(x / digit) * digit;
-}
 
 class Validator {
  public:

@@ -12,12 +12,19 @@
 
 namespace slew::multibody {
 
+struct Model;
+
 // Appends to problems; none for a sound Def. Paths are "Element.key".
 void validate(const MechanicsDef& mechanics, Problems& problems);
 
 // Appends a warning for every body that the start moves onto its joints, and for every redundant row of a joint.
 // Pre-condition: validate() found nothing.
 void find_start_changes(const MechanicsDef& mechanics, Problems& warnings);
+
+// Appends a warning for every body with modes that starts undeformed though it has weight, or bent beyond the theory.
+// find_start_changes() calls it for mechanisms without loops; with loops the start depends on the actuators
+// (MechanicsDef::held_forces), which are read later.
+void find_start_deflections(const Model& model, Problems& warnings);
 
 // Appends a warning for every body whose largest radius of gyration about its centre of mass is several times the
 // distance of the points that joints and forces have on it: its inertia probably belongs to another body, or has other

@@ -195,7 +195,7 @@ void check_mode_speeds(const MechanicsDef& mechanics, const Model& model, Proble
                               decay.value, key_of(rule.integrator), mechanics.max_substep),
        fmt::format("fewer modes, mechanics.max_substep of at most {:.3g} s, or an implicit mechanics.integrator such "
                    "as trapezoidal",
-                   longest),
+                   rounded_down(longest)),
        ""});
 }
 
@@ -215,8 +215,13 @@ void check_segment_speeds(const MechanicsDef& mechanics, Problems& problems) {
        fmt::format(
            "fewer segments, mechanics.max_substep of at most {:.3g} s, or an implicit mechanics.integrator such "
            "as trapezoidal",
-           longest),
+           rounded_down(longest)),
        ""});
+}
+
+double rounded_down(double x) {
+  const double digit = std::pow(10, std::floor(std::log10(x)) - 2);
+  return std::floor(x / digit) * digit;
 }
 
 }  // namespace slew::multibody

@@ -229,6 +229,8 @@ struct MechanicsDef : ForceKinds::Defs {
   std::vector<GearDef> gears;
   std::vector<FlexibleBodyDef> flexible_bodies;    // bodies of that type, filled when their files are read
   std::vector<SegmentedBodyDef> segmented_bodies;  // the same for segmented bodies
+  std::vector<std::string> held_forces;            // forces of actuators, which hold their lengths and angles at the
+                                                   // start; filled with the circuit's actuators
 };
 
 }  // namespace slew::multibody

@@ -155,7 +155,7 @@ constexpr Field kFlexibleBodyFields[] = {
                                  {.choices = kStartShapes,
                                   .read_by = kReadWithoutCoordinates,
                                   .doc = "equilibrium: the body rests under its load at the start, in a mechanism with "
-                                         "loops it is undeformed"}),
+                                         "loops where actuators hold its joints, else it is undeformed"}),
     field<&BodyDef::modal_coordinates>(
         "modal_coordinates",
         {.doc = "modal coordinates at the start by mode, as '0.01;0', in SI units of the files' modes, instead of "

@@ -275,6 +275,7 @@ struct Model {
   std::vector<double> cut_reference;  // 1/kg or 1/(kg m2), by closing row: a mobility that is not near zero
   std::vector<int> body_order;        // bodies from Ground outwards, parents first; without Ground
   std::vector<double> start_q, start_u;
+  bool rests_in_loops = false;       // flexible bodies of a mechanism with loops start at rest under their loads
   std::vector<char> start_is_given;  // by u: 1 where the scene gives the speed
   std::vector<GivenSpeed> given_speeds;
   std::shared_ptr<const ContactElements> contact;  // none: no pairs; immutable, the same for all copies
