@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <string>
 
+#include "build_paths.h"
 #include "multibody/model/model.h"
 #include "scene/scene.h"
 
