@@ -52,6 +52,7 @@ Indicator::Indicator(std::size_t ports, SimDuration communication_step)
       window_(ports),
       others_(ports),
       largest_(ports),
+      diverging_buckets_(ports, 0),
       kinetic_(ports, 0),
       steps_below_alarm_(ports, 0),
       defects_(ports) {}
@@ -60,6 +61,7 @@ void Indicator::reset() noexcept {
   for (auto& buckets : window_) buckets.fill(Bucket{});
   for (Bucket& others : others_) others = Bucket{};
   for (auto& largest : largest_) largest.fill(0);
+  for (std::size_t& buckets : diverging_buckets_) buckets = 0;
   for (double& energy : kinetic_) energy = 0;
   for (std::int64_t& steps : steps_below_alarm_) steps = 0;
   for (PortDefects& defects : defects_) defects = PortDefects{};
@@ -80,19 +82,27 @@ void Indicator::start_bucket() noexcept {
   ++steps_in_bucket_;
 }
 
+// (7), of one full bucket
+bool Indicator::diverges_in(const Bucket& bucket) noexcept {
+  return bucket.stiffness > 0 && bucket.residual > kDivergesAbove * scale_of(bucket);
+}
+
 void Indicator::add_others(std::size_t port) noexcept {
   Bucket sum;
+  std::size_t diverging = 0;
   std::array<double, kLeftOut>& largest = largest_[port];
   largest.fill(0);
   for (std::size_t i = 0; i < kBuckets; ++i) {
     if (i == current_) continue;
     sum.add(window_[port][i]);
+    if (diverges_in(window_[port][i])) ++diverging;
     double next = window_[port][i].residual;
     for (double& kept : largest) {
       if (next > kept) std::swap(next, kept);
     }
   }
   others_[port] = sum;
+  diverging_buckets_[port] = diverging;
 }
 
 Indicator::Bucket Indicator::window_sum(std::size_t port) const noexcept {
@@ -194,14 +204,8 @@ double Indicator::own_residual(std::size_t port) const noexcept {
 
 bool Indicator::diverges(std::size_t port) const noexcept {
   const Bucket sum = window_sum(port);
-  if (sum.residual > kDivergesAtOnce * std::max(scale_of(sum), kinetic_[port])) return true;
-  std::size_t diverging = 0;
-  for (std::size_t i = 0; i < kBuckets; ++i) {
-    const Bucket& bucket = window_[port][i];
-    if (i == current_ || !(bucket.stiffness > 0)) continue;
-    if (bucket.residual > kDivergesAbove * scale_of(bucket)) ++diverging;
-  }
-  return diverging >= kDivergingBuckets;
+  return sum.residual > kDivergesAtOnce * std::max(scale_of(sum), kinetic_[port]) ||
+         diverging_buckets_[port] >= kDivergingBuckets;
 }
 
 namespace {
