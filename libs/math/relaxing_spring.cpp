@@ -68,10 +68,15 @@ RelaxingSpring one_for_all(std::span<const RelaxingSpring> springs, double H) no
   RelaxingSpring one;
   if (end > 0) {
     const double x = 2 * inverse_langevin(std::clamp(2 * integral / end - 1, 0.0, kFastest));
+    const Response at_x = response(x);
     one.lambda = x / H;
-    one.K = end / response(x).end;
+    one.K = end / at_x.end;
+    // mostly x again, but for the rounding of lambda
+    const double rounded = one.lambda * H;
+    one.F_dot = impulse / (rounded == x ? at_x : response(rounded)).integral;
+  } else {
+    one.F_dot = impulse / response(0).integral;
   }
-  one.F_dot = impulse / response(one.lambda * H).integral;
   return one;
 }
 
