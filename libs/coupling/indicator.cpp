@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "math/fixed_size.h"
 #include "math/range_projector.h"
 
 namespace slew::coupling {
@@ -14,6 +15,9 @@ namespace {
 // S^16 as an estimate of its largest eigenvalue: two digits, since the share of a second eigenvalue just below decays
 // slowest; the figure is a warning level, not a result
 constexpr int kSquarings = 4;
+
+// ports up to this number have a code of their own (math/fixed_size.h)
+constexpr std::size_t kMostFixedPorts = 6;
 
 // N: a port that carries less is idle, and the rounding of its energies is no error of the coupling
 constexpr double kLeastForce = 1;
@@ -214,7 +218,8 @@ namespace {
 using Square = std::array<double, kMaxPorts * kMaxPorts>;
 
 // P = P^2 / trace(P^2) of a symmetric P >= 0; false if the trace vanishes.
-bool square(Square& P, std::size_t m) noexcept {
+template <typename Size>
+[[gnu::always_inline]] inline bool square(Square& P, Size m) noexcept {
   Square squared;
   double trace = 0;
   for (std::size_t i = 0; i < m; ++i) {
@@ -234,7 +239,8 @@ bool square(Square& P, std::size_t m) noexcept {
 }
 
 // Rayleigh quotient of a symmetric S >= 0 for the longest column of S^16, the column of its largest diagonal entry.
-double largest_eigenvalue(const Square& S, std::size_t m) noexcept {
+template <typename Size>
+[[gnu::always_inline]] inline double largest_eigenvalue_of(const Square& S, Size m) noexcept {
   if (m == 1) return S[0];
   Square power = S;
   for (int i = 0; i < kSquarings; ++i) {
@@ -253,6 +259,10 @@ double largest_eigenvalue(const Square& S, std::size_t m) noexcept {
     denominator += vector[i] * vector[i];
   }
   return numerator / denominator;
+}
+
+double largest_eigenvalue(const Square& S, std::size_t m) noexcept {
+  return math::with_fixed_size<kMostFixedPorts>(m, [&S](auto size) { return largest_eigenvalue_of(S, size); });
 }
 
 // L' K L with W = L L', which has the eigenvalues of W K; K is made symmetric.
