@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "math/fixed_size.h"
 #include "math/range_projector.h"
 
 namespace slew::coupling {
@@ -14,6 +15,9 @@ namespace {
 // S^16 as an estimate of its largest eigenvalue: two digits, since the share of a second eigenvalue just below decays
 // slowest; the figure is a warning level, not a result
 constexpr int kSquarings = 4;
+
+// ports up to this number have a code of their own (math/fixed_size.h)
+constexpr std::size_t kMostFixedPorts = 6;
 
 // N: a port that carries less is idle, and the rounding of its energies is no error of the coupling
 constexpr double kLeastForce = 1;
@@ -52,6 +56,7 @@ Indicator::Indicator(std::size_t ports, SimDuration communication_step)
       window_(ports),
       others_(ports),
       largest_(ports),
+      diverging_buckets_(ports, 0),
       kinetic_(ports, 0),
       steps_below_alarm_(ports, 0),
       defects_(ports) {}
@@ -60,6 +65,7 @@ void Indicator::reset() noexcept {
   for (auto& buckets : window_) buckets.fill(Bucket{});
   for (Bucket& others : others_) others = Bucket{};
   for (auto& largest : largest_) largest.fill(0);
+  for (std::size_t& buckets : diverging_buckets_) buckets = 0;
   for (double& energy : kinetic_) energy = 0;
   for (std::int64_t& steps : steps_below_alarm_) steps = 0;
   for (PortDefects& defects : defects_) defects = PortDefects{};
@@ -80,19 +86,27 @@ void Indicator::start_bucket() noexcept {
   ++steps_in_bucket_;
 }
 
+// (7), of one full bucket
+bool Indicator::diverges_in(const Bucket& bucket) noexcept {
+  return bucket.stiffness > 0 && bucket.residual > kDivergesAbove * scale_of(bucket);
+}
+
 void Indicator::add_others(std::size_t port) noexcept {
   Bucket sum;
+  std::size_t diverging = 0;
   std::array<double, kLeftOut>& largest = largest_[port];
   largest.fill(0);
   for (std::size_t i = 0; i < kBuckets; ++i) {
     if (i == current_) continue;
     sum.add(window_[port][i]);
+    if (diverges_in(window_[port][i])) ++diverging;
     double next = window_[port][i].residual;
     for (double& kept : largest) {
       if (next > kept) std::swap(next, kept);
     }
   }
   others_[port] = sum;
+  diverging_buckets_[port] = diverging;
 }
 
 Indicator::Bucket Indicator::window_sum(std::size_t port) const noexcept {
@@ -194,14 +208,8 @@ double Indicator::own_residual(std::size_t port) const noexcept {
 
 bool Indicator::diverges(std::size_t port) const noexcept {
   const Bucket sum = window_sum(port);
-  if (sum.residual > kDivergesAtOnce * std::max(scale_of(sum), kinetic_[port])) return true;
-  std::size_t diverging = 0;
-  for (std::size_t i = 0; i < kBuckets; ++i) {
-    const Bucket& bucket = window_[port][i];
-    if (i == current_ || !(bucket.stiffness > 0)) continue;
-    if (bucket.residual > kDivergesAbove * scale_of(bucket)) ++diverging;
-  }
-  return diverging >= kDivergingBuckets;
+  return sum.residual > kDivergesAtOnce * std::max(scale_of(sum), kinetic_[port]) ||
+         diverging_buckets_[port] >= kDivergingBuckets;
 }
 
 namespace {
@@ -210,7 +218,8 @@ namespace {
 using Square = std::array<double, kMaxPorts * kMaxPorts>;
 
 // P = P^2 / trace(P^2) of a symmetric P >= 0; false if the trace vanishes.
-bool square(Square& P, std::size_t m) noexcept {
+template <typename Size>
+[[gnu::always_inline]] inline bool square(Square& P, Size m) noexcept {
   Square squared;
   double trace = 0;
   for (std::size_t i = 0; i < m; ++i) {
@@ -230,7 +239,8 @@ bool square(Square& P, std::size_t m) noexcept {
 }
 
 // Rayleigh quotient of a symmetric S >= 0 for the longest column of S^16, the column of its largest diagonal entry.
-double largest_eigenvalue(const Square& S, std::size_t m) noexcept {
+template <typename Size>
+[[gnu::always_inline]] inline double largest_eigenvalue_of(const Square& S, Size m) noexcept {
   if (m == 1) return S[0];
   Square power = S;
   for (int i = 0; i < kSquarings; ++i) {
@@ -249,6 +259,10 @@ double largest_eigenvalue(const Square& S, std::size_t m) noexcept {
     denominator += vector[i] * vector[i];
   }
   return numerator / denominator;
+}
+
+double largest_eigenvalue(const Square& S, std::size_t m) noexcept {
+  return math::with_fixed_size<kMostFixedPorts>(m, [&S](auto size) { return largest_eigenvalue_of(S, size); });
 }
 
 // L' K L with W = L L', which has the eigenvalues of W K; K is made symmetric.

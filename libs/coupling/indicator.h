@@ -112,6 +112,7 @@ class Indicator {
 
   template <typename Self, typename Bytes>
   static void visit(Self& self, Bytes& bytes);
+  [[nodiscard]] static bool diverges_in(const Bucket& bucket) noexcept;
   void start_bucket() noexcept;
   void add_others(std::size_t port) noexcept;
   [[nodiscard]] Bucket window_sum(std::size_t port) const noexcept;
@@ -127,6 +128,7 @@ class Indicator {
   std::vector<std::array<Bucket, kBuckets>> window_;   // by port
   std::vector<Bucket> others_;                         // by port, sums of the window without the current bucket
   std::vector<std::array<double, kLeftOut>> largest_;  // by port, residuals of others_, falling
+  std::vector<std::size_t> diverging_buckets_;         // by port, number of the buckets of others_ that diverge
   std::vector<double> kinetic_;                        // J, by port, v^2 / (2 W); infinite: no force moves it
   std::vector<std::int64_t> steps_below_alarm_;        // by port
   std::vector<PortDefects> defects_;

@@ -52,31 +52,32 @@ ValueSlope Circuit::Piece::elastic_wall_at(double p) const noexcept {
 }
 
 // (1)
-inline Circuit::Capacity Circuit::capacity(std::size_t volume, const double* y) const noexcept {
+[[gnu::always_inline]] inline Circuit::Capacity Circuit::capacity(std::size_t volume, const double* y) const noexcept {
   const double p = y[volume];
   const VolumeContent& contents = volumes_[volume];
-  if (vapour_.is_in(volume, y)) {
-    double V = contents.volume;
-    for (std::size_t k = contents.begin; k < contents.end; ++k) V += pieces_[k].content_at(y);
-    return {vapour_.capacity[volume], 0, V, 0};
-  }
+  if (vapour_.is_in(volume, y)) return {vapour_.capacity[volume], 0, 0};
   const ValueSlope oil = oil_.at(p);
-  double V = contents.volume, lumped = contents.volume + contents.nominal, walls = contents.wall, d_walls = 0;
+  double lumped = contents.volume + contents.nominal, walls = contents.wall, d_walls = 0;
   for (std::size_t k = contents.begin; k < contents.end; ++k) {
     const Piece& piece = pieces_[k];
-    const double V_k = piece.content_at(y);
-    const double share = piece.lumped * V_k;
+    const double share = piece.lumped * piece.content_at(y);
     const ValueSlope wall = piece.wall_at(p);
-    V += V_k;
     lumped += share;
     walls += share * wall.value;
     d_walls += share * wall.slope;
   }
-  return {lumped * oil.value + walls, lumped * oil.slope + d_walls, V, oil.value};
+  return {lumped * oil.value + walls, lumped * oil.slope + d_walls, oil.value};
 }
 
+// apart from capacity(): the value alone is half the work
 double Circuit::capacity_at(std::size_t volume, const double* y) const noexcept {
   return capacity(volume, y).value;
+}
+
+double Circuit::content_at(std::size_t volume, const double* y) const noexcept {
+  double V = volumes_[volume].volume;
+  for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) V += pieces_[k].content_at(y);
+  return V;
 }
 
 double Circuit::capacity_growth(int volume, const double* y) const noexcept {
@@ -93,7 +94,7 @@ double Circuit::capacity_of_lines(std::size_t volume, double p, const double* y)
 }
 
 void Circuit::capacities(const double* y, double* C) const noexcept {
-  for (std::size_t i = 0; i < volume_name_.size(); ++i) C[i] = is_fixed_[i] ? 0 : capacity(i, y).value;
+  for (std::size_t i = 0; i < volume_name_.size(); ++i) C[i] = is_fixed_[i] ? 0 : capacity_at(i, y);
 }
 
 // use a line's flow in place of the piston's
@@ -112,7 +113,7 @@ void Circuit::rates(const double* y, double* f) noexcept {
   for (const HydraulicComponent* component : active_) component->add_rates(now, sums);
   add_line_flows(y, sums);
   // (1), (2)
-  for (std::size_t i = 0; i < volumes_.size(); ++i) f[i] = is_fixed_[i] ? 0 : f[i] / capacity(i, y).value;
+  for (std::size_t i = 0; i < volumes_.size(); ++i) f[i] = is_fixed_[i] ? 0 : f[i] / capacity_at(i, y);
   // (3)
   for (int j = 0; j < actuator_count(); ++j) f[position(j)] = y[speed(j)];
 }
@@ -237,7 +238,7 @@ void Circuit::rates_and_outflow(const double* y, double* f, double* slope, doubl
   evaluate_flows(y, f);
   read_outflow(y, slope);
   for (std::size_t i = 0; i < volumes_.size(); ++i) {
-    C[i] = is_fixed_[i] ? 0 : capacity(i, y).value;
+    C[i] = is_fixed_[i] ? 0 : capacity_at(i, y);
     f[i] = is_fixed_[i] ? 0 : f[i] / C[i];
   }
   for (int j = 0; j < actuator_count(); ++j) f[position(j)] = y[speed(j)];
@@ -312,12 +313,12 @@ void Circuit::read_variables(const double* y, std::span<double> values) noexcept
   SLEW_ASSERT(values.size() == variables_.size());
   double* out = values.data();
   for (std::size_t i = 0; i < volume_name_.size(); ++i) {
-    const Capacity C = capacity(i, y);
+    const double V = content_at(i, y);
     const ValueSlope p = vapour_.pressure(i, y[i]);
-    const double whole = C.value + capacity_of_lines(i, std::max(y[i], floor_), y);
+    const double whole = capacity_at(i, y) + capacity_of_lines(i, std::max(y[i], floor_), y);
     *out++ = p.value;
-    *out++ = C.content;
-    *out++ = whole > 0 ? C.content * p.slope / whole : 0;
+    *out++ = V;
+    *out++ = whole > 0 ? V * p.slope / whole : 0;
     *out++ = !is_fixed_[i] && y[i] < floor_ ? 1 : 0;
     if (!has_temperatures()) continue;
     *out++ = heat_->T[i];

@@ -243,7 +243,7 @@ class Circuit {
   static void visit(Self& self, Bytes& bytes);
 
   struct Capacity {
-    double value, d_pressure, content, oil;
+    double value, d_pressure, oil;
   };
 
   // A content whose volume or wall changes, with its constant parts precomputed.
@@ -311,6 +311,8 @@ class Circuit {
     return {physical(y), control_.data(), ls_.data(), line_force_.data()};
   }
   [[nodiscard]] Capacity capacity(std::size_t volume, const double* y) const noexcept;
+  // Oil in a volume [m3]; with vapour its room.
+  [[nodiscard]] double content_at(std::size_t volume, const double* y) const noexcept;
   [[nodiscard]] double capacity_at(std::size_t volume, const double* y) const noexcept;
   [[nodiscard]] double capacity_of_lines(std::size_t volume, double p, const double* y) const noexcept;
   void stamp_flows(const double* y) noexcept;

@@ -390,8 +390,11 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
 
 void CircuitIntegrator::report_flags(StepReport& report) noexcept {
   report.flags = circuit_.flags(y_.data());
-  report.offender = circuit_.farthest_beyond_oil_law(y_.data());
-  if (report.offender < 0) report.offender = circuit_.first_cavitating(y_.data());
+  // the search for them only where a flag tells that there is one
+  if (report.has(StepFlag::beyond_oil_law)) report.offender = circuit_.farthest_beyond_oil_law(y_.data());
+  if (report.offender < 0 && report.has(StepFlag::cavitating)) {
+    report.offender = circuit_.first_cavitating(y_.data());
+  }
   report.substeps = report_.accepted;
   report.iterations = report_.accepted + report_.rejected;
   report.residual = report_.largest_error;

@@ -161,7 +161,8 @@ bool Circuit::move_pistons(double* y, const double* x_new) noexcept {
   for (int part = 0; part < parts; ++part) {
     // classical Runge-Kutta of order 4 along the displacement
     constexpr double kStage[] = {0, 0.5, 0.5, 1};
-    for (std::size_t stage = 0; stage < 4; ++stage) {
+    // the first stage of the first part is there already
+    for (std::size_t stage = part == 0 ? 1 : 0; stage < 4; ++stage) {
       for (std::size_t i = 0; i < n; ++i) {
         moved_[i] = y[i] + (stage == 0 ? 0 : kStage[stage] * h * slope_[stage - 1][i]);
       }

@@ -29,7 +29,7 @@ class OilCompressibility {
   explicit OilCompressibility(const HydraulicsDef& def);
 
   // kappa [1/Pa] and its slope [1/Pa2] at the absolute pressure p; beyond the table its end values.
-  [[nodiscard]] ValueSlope at(double p) const noexcept {
+  [[nodiscard, gnu::always_inline]] ValueSlope at(double p) const noexcept {
     const std::uint64_t index = leading_bits(p > lowest_ ? p : lowest_) - first_;
     const Segment& s = segment_[index < segment_.size() ? index : segment_.size() - 1];
     const auto& c = s.coefficient;

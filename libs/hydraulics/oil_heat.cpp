@@ -83,7 +83,7 @@ void Circuit::begin_heat(const double* y) noexcept {
   std::fill(heat_->content.begin(), heat_->content.end(), 0.0);
   evaluate_heat(y, heat_->last, heat_->content);
   for (std::size_t i = 0; i < volumes_.size(); ++i) {
-    heat_->content[i] += capacity(i, y).content;
+    heat_->content[i] += content_at(i, y);
     heat_->sum[i] = {};
   }
 }

@@ -94,7 +94,7 @@ int Circuit::first_overdrawn(const double* y) const noexcept {
     for (const LineChamber& line : lines_) {
       if (line.is_line && line.volume == static_cast<int>(i)) room += line.state.room;
     }
-    if (room > 0 && room > kFull * capacity(i, y).content) return static_cast<int>(i);
+    if (room > 0 && room > kFull * content_at(i, y)) return static_cast<int>(i);
   }
   return -1;
 }

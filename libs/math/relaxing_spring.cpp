@@ -15,7 +15,7 @@ struct Response {
   double end, integral;
 };
 
-Response response(double x) noexcept {
+inline Response response(double x) noexcept {
   // below, the difference 1 - a(x) loses digits; the series is exact to 2e-16
   if (x < 0.01) {
     return {1 - x / 2 * (1 - x / 3 * (1 - x / 4 * (1 - x / 5 * (1 - x / 6)))),
@@ -59,6 +59,7 @@ RelaxingSpring one_for_all(std::span<const RelaxingSpring> springs, double H) no
   }
   double end = 0, integral = 0, impulse = 0;
   for (const RelaxingSpring& spring : springs) {
+    if (spring.K == 0 && spring.F_dot == 0) continue;
     const auto [a, b] = response(spring.lambda * H);
     end += spring.K * a;
     integral += spring.K * b;
@@ -67,10 +68,15 @@ RelaxingSpring one_for_all(std::span<const RelaxingSpring> springs, double H) no
   RelaxingSpring one;
   if (end > 0) {
     const double x = 2 * inverse_langevin(std::clamp(2 * integral / end - 1, 0.0, kFastest));
+    const Response at_x = response(x);
     one.lambda = x / H;
-    one.K = end / response(x).end;
+    one.K = end / at_x.end;
+    // mostly x again, but for the rounding of lambda
+    const double rounded = one.lambda * H;
+    one.F_dot = impulse / (rounded == x ? at_x : response(rounded)).integral;
+  } else {
+    one.F_dot = impulse / response(0).integral;
   }
-  one.F_dot = impulse / response(one.lambda * H).integral;
   return one;
 }
 
