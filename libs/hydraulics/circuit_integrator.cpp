@@ -390,7 +390,7 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
 
 void CircuitIntegrator::report_flags(StepReport& report) noexcept {
   report.flags = circuit_.flags(y_.data());
-  // the search for them only where a flag says that there is one
+  // the search for them only where a flag is raised
   if (report.has(StepFlag::beyond_oil_law)) report.offender = circuit_.farthest_beyond_oil_law(y_.data());
   if (report.offender < 0 && report.has(StepFlag::cavitating)) {
     report.offender = circuit_.first_cavitating(y_.data());
