@@ -24,6 +24,10 @@
 
 namespace slew::mechanics_node {
 
+// Micro-steps of the port problem over h [s], for rows with the viscous friction of their joints (0 of a port) and
+// their own mobility.
+[[nodiscard]] int micro_step_count(double h, std::span<const double> viscous, std::span<const double> W) noexcept;
+
 class PortProblem {
  public:
   // mechanism, partner and mobility outlive this. Allocates; nothing else does.
@@ -94,7 +98,7 @@ class PortProblem {
   void load_rows(double h) noexcept;
   void load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept;
   void take_row_forces() noexcept;
-  [[nodiscard]] bool damps_within(double delta) noexcept;
+  [[nodiscard]] int micro_steps_of(double h) noexcept;
   [[nodiscard]] coupling::PortStep advance(const Step& step, double h, bool is_first_substep) noexcept;
   void finish_substep(const Step& step) noexcept;
 

@@ -104,4 +104,10 @@ std::string duration_below(double seconds) {
   return duration_text(std::floor(seconds / digit * (1 + 1e-12)) * digit);
 }
 
+double rounded_down(double x, int digits) {
+  const double digit = std::pow(10, std::floor(std::log10(x)) - (digits - 1));
+  constexpr double kRounding = 1 + 1e-12;  // of a bound that has so few digits already
+  return std::floor(x / digit * kRounding) * digit;
+}
+
 }  // namespace slew

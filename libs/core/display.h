@@ -38,4 +38,7 @@ struct DisplayUnit {
 // Rounded down to two digits.
 [[nodiscard]] std::string duration_below(double seconds);
 
+// A bound that a message names as "at most": x > 0 to so many digits, not above x but for rounding.
+[[nodiscard]] double rounded_down(double x, int digits = 3);
+
 }  // namespace slew

@@ -7,6 +7,7 @@
 
 #include "contact/find_named.h"
 #include "contact/mesh_check.h"
+#include "core/display.h"
 #include "multibody/build/validate.h"
 #include "multibody/contacts/contact_conversion.h"
 #include "multibody/contacts/contact_elements.h"
@@ -192,7 +193,8 @@ void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems
                      1 / rate, substep, substep / kMostStiffParts),
          fmt::format("at most {:.2g} N/m, a larger restitution_coefficient, mechanics.max_substep of at most {:.2g} s, "
                      "or an implicit mechanics.integrator such as trapezoidal",
-                     law.stiffness * std::pow(fastest / rate, law.exponent + 1), substep * fastest / rate),
+                     rounded_down(law.stiffness * std::pow(fastest / rate, law.exponent + 1), 2),
+                     rounded_down(substep * fastest / rate, 2)),
          ""});
   }
 }
@@ -214,7 +216,8 @@ void find_coarse_rebounds(const MechanicsDef& mechanics, double substep, Problem
          fmt::format("an impact lasts some {:.2g} s and is resolved in parts of {:.2g} s: its rebound may be off by a "
                      "tenth of the speed of the impact, to either side",
                      M_PI / rate.spring, part),
-         fmt::format("mechanics.contact_substep of at most {:.2g} s where the rebound matters", 0.2 / rate.spring),
+         fmt::format("mechanics.contact_substep of at most {:.2g} s where the rebound matters",
+                     rounded_down(0.2 / rate.spring, 2)),
          ""});
   }
 }
@@ -244,7 +247,8 @@ void find_lost_rebounds(const MechanicsDef& mechanics, double substep, Problems&
                                   : "impacts lose a part of their rebound or all of it"),
          fmt::format("at most {:.2g} N/m, or mechanics.max_substep of at most {:.2g} s; with a restitution_coefficient "
                      "below {} nothing is lost",
-                     law.stiffness * std::pow(fastest / rate, law.exponent + 1), substep * fastest / rate, kPlastic),
+                     rounded_down(law.stiffness * std::pow(fastest / rate, law.exponent + 1), 2),
+                     rounded_down(substep * fastest / rate, 2), kPlastic),
          ""});
   }
 }

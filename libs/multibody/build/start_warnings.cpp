@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/display.h"
 #include "multibody/build/assembly.h"
 #include "multibody/build/validate.h"
 #include "multibody/flexible/deflection.h"
@@ -175,13 +176,13 @@ void find_short_pulses(const MechanicsDef& mechanics, double substep, Problems& 
   const auto look = [&](const std::string& path, const Table& table) {
     const double pulse = shortest_pulse(table);
     if (!(pulse < 2 * substep * (1 - kRounding))) return;
-    warnings.push_back(
-        {path,
-         fmt::format("it rises and falls within {:.3g} s, and sub-steps of {:.3g} s look at it at their "
-                     "ends and middles only: the impulse may be wrong by its whole size",
-                     pulse, substep),
-         fmt::format("mechanics.max_substep of at most {:.2g} s, or a longer pulse of the same impulse", pulse / 2),
-         ""});
+    warnings.push_back({path,
+                        fmt::format("it rises and falls within {:.3g} s, and sub-steps of {:.3g} s look at it at their "
+                                    "ends and middles only: the impulse may be wrong by its whole size",
+                                    pulse, substep),
+                        fmt::format("mechanics.max_substep of at most {:.2g} s, or a longer pulse of the same impulse",
+                                    rounded_down(pulse / 2, 2)),
+                        ""});
   };
   for (const PointForceDef& def : mechanics.point_forces) look(def.name + ".force_table", def.force_table);
   for (const PointTorqueDef& def : mechanics.point_torques) look(def.name + ".torque_table", def.torque_table);
@@ -192,12 +193,13 @@ void find_fast_motions(const MechanicsDef& mechanics, double substep, Problems& 
   for (const MotionDef& def : mechanics.motions) {
     const FastMotion found = find_fast_motion(motion_law(def, 0), resolution, substep);
     if (!found.is_found) continue;
-    warnings.push_back({def.name,
-                        fmt::format("the motion is too fast for sub-steps of {:.3g} s, which are divided into {} parts "
-                                    "at most: from {:.6g} s on what hangs on it moves wrongly",
-                                    substep, kMostMotionPieces, found.time),
-                        fmt::format("mechanics.max_substep of at most {:.2g} s, or a slower motion", found.longest),
-                        ""});
+    warnings.push_back(
+        {def.name,
+         fmt::format("the motion is too fast for sub-steps of {:.3g} s, which are divided into {} parts "
+                     "at most: from {:.6g} s on what hangs on it moves wrongly",
+                     substep, kMostMotionPieces, found.time),
+         fmt::format("mechanics.max_substep of at most {:.2g} s, or a slower motion", rounded_down(found.longest, 2)),
+         ""});
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/display.h"
 #include "multibody/build/assembly.h"
 #include "multibody/build/start_rules.h"
 #include "multibody/build/validate_flexible.h"

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/display.h"
 #include "multibody/flexible/elastic_law.h"
 #include "multibody/flexible/expand_nodes.h"
 #include "multibody/flexible/segment_speeds.h"
@@ -217,11 +218,6 @@ void check_segment_speeds(const MechanicsDef& mechanics, Problems& problems) {
            "as trapezoidal",
            rounded_down(longest)),
        ""});
-}
-
-double rounded_down(double x) {
-  const double digit = std::pow(10, std::floor(std::log10(x)) - 2);
-  return std::floor(x / digit) * digit;
 }
 
 }  // namespace slew::multibody

@@ -22,7 +22,4 @@ void check_mode_speeds(const MechanicsDef& mechanics, Problems& problems);
 // The same for bodies of finite segments.
 void check_segment_speeds(const MechanicsDef& mechanics, Problems& problems);
 
-// A bound that a message names, to three digits: the scene is accepted with it.
-[[nodiscard]] double rounded_down(double x);
-
 }  // namespace slew::multibody

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/display.h"
 #include "math/eigenvalues.h"
 #include "multibody/forces/steepest_laws.h"
 #include "multibody/formulations/dynamics.h"
@@ -253,7 +254,7 @@ Problem problem_of(const TooFast& found, Integrator rule, double h) {
                         key_of(rule), h, found.rate),
             fmt::format("mechanics.max_substep of at most {:.2g} s, a softer force, or another mechanics.integrator "
                         "such as rk4, which divides touches",
-                        0.95 * found.longest_step),
+                        rounded_down(0.95 * found.longest_step, 2)),
             ""};
   }
   return {found.element,
@@ -263,7 +264,8 @@ Problem problem_of(const TooFast& found, Integrator rule, double h) {
                       found.rate, found.growth),
           fmt::format("mechanics.max_substep of at most {:.2g} s, more mass or inertia, less stiffness, damping or "
                       "slope, or an implicit mechanics.integrator such as {}",
-                      0.95 * found.longest_step, found.swings && !found.is_at_end ? "trapezoidal" : "sdirk2"),
+                      rounded_down(0.95 * found.longest_step, 2),
+                      found.swings && !found.is_at_end ? "trapezoidal" : "sdirk2"),
           ""};
 }
 

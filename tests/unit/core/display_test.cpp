@@ -80,5 +80,12 @@ TEST(Display, ShowsTimesInAUnitThatFits) {
   EXPECT_EQ(duration_text(20), "20 s");
 }
 
+TEST(Display, NamesNoBoundAboveItself) {
+  EXPECT_DOUBLE_EQ(rounded_down(1.986e-4, 2), 1.9e-4);
+  EXPECT_DOUBLE_EQ(rounded_down(1.9999e-4), 1.99e-4);
+  EXPECT_DOUBLE_EQ(rounded_down(0.1004 / 2 - 0.05, 2), 2e-4);  // 2e-4 less its rounding
+  EXPECT_DOUBLE_EQ(rounded_down(98700, 2), 98000);
+}
+
 }  // namespace display_test
 }  // namespace slew

@@ -218,6 +218,10 @@ TEST(ShortPulse, IsNamedWithTheSubStepThatSuits) {
   EXPECT_EQ(found[0].path, "Blow.force_table");
   EXPECT_NE(found[0].expected.find("mechanics.max_substep of at most 0.0002 s"), std::string::npos)
       << found[0].expected;
+  // 0.198 ms: rounded up it would be warned of again
+  const Problems shorter = warnings_of({{0, 0}, {0.1, 0}, {0.1002, 5000}, {0.100396, 0}, {1, 0}});
+  ASSERT_EQ(shorter.size(), 1u);
+  EXPECT_NE(shorter[0].expected.find("of at most 0.00019 s"), std::string::npos) << shorter[0].expected;
   EXPECT_EQ(warnings_of({{0, 0}, {0.1, 0}, {0.1004, -5000}, {0.1008, 0}}).size(), 1u);
   // a pulse of two sub-steps is right, and so is a jump: its error is a part of a sub-step
   EXPECT_TRUE(warnings_of({{0, 0}, {0.1, 0}, {0.101, 5000}, {0.102, 0}}).empty());
