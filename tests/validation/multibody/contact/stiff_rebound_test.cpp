@@ -136,7 +136,7 @@ TEST(StiffContact, OfRk4MissesItsReboundByNameOnly) {
     find_lost_rebounds(def, kStep, warnings);
     ASSERT_EQ(warnings.size(), k > 1e8 ? 1u : 0u);
     if (k > 1e8) {
-      EXPECT_NE(warnings[0].expected.find("mechanics.contact_substep of at most 5.9e-06 s"), std::string::npos)
+      EXPECT_NE(warnings[0].expected.find("mechanics.contact_substep of at most 5.8e-06 s"), std::string::npos)
           << warnings[0].expected;
       def.contact_substep = 6e-6;
       EXPECT_FALSE(has_warning(def, kStep));
