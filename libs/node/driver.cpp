@@ -112,38 +112,27 @@ void print_warnings(Node& node) {
 }
 
 // Heap calls of the loop's thread, counted once all nodes were READY and this one has done its first step: the first
-// message of each kind allocates the memory for those that follow. Turns that begin long after the last step are left
-// out: they print what the node waits for, and no deadline is near.
+// message of each kind allocates the memory for those that follow.
 class LoopHeap {
  public:
   LoopHeap(Node& node, HeapMeter meter) : node_(node), meter_(meter) {}
-  void after_poll(std::int64_t begin_ns) noexcept {
+  void after_poll() noexcept {
     if (meter_ == nullptr) return;
     const HeapCalls now = meter_();
-    const HeapCalls before = std::exchange(last_, now);
-    const bool stands = begin_ns - last_step_ns_ > kStandstillNs;
-    if (const StepIndex step = node_.health().step.load(); std::exchange(step_, step) != step) last_step_ns_ = begin_ns;
     if (!is_running_) {
       is_running_ = node_.member().state() >= wire::NodeState::running;
+      before_ = now;
       return;
     }
-    if (!stands) {
-      const std::uint64_t of_transport = now.transport - before.transport;
-      counted_.all += now.all - before.all - of_transport;
-      counted_.transport += of_transport;
-    }
-    node_.timing().allocations = static_cast<std::int64_t>(counted_.all);
-    node_.timing().carrier_allocations = static_cast<std::int64_t>(counted_.transport);
+    const std::uint64_t of_transport = now.transport - before_.transport;
+    node_.timing().allocations = static_cast<std::int64_t>(now.all - before_.all - of_transport);
+    node_.timing().carrier_allocations = static_cast<std::int64_t>(of_transport);
   }
 
  private:
-  static constexpr std::int64_t kStandstillNs = 100'000'000;
-
   Node& node_;
   HeapMeter meter_;
-  HeapCalls last_, counted_;
-  StepIndex step_ = -1;
-  std::int64_t last_step_ns_ = 0;
+  HeapCalls before_;
   bool is_running_ = false;
 };
 
@@ -171,7 +160,7 @@ ExitCode run_alone(Node& node, HeapMeter meter) {
     std::int64_t now = monotonic_ns();
     node.health().turn();
     const bool was_busy = node.poll(now);
-    heap.after_poll(now);
+    heap.after_poll();
     print_warnings(node);
     if (was_busy) continue;
     now = monotonic_ns();
