@@ -228,7 +228,7 @@ TEST_F(RealTime, NodesTakeNothingFromTheHeapAfterReadyNorCycloneOnceItsHistoryIs
     const json summary = json::parse(result.out);
     ASSERT_GE(summary.at("nodes").size(), 4u);
     // What a node prints while it waits for 0.3 s, as on a busy machine, takes heap too: far less than one call in a
-    // step. It has asked for the message ten times by then.
+    // step. It has requested the message ten times by then.
     bool has_waited = false;
     for (const auto& [role, node] : summary.at("nodes").items()) has_waited |= node.at("resends_asked") >= 10;
     for (const auto& [role, node] : summary.at("nodes").items()) {
