@@ -14,6 +14,7 @@ export interface Curve extends CurveId {
 
 const kLeastDrag = 6; // pixels
 const kWheelZoom = 1.0015; // for each unit of the wheel
+const kLeastSpread = 10; // pixels between two fingers that zoom
 const kMarkPixels = 5; // distance at which an event is shown
 const kLeft = 3;
 const kRight = 1; // sides of uPlot
@@ -171,7 +172,7 @@ export class Chart {
         setSelect: [(plot) => this.#zoomTo(plot)],
         setCursor: [(plot) => this.#takeCursor(plot)],
         draw: [(plot) => this.#drawMarks(plot)],
-        ready: [(plot) => this.#takePointer(plot)],
+        ready: [(plot) => this.#takePointer(plot), (plot) => this.#takeTouches(plot)],
       },
     };
   }
@@ -222,6 +223,33 @@ export class Chart {
       const time = plot.posToVal(event.clientX - plot.over.getBoundingClientRect().left, "x");
       session.controlPlayback({ seek: Math.min(session.info.range.to, Math.max(session.info.range.from, time)) });
     });
+  }
+
+  // One finger moves the time, two zoom it around their middle; the page scrolls with vertical ways of one finger.
+  #takeTouches(plot: uPlot): void {
+    const fingers = new Map<number, number>(); // horizontal places in the plot, by pointer
+    let isTap = true; // of one finger that has not moved
+    const middle = () => [...fingers.values()].reduce((sum, x) => sum + x, 0) / fingers.size;
+    const spread = () => Math.max(...fingers.values()) - Math.min(...fingers.values());
+    const place = (event: PointerEvent) => event.clientX - plot.over.getBoundingClientRect().left;
+    plot.over.addEventListener("pointerdown", (event) => {
+      if (event.pointerType !== "touch" || fingers.size === 2) return;
+      fingers.set(event.pointerId, place(event));
+      isTap = fingers.size === 1;
+    });
+    plot.over.addEventListener("pointermove", (event) => {
+      const last = fingers.get(event.pointerId);
+      if (last === undefined || (isTap && Math.abs(place(event) - last) < kLeastDrag)) return;
+      isTap = false;
+      const [at, apart, width] = [middle(), spread(), plot.over.clientWidth];
+      fingers.set(event.pointerId, place(event));
+      this.#axis.move((at - middle()) / width);
+      const [from, to] = this.#axis.range;
+      if (apart > kLeastSpread && spread() > kLeastSpread)
+        this.#axis.zoom(apart / spread(), from + (middle() / width) * (to - from));
+    });
+    for (const end of ["pointerup", "pointercancel"] as const)
+      plot.over.addEventListener(end, (event) => fingers.delete(event.pointerId));
   }
 
   #zoomY(plot: uPlot, factor: number, at: number): void {
