@@ -119,8 +119,8 @@ class ModalSettling {
       std::vector<double> factor = part.stiffness;
       const int modes = static_cast<int>(part.modes);
       if (!math::factorize_cholesky(factor.data(), modes)) return false;
-      math::substitute_forward(factor.data(), modes, &step_[first]);
-      math::substitute_backward(factor.data(), modes, &step_[first]);
+      math::substitute_forward(factor.data(), modes, step_.data() + first);
+      math::substitute_backward(factor.data(), modes, step_.data() + first);
       first += part.modes;
     }
     return true;

@@ -120,7 +120,8 @@ TEST(StartVolumes, behind_a_passage_are_held_against_their_relief) {
   ReliefValveDef& relief = between<ReliefValveDef>(def, "Relief", "Hose", "T");
   relief.nominal_flow = 1e-3, relief.setting_pressure = 20e5;
   const double F[] = {kForce};
-  const auto demand = Circuit(def).demand_beyond_limits(F);
+  const Circuit circuit(def);
+  const auto demand = circuit.demand_beyond_limits(F);
   ASSERT_TRUE(demand);
   EXPECT_EQ(demand->valve, "Relief");
   EXPECT_NEAR(demand->pressure, kHeld, 1e-9 * kHeld);
