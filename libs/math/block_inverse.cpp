@@ -191,7 +191,7 @@ bool invert_block(const double* block, int size, double* inverse) noexcept {
   });
 }
 
-double invert_independent(const double* block, int size, const double* scale, double tolerance, double* inverse,
+double invert_independent(const double* block, int size, const double* scale, double tolerance, double* transposed,
                           std::uint8_t* is_dependent) noexcept {
   const int stride = stride_of(size);
   std::array<double, at(kMaxBlock) * at(kMaxBlock)> a;
@@ -217,7 +217,7 @@ double invert_independent(const double* block, int size, const double* scale, do
   for (int r = 0; r < size; ++r) {
     is_dependent[r] = is_swept[at(r)] ? 0 : 1;
     for (int c = 0; c < size; ++c) {
-      inverse[r * stride + c] = is_swept[at(r)] && is_swept[at(c)] ? -a[at(r * stride + c)] : 0.0;
+      transposed[c * stride + r] = is_swept[at(r)] && is_swept[at(c)] ? -a[at(r * stride + c)] : 0.0;
     }
   }
   return smallest;

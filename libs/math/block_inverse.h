@@ -10,10 +10,10 @@ namespace slew::math {
 // entries of one size; symmetric to the bit. False if a pivot is lost in rounding.
 [[nodiscard]] bool invert_block(const double* block, int size, double* inverse) noexcept;
 
-// Inverse of a negative semi-definite block over its independent rows, zero in the others. Pivots are taken by size
-// relative to the scale of their row, down to the tolerance. Gives the smallest of the largest pivots left, and
-// which rows are dependent.
-double invert_independent(const double* block, int size, const double* scale, double tolerance, double* inverse,
+// Inverse of a negative semi-definite block over its independent rows, zero in the others, transposed. Pivots are taken
+// by size relative to the scale of their row, down to the tolerance. Returns the least of the ratios that were largest
+// among the rows left, at most 1.
+double invert_independent(const double* block, int size, const double* scale, double tolerance, double* transposed,
                           std::uint8_t* is_dependent) noexcept;
 
 }  // namespace slew::math

@@ -58,9 +58,10 @@ template <std::size_t N>
 inline void subtract_rows(const double* x, const double* a, int rows, int columns, double* y) noexcept {
   with_lanes(columns, [&](auto n) {
     const LanesRow<n> sum = combine_rows<n>(x, 1, a, rows);
-    std::array<double, n * kLanes> values;
-    for (std::size_t i = 0; i < n; ++i) store_lanes(sum[i], values.data() + i * kLanes);
-    for (int c = 0; c < columns; ++c) y[c] -= values[static_cast<std::size_t>(c)];
+    for (std::size_t i = 0; i + 1 < n; ++i, y += kLanes) store_lanes(load_lanes(y) - sum[i], y);
+    const int left = columns - static_cast<int>(n - 1) * kLanes;
+    if (left == kLanes) return store_lanes(load_lanes(y) - sum[n - 1], y);
+    for (int c = 0; c < left; ++c) y[c] -= sum[n - 1][c];
   });
 }
 

@@ -39,7 +39,7 @@ template <std::size_t N>
 [[gnu::always_inline]] inline void scale_rows(const double* inverse, int size, const double* A_t,
                                               double* L_t) noexcept {
   for (int k = 0; k < size; ++k) {
-    const LanesRow<N> row = combine_rows<N>(inverse + k, stride_of(size), A_t, size);
+    const LanesRow<N> row = combine_rows<N>(inverse + k * stride_of(size), 1, A_t, size);
     for (std::size_t i = 0; i < N; ++i) store_lanes(row[i], L_t + (static_cast<std::size_t>(k) * N + i) * kLanes);
   }
 }
@@ -288,6 +288,8 @@ void BlockLdl::solve(std::span<double> b) const noexcept {
     double* x = b.data() + first_row_[at(node)];
     const bool is_definite = nodes_[at(node)].kind == BlockKind::definite;
     const double* inverse = inverse_.data() + first_value_[at(node)];
+    // the rows of one body leave most of the others out
+    if (std::all_of(x, x + size, [](double value) { return value == 0; })) continue;
     if (is_definite) substitute_forward(inverse, size, x);
     for (int i = first_below_[k]; i < first_below_[k + 1]; ++i) {
       const Below& below = below_[at(i)];
@@ -295,10 +297,11 @@ void BlockLdl::solve(std::span<double> b) const noexcept {
                     b.data() + first_row_[at(below.row)]);
     }
     if (is_definite) continue;
-    std::array<double, kMaxBlock> y{};
-    for (int r = 0; r < size; ++r) {
-      for (int c = 0; c < size; ++c) y[at(r)] += inverse[r * stride_of(size) + c] * x[c];
-    }
+    std::array<double, kMaxBlock> y;
+    with_lanes(size, [&](auto n) {
+      const LanesRow<n> sum = combine_rows<n>(x, 1, inverse, size);
+      for (std::size_t i = 0; i < n; ++i) store_lanes(sum[i], y.data() + i * kLanes);
+    });
     std::copy_n(y.begin(), size, x);
   }
   for (std::size_t k = order_.size(); k-- > 0;) {
