@@ -7,14 +7,12 @@
 #include <set>
 
 #include "core/check.h"
+#include "math/block_inverse.h"
+#include "math/block_lanes.h"
 #include "math/small_cholesky.h"
 
 namespace slew::math {
 namespace {
-
-std::size_t index(int i) noexcept {
-  return static_cast<std::size_t>(i);
-}
 
 using Neighbours = std::vector<std::set<int>>;
 
@@ -28,111 +26,35 @@ Neighbours neighbours_of(const BlockPattern& pattern) {
   return neighbours;
 }
 
-// y -= a x, a of rows x columns
-void subtract_product(const double* a, int rows, int columns, const double* x, double* y) noexcept {
+// a of rows x columns into its transpose
+void transpose_block(const double* a, int rows, int columns, double* transposed) noexcept {
+  const int from = stride_of(columns), to = stride_of(rows);
   for (int r = 0; r < rows; ++r) {
-    double sum = 0;
-    for (int c = 0; c < columns; ++c) sum += a[r * columns + c] * x[c];
-    y[r] -= sum;
+    for (int c = 0; c < columns; ++c) transposed[c * to + r] = a[r * from + c];
   }
 }
 
-// y -= a^T x
-void subtract_transposed_product(const double* a, int rows, int columns, const double* x, double* y) noexcept {
-  for (int c = 0; c < columns; ++c) {
-    double sum = 0;
-    for (int r = 0; r < rows; ++r) sum += a[r * columns + c] * x[r];
-    y[c] -= sum;
+// L^T = D^-1 A^T, all with rows of N lanes
+template <std::size_t N>
+[[gnu::always_inline]] inline void scale_rows(const double* inverse, int size, const double* A_t,
+                                              double* L_t) noexcept {
+  for (int k = 0; k < size; ++k) {
+    const LanesRow<N> row = combine_rows<N>(inverse + k * stride_of(size), 1, A_t, size);
+    for (std::size_t i = 0; i < N; ++i) store_lanes(row[i], L_t + (static_cast<std::size_t>(k) * N + i) * kLanes);
   }
 }
 
-// c = a b, a of rows x inner, b of inner x inner
-void multiply(const double* a, const double* b, int rows, int inner, double* c) noexcept {
-  for (int r = 0; r < rows; ++r) {
-    for (int k = 0; k < inner; ++k) {
-      double sum = 0;
-      for (int i = 0; i < inner; ++i) sum += a[r * inner + i] * b[i * inner + k];
-      c[r * inner + k] = sum;
-    }
-  }
-}
-
-using Block = std::array<double, static_cast<std::size_t>(kMaxBlock) * kMaxBlock>;
-
-// a := S a S with powers of two, so that the largest entry of every row is near one; two rounds are enough
-void equilibrate(Block& a, int size, std::array<double, kMaxBlock>& scale) noexcept {
-  std::fill_n(scale.begin(), size, 1.0);
-  for (int round = 0; round < 2; ++round) {
-    std::array<double, kMaxBlock> factor{};
-    for (int r = 0; r < size; ++r) {
-      double largest = 0;
-      for (int c = 0; c < size; ++c) largest = std::max(largest, std::fabs(a[index(r * size + c)]));
-      int exponent = 0;
-      if (largest > 0 && std::isfinite(largest)) std::frexp(largest, &exponent);
-      factor[index(r)] = std::ldexp(1.0, -exponent / 2);
-    }
-    for (int r = 0; r < size; ++r) {
-      scale[index(r)] *= factor[index(r)];
-      for (int c = 0; c < size; ++c) a[index(r * size + c)] *= factor[index(r)] * factor[index(c)];
-    }
-  }
-}
-
-// Gauss and Jordan with complete pivoting; false when a pivot is lost in rounding
-bool invert_general(Block& a, int size) noexcept {
-  constexpr double kLost = 1e-14;
-  std::array<int, kMaxBlock> pivot_row{}, pivot_column{};
-  std::array<bool, kMaxBlock> is_done{};
-  for (int step = 0; step < size; ++step) {
-    int row = -1, column = -1;
-    double largest = -1;
-    for (int r = 0; r < size; ++r) {
-      for (int c = 0; c < size && !is_done[index(r)]; ++c) {
-        if (is_done[index(c)] || std::fabs(a[index(r * size + c)]) <= largest) continue;
-        largest = std::fabs(a[index(r * size + c)]);
-        row = r;
-        column = c;
-      }
-    }
-    if (!(largest > kLost)) return false;
-    // the pivot moves to the diagonal
-    for (int c = 0; c < size; ++c) std::swap(a[index(row * size + c)], a[index(column * size + c)]);
-    is_done[index(column)] = true;
-    pivot_row[index(step)] = row;
-    pivot_column[index(step)] = column;
-    const double inverse = 1 / a[index(column * size + column)];
-    a[index(column * size + column)] = 1;
-    for (int c = 0; c < size; ++c) a[index(column * size + c)] *= inverse;
-    for (int r = 0; r < size; ++r) {
-      if (r == column) continue;
-      const double factor = a[index(r * size + column)];
-      a[index(r * size + column)] = 0;
-      for (int c = 0; c < size; ++c) a[index(r * size + c)] -= factor * a[index(column * size + c)];
-    }
-  }
-  for (int step = size; step-- > 0;) {
-    const int row = pivot_row[index(step)], column = pivot_column[index(step)];
-    for (int r = 0; r < size; ++r) std::swap(a[index(r * size + row)], a[index(r * size + column)]);
-  }
-  return true;
-}
-
-// One step of Gauss and Jordan on a symmetric matrix; swept over all its rows it is the negative inverse.
-void sweep(double* a, int size, int pivot) noexcept {
-  const double inverse = 1 / a[pivot * size + pivot];
+// C^-1 A^T in place, rows of N lanes
+template <std::size_t N>
+[[gnu::always_inline]] inline void substitute_rows(const double* C, int size, double* A_t) noexcept {
+  const auto row = [&](int r, std::size_t i) { return A_t + (static_cast<std::size_t>(r) * N + i) * kLanes; };
   for (int r = 0; r < size; ++r) {
-    if (r == pivot) continue;
-    const double factor = a[r * size + pivot] * inverse;
-    for (int c = 0; c < size; ++c) {
-      if (c != pivot) a[r * size + c] -= factor * a[pivot * size + c];
+    for (std::size_t i = 0; i < N; ++i) {
+      Lanes sum = load_lanes(row(r, i));
+      for (int k = 0; k < r; ++k) sum -= C[r * size + k] * load_lanes(row(k, i));
+      store_lanes(sum / C[r * size + r], row(r, i));
     }
   }
-  for (int r = 0; r < size; ++r) {
-    if (r == pivot) continue;
-    a[r * size + pivot] *= inverse;
-    a[pivot * size + r] *= inverse;
-  }
-  a[pivot * size + pivot] = -inverse;
 }
 
 }  // namespace
@@ -144,16 +66,21 @@ BlockLdl::BlockLdl(const BlockPattern& pattern) : nodes_(pattern.nodes), rank_(p
     first_row_.push_back(row);
     first_value_.push_back(value);
     row += node.size;
-    value += node.size * node.size;
+    value += node.size * stride_of(node.size);
   }
   first_row_.push_back(row);
   inverse_.resize(at(value));
   plan(pattern);
+  int transposed = 0;
   for (Below& below : below_) {
+    const int rows = nodes_[at(below.row)].size, columns = nodes_[at(below.column)].size;
     below.value = value;
-    value += nodes_[at(below.row)].size * nodes_[at(below.column)].size;
+    below.transposed = transposed;
+    value += rows * stride_of(columns);
+    transposed += columns * stride_of(rows);
   }
   values_.resize(at(value));
+  transposed_.resize(at(transposed));
   list_updates();
   scale_.resize(at(row));
   reference_.resize(at(row));
@@ -216,7 +143,7 @@ void BlockLdl::list_updates() {
         const int target = row == column ? first_value_[at(row)] : below_[at(find(row, column))].value;
         updates_.push_back({target, a, b, row == column});
       }
-      column_values += nodes_[at(below_[at(a)].row)].size * nodes_[at(order_[k])].size;
+      column_values += stride_of(nodes_[at(below_[at(a)].row)].size) * nodes_[at(order_[k])].size;
     }
     largest = std::max(largest, column_values);
   }
@@ -241,8 +168,11 @@ void BlockLdl::clear() noexcept {
 }
 
 void BlockLdl::add_diagonal(int node, std::span<const double> block) noexcept {
+  const int size = nodes_[at(node)].size, stride = stride_of(size);
   double* value = values_.data() + first_value_[at(node)];
-  for (std::size_t i = 0; i < block.size(); ++i) value[i] += block[i];
+  for (int r = 0; r < size; ++r) {
+    for (int c = 0; c < size; ++c) value[r * stride + c] += block[at(r * size + c)];
+  }
 }
 
 void BlockLdl::add_coupling(int row, int column, std::span<const double> block) noexcept {
@@ -250,35 +180,19 @@ void BlockLdl::add_coupling(int row, int column, std::span<const double> block) 
   const Below& below = below_[at(is_below ? find(row, column) : find(column, row))];
   double* value = values_.data() + below.value;
   const int rows = nodes_[at(row)].size, columns = nodes_[at(column)].size;
+  const int stride = stride_of(is_below ? columns : rows);
   for (int r = 0; r < rows; ++r) {
-    for (int c = 0; c < columns; ++c) value[is_below ? r * columns + c : c * rows + r] += block[at(r * columns + c)];
+    for (int c = 0; c < columns; ++c) value[is_below ? r * stride + c : c * stride + r] += block[at(r * columns + c)];
   }
 }
 
 // ---- factorisation --------------------------------------------------------------------------------------------
 
-// The whole inverse, by Gauss and Jordan with complete pivoting on the block scaled to entries of one size.
-bool BlockLdl::invert_regular(int node) noexcept {
-  const int size = nodes_[at(node)].size;
-  Block a{};
-  std::copy_n(values_.data() + first_value_[at(node)], size * size, a.begin());
-  std::array<double, kMaxBlock> scale{};
-  equilibrate(a, size, scale);
-  const bool is_whole = invert_general(a, size);
-  double* inverse = inverse_.data() + first_value_[at(node)];
-  for (int r = 0; r < size; ++r) {
-    // symmetric to the bit
-    for (int c = 0; c < size; ++c) {
-      inverse[r * size + c] = 0.5 * (a[at(r * size + c)] + a[at(c * size + r)]) * scale[at(r)] * scale[at(c)];
-    }
-  }
-  return is_whole;
-}
-
 bool BlockLdl::factorize_definite(int node) noexcept {
   const int size = nodes_[at(node)].size;
+  const double* A = values_.data() + first_value_[at(node)];
   double* C = inverse_.data() + first_value_[at(node)];
-  std::copy_n(values_.data() + first_value_[at(node)], size * size, C);
+  for (int r = 0; r < size; ++r) std::copy_n(A + r * stride_of(size), size, C + r * size);
   return factorize_cholesky(C, size);
 }
 
@@ -289,35 +203,46 @@ double BlockLdl::root_of_determinant(int node) const noexcept {
   return product;
 }
 
-// Inverse over the independent rows, zero in the others. Pivots are taken by size relative to the scale of their row.
-void BlockLdl::invert_closing(int node, double tolerance) noexcept {
-  const int size = nodes_[at(node)].size, row = first_row_[at(node)];
-  Block a{};
-  std::copy_n(values_.data() + first_value_[at(node)], size * size, a.begin());
-  std::array<bool, kMaxBlock> is_swept{};
-  for (int step = 0; step < size; ++step) {
-    int pivot = -1;
-    double largest = tolerance, largest_left = 0;
-    for (int r = 0; r < size; ++r) {
-      const double value = -a[at(r * size + r)] / scale_[at(row + r)];
-      if (!is_swept[at(r)]) largest_left = std::max(largest_left, value);
-      if (!is_swept[at(r)] && value > largest) {
-        largest = value;
-        pivot = r;
+// L^T of the column at this place in the order, into scaled_ and, with A^T, into transposed_; below a definite node, C
+// of A = C C^T replaces both.
+void BlockLdl::scale_column(std::size_t k) noexcept {
+  const int node = order_[k], size = nodes_[at(node)].size;
+  const bool is_definite = nodes_[at(node)].kind == BlockKind::definite;
+  const double* inverse = inverse_.data() + first_value_[at(node)];
+  double* L_t = scaled_.data();
+  for (int i = first_below_[k]; i < first_below_[k + 1]; ++i) {
+    const Below& below = below_[at(i)];
+    const int rows = nodes_[at(below.row)].size;
+    double* A_t = transposed_.data() + below.transposed;
+    transpose_block(values_.data() + below.value, rows, size, A_t);
+    with_lanes(rows, [&](auto n) {
+      if (is_definite) {
+        substitute_rows<n>(inverse, size, A_t);
+        std::copy_n(A_t, at(size) * n * kLanes, L_t);
+      } else {
+        scale_rows<n>(inverse, size, A_t, L_t);
       }
-    }
-    smallest_pivot_ = std::min(smallest_pivot_, largest_left);
-    if (pivot < 0) break;
-    sweep(a.data(), size, pivot);
-    is_swept[at(pivot)] = true;
+    });
+    L_t += size * stride_of(rows);
   }
-  double* inverse = inverse_.data() + first_value_[at(node)];
-  for (int r = 0; r < size; ++r) {
-    is_redundant_[at(row + r)] = is_swept[at(r)] ? 0 : 1;
-    for (int c = 0; c < size; ++c) {
-      inverse[r * size + c] = is_swept[at(r)] && is_swept[at(c)] ? -a[at(r * size + c)] : 0.0;
+}
+
+// A_target -= L_a A_b^T
+void BlockLdl::update(const Update& update, int size, int first_transposed) noexcept {
+  const Below& a = below_[at(update.a)];
+  const Below& b = below_[at(update.b)];
+  const int rows = nodes_[at(a.row)].size, columns = nodes_[at(b.row)].size;
+  const double* L_t = scaled_.data() + (a.transposed - first_transposed);
+  const double* A_t = transposed_.data() + b.transposed;
+  double* target = values_.data() + update.target;
+  with_lanes(columns, [&](auto n) {
+    for (int r = 0; r < rows; ++r) {
+      const LanesRow<n> sum = combine_rows<n>(L_t + r, stride_of(rows), A_t, size);
+      for (std::size_t i = 0; i < n; ++i) store_lanes(load_lanes(target + i * kLanes) - sum[i], target + i * kLanes);
+      if (update.is_diagonal) scale_[at(first_row_[at(a.row)] + r)] += std::fabs(sum[at(r / kLanes)][r % kLanes]);
+      target += n * kLanes;
     }
-  }
+  });
 }
 
 bool BlockLdl::factorize(double tolerance) noexcept {
@@ -325,48 +250,32 @@ bool BlockLdl::factorize(double tolerance) noexcept {
   smallest_pivot_ = 1;
   bool is_regular = true;
   for (std::size_t k = 0; k < order_.size(); ++k) {
-    const int node = order_[k], size = nodes_[at(node)].size;
-    const BlockKind kind = nodes_[at(node)].kind;
-    if (kind == BlockKind::closing) {
-      invert_closing(node, tolerance);
-    } else {
-      is_regular = (kind == BlockKind::regular ? invert_regular(node) : factorize_definite(node)) && is_regular;
+    const int node = order_[k], size = nodes_[at(node)].size, row = first_row_[at(node)];
+    const double* A = values_.data() + first_value_[at(node)];
+    double* inverse = inverse_.data() + first_value_[at(node)];
+    switch (nodes_[at(node)].kind) {
+      case BlockKind::regular:
+        is_regular = invert_block(A, size, inverse) && is_regular;
+        break;
+      case BlockKind::definite:
+        is_regular = factorize_definite(node) && is_regular;
+        break;
+      case BlockKind::closing:
+        smallest_pivot_ = std::min(smallest_pivot_, invert_independent(A, size, scale_.data() + row, tolerance, inverse,
+                                                                       is_redundant_.data() + row));
+        break;
     }
-    // L of this column beside its source; below a definite node, C of A = C C^T replaces both
-    double* L = scaled_.data();
+    if (first_below_[k] == first_below_[k + 1]) continue;
+    scale_column(k);
+    const int first_transposed = below_[at(first_below_[k])].transposed;
+    for (int i = first_update_[k]; i < first_update_[k + 1]; ++i) update(updates_[at(i)], size, first_transposed);
     for (int i = first_below_[k]; i < first_below_[k + 1]; ++i) {
-      const int rows = nodes_[at(below_[at(i)].row)].size;
-      double* A = values_.data() + below_[at(i)].value;
-      if (kind == BlockKind::definite) {
-        for (int r = 0; r < rows; ++r) {
-          substitute_forward(inverse_.data() + first_value_[at(node)], size, A + r * size);
-        }
-        std::copy_n(A, rows * size, L);
-      } else {
-        multiply(A, inverse_.data() + first_value_[at(node)], rows, size, L);
-      }
-      L += rows * size;
+      const Below& below = below_[at(i)];
+      const int rows = nodes_[at(below.row)].size;
+      const double* L_t = scaled_.data() + (below.transposed - first_transposed);
+      std::copy_n(L_t, size * stride_of(rows), transposed_.data() + below.transposed);
+      transpose_block(L_t, size, rows, values_.data() + below.value);
     }
-    const int column_value = first_below_[k] < first_below_[k + 1] ? below_[at(first_below_[k])].value : 0;
-    for (int i = first_update_[k]; i < first_update_[k + 1]; ++i) {
-      const Update& update = updates_[at(i)];
-      const Below& a = below_[at(update.a)];
-      const Below& b = below_[at(update.b)];
-      const int rows = nodes_[at(a.row)].size, columns = nodes_[at(b.row)].size;
-      const double* L_a = scaled_.data() + (a.value - column_value);
-      const double* A_b = values_.data() + b.value;
-      double* target = values_.data() + update.target;
-      for (int r = 0; r < rows; ++r) {
-        for (int c = 0; c < columns; ++c) {
-          double sum = 0;
-          for (int j = 0; j < size; ++j) sum += L_a[r * size + j] * A_b[c * size + j];
-          target[r * columns + c] -= sum;
-          if (update.is_diagonal && r == c) scale_[at(first_row_[at(a.row)] + r)] += std::fabs(sum);
-        }
-      }
-    }
-    const int values = static_cast<int>(L - scaled_.data());
-    std::copy_n(scaled_.data(), values, values_.data() + column_value);
   }
   redundant_rows_ = 0;
   for (const std::uint8_t is_redundant : is_redundant_) redundant_rows_ += is_redundant;
@@ -379,17 +288,20 @@ void BlockLdl::solve(std::span<double> b) const noexcept {
     double* x = b.data() + first_row_[at(node)];
     const bool is_definite = nodes_[at(node)].kind == BlockKind::definite;
     const double* inverse = inverse_.data() + first_value_[at(node)];
+    // the rows of one body leave most of the others out
+    if (std::all_of(x, x + size, [](double value) { return value == 0; })) continue;
     if (is_definite) substitute_forward(inverse, size, x);
     for (int i = first_below_[k]; i < first_below_[k + 1]; ++i) {
       const Below& below = below_[at(i)];
-      subtract_product(values_.data() + below.value, nodes_[at(below.row)].size, size, x,
-                       b.data() + first_row_[at(below.row)]);
+      subtract_rows(x, transposed_.data() + below.transposed, size, nodes_[at(below.row)].size,
+                    b.data() + first_row_[at(below.row)]);
     }
     if (is_definite) continue;
-    std::array<double, kMaxBlock> y{};
-    for (int r = 0; r < size; ++r) {
-      for (int c = 0; c < size; ++c) y[at(r)] += inverse[r * size + c] * x[c];
-    }
+    std::array<double, kMaxBlock> y;
+    with_lanes(size, [&](auto n) {
+      const LanesRow<n> sum = combine_rows<n>(x, 1, inverse, size);
+      for (std::size_t i = 0; i < n; ++i) store_lanes(sum[i], y.data() + i * kLanes);
+    });
     std::copy_n(y.begin(), size, x);
   }
   for (std::size_t k = order_.size(); k-- > 0;) {
@@ -397,8 +309,8 @@ void BlockLdl::solve(std::span<double> b) const noexcept {
     double* x = b.data() + first_row_[at(node)];
     for (int i = first_below_[k]; i < first_below_[k + 1]; ++i) {
       const Below& below = below_[at(i)];
-      subtract_transposed_product(values_.data() + below.value, nodes_[at(below.row)].size, size,
-                                  b.data() + first_row_[at(below.row)], x);
+      subtract_rows(b.data() + first_row_[at(below.row)], values_.data() + below.value, nodes_[at(below.row)].size,
+                    size, x);
     }
     if (nodes_[at(node)].kind == BlockKind::definite) {
       substitute_backward(inverse_.data() + first_value_[at(node)], size, x);

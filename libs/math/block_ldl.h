@@ -85,10 +85,11 @@ class BlockLdl {
 
  private:
   static std::size_t at(int index) noexcept { return static_cast<std::size_t>(index); }
-  struct Below {     // L_row,column
-    int row = 0;     // node, eliminated later
-    int column = 0;  // node
-    int value = 0;   // first entry in values_: size of row x size of column
+  struct Below {         // L_row,column
+    int row = 0;         // node, eliminated later
+    int column = 0;      // node
+    int value = 0;       // first entry in values_: size of row x size of column
+    int transposed = 0;  // in transposed_
   };
   struct Update {  // A_target -= L_a A_b^T
     int target = 0;
@@ -98,9 +99,9 @@ class BlockLdl {
   void plan(const BlockPattern& pattern);
   void list_updates();
   [[nodiscard]] int find(int row, int column) const noexcept;
-  [[nodiscard]] bool invert_regular(int node) noexcept;
   [[nodiscard]] bool factorize_definite(int node) noexcept;
-  void invert_closing(int node, double tolerance) noexcept;
+  void scale_column(std::size_t k) noexcept;
+  void update(const Update& update, int size, int first_transposed) noexcept;
 
   std::vector<BlockNode> nodes_;
   std::vector<int> first_row_;
@@ -110,13 +111,14 @@ class BlockLdl {
   std::vector<int> first_below_;  // by place in the order
   std::vector<Update> updates_;   // by column
   std::vector<int> first_update_;
-  std::vector<int> first_value_;   // first value of the diagonal blocks, by node
-  std::vector<double> values_;     // A, then L below the diagonal; below a definite node L times its factor
-  std::vector<double> inverse_;    // inverses of the diagonal blocks, by first_value_; definite nodes: Cholesky's
-                                   // factor
-  std::vector<double> scaled_;     // L of the current column
-  std::vector<double> reference_;  // lower bound of each closing row's scale
-  std::vector<double> scale_;      // scale of each closing row's pivot, reference included
+  std::vector<int> first_value_;    // first value of the diagonal blocks, by node
+  std::vector<double> values_;      // A, then L below the diagonal; below a definite node L times its factor
+  std::vector<double> transposed_;  // the blocks below the diagonal, transposed
+  std::vector<double> inverse_;     // inverses of the diagonal blocks, by first_value_; definite nodes: Cholesky's
+                                    // factor
+  std::vector<double> scaled_;      // L of the current column, transposed
+  std::vector<double> reference_;   // lower bound of each closing row's scale
+  std::vector<double> scale_;       // scale of each closing row's pivot, reference included
   double smallest_pivot_ = 1;
   std::vector<std::uint8_t> is_redundant_;
   int redundant_rows_ = 0;
