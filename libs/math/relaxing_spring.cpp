@@ -37,6 +37,17 @@ double inverse_langevin(double s) noexcept {
   return std::max(y, 0.0);
 }
 
+// x with a(x) = share, by Newton's method from a rational that is right at both ends; 0 for a share of 1 and above
+double rate_of_share(double share) noexcept {
+  if (share >= 1) return 0;
+  double x = (1 / share - 1) * (1 + share);
+  for (int i = 0; i < 6; ++i) {
+    const double a = response(x).end;
+    x += x * (a - share) / (a - std::exp(-x));
+  }
+  return x;
+}
+
 }  // namespace
 
 double remaining_share(double x) noexcept {
@@ -57,17 +68,26 @@ RelaxingSpring one_for_all(std::span<const RelaxingSpring> springs, double H) no
     sum.lambda = most;
     return sum;
   }
-  double end = 0, integral = 0, impulse = 0;
+  SpringResponse all;
   for (const RelaxingSpring& spring : springs) {
     if (spring.K == 0 && spring.F_dot == 0) continue;
-    const auto [a, b] = response(spring.lambda * H);
-    end += spring.K * a;
-    integral += spring.K * b;
-    impulse += spring.F_dot * b;
+    const SpringResponse part = response_of(spring, H);
+    all.end += part.end, all.integral += part.integral, all.impulse += part.impulse;
   }
+  return spring_with(all, H);
+}
+
+SpringResponse response_of(const RelaxingSpring& spring, double H) noexcept {
+  const auto [a, b] = response(spring.lambda * H);
+  return {spring.K * a, spring.K * b, spring.F_dot * b};
+}
+
+RelaxingSpring spring_with(const SpringResponse& all, double H, double most) noexcept {
+  const auto [end, integral, impulse] = all;
   RelaxingSpring one;
   if (end > 0) {
-    const double x = 2 * inverse_langevin(std::clamp(2 * integral / end - 1, 0.0, kFastest));
+    double x = 2 * inverse_langevin(std::clamp(2 * integral / end - 1, 0.0, kFastest));
+    if (end > most * response(x).end) x = rate_of_share(end / most);
     const Response at_x = response(x);
     one.lambda = x / H;
     one.K = end / at_x.end;

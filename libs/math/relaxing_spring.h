@@ -18,6 +18,7 @@
 // u, -K u t_0^2 b(lambda t_0); the end does not depend on u.
 #pragma once
 
+#include <cmath>
 #include <span>
 
 namespace slew::math {
@@ -30,6 +31,16 @@ struct RelaxingSpring {
 
 // a(x) of (1), x >= 0.
 [[nodiscard]] double remaining_share(double x) noexcept;
+
+// Of a force over H seconds: its change at the end over -u H, the integral of its change over -u H^2 [N/m], and the
+// integral at v_ref over H^2 [N/s].
+struct SpringResponse {
+  double end = 0, integral = 0, impulse = 0;
+};
+[[nodiscard]] SpringResponse response_of(const RelaxingSpring& spring, double H) noexcept;
+// The spring with this response; with K at `most` [N/m] at most, for its end and impulse alone. Pre-condition: end > 0
+// or end = integral = 0.
+[[nodiscard]] RelaxingSpring spring_with(const SpringResponse& response, double H, double most = INFINITY) noexcept;
 
 // The one that stands for all of them over H seconds, H > 0. With one lambda for all it is the sum.
 [[nodiscard]] RelaxingSpring one_for_all(std::span<const RelaxingSpring> springs, double H) noexcept;

@@ -118,5 +118,19 @@ TEST(RelaxingSpring, IsFiniteWhereNothingIsLeft) {
   EXPECT_TRUE(std::isfinite(one.K) && std::isfinite(one.lambda) && std::isfinite(one.F_dot));
 }
 
+// the bound keeps the change at the end and the impulse
+TEST(RelaxingSpring, OfAResponseIsAtMostAsStiffAsItsBound) {
+  constexpr double kH = 1e-3, kMost = 1e7;
+  for (const double end : {5e4, 1e6, 5e6, 9.9e6}) {
+    const SpringResponse asked{end, 0.999 * end, 3e4};
+    EXPECT_GT(spring_with(asked, kH).K, 2 * kMost) << end;
+    const RelaxingSpring spring = spring_with(asked, kH, kMost);
+    EXPECT_NEAR(spring.K, kMost, 1e-9 * kMost) << end;
+    const SpringResponse reached = response_of(spring, kH);
+    EXPECT_NEAR(reached.end, end, 1e-9 * end);
+    EXPECT_NEAR(reached.impulse, asked.impulse, 1e-9 * asked.impulse);
+  }
+}
+
 }  // namespace relaxing_spring_test
 }  // namespace slew::math
