@@ -229,9 +229,10 @@ void Circuit::outflow_slopes(const double* y, double* slope) noexcept {
 
 // from the flows' slopes in jacobian_
 void Circuit::read_outflow(const double* y, double* slope) noexcept {
-  for (int i = 0; i < volume_count(); ++i) slope[i] = -jacobian_[at(i * size_ + i)];
   const CircuitView now = view(y);
-  for (const HydraulicComponent* component : active_) component->raise_outflow_slopes(now, slope);
+  JacobianStamp stamp(jacobian_.data(), size_);
+  for (const HydraulicComponent* component : active_) component->raise_slopes(now, stamp);
+  for (int i = 0; i < volume_count(); ++i) slope[i] = -jacobian_[at(i * size_ + i)];
 }
 
 void Circuit::rates_and_outflow(const double* y, double* f, double* slope, double* C) noexcept {

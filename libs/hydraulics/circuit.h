@@ -173,6 +173,12 @@ class Circuit {
   void outflow_slopes(const double* y, double* slope) noexcept;
   // rates(), outflow_slopes() and capacities() at once.
   void rates_and_outflow(const double* y, double* f, double* slope, double* C) noexcept;
+  // Slope of a volume's flow, or of a component state's rate, over the pressure of a volume or the state of a
+  // component: from the last rates_and_outflow(), on the steeper side of switches, unless jacobian(), linearise() or
+  // outflow_slopes() was called since.
+  [[nodiscard]] double flow_slope(std::size_t row, std::size_t column) const noexcept {
+    return jacobian_[row * static_cast<std::size_t>(size_) + column];
+  }
   // Corrects the states of volumes at y from their oil balance if only pistons and lines changed them since y_before
   // (rates f_before): where air makes the oil soft, a small error of the pressure is a large error of the oil. Near the
   // floor only. pressures: int p dt over the sub-step of h seconds by line [Pa s], which gives the oil taken by the

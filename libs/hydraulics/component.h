@@ -61,6 +61,11 @@ class JacobianStamp {
     add(from, column, -d);
     add(to, column, d);
   }
+  // The same of a passage, d over the pressure of `from` and -d over that of `to`.
+  void pass(StateIndex from, StateIndex to, double d) noexcept {
+    move(from, to, from, d);
+    move(from, to, to, -d);
+  }
   // Dependence of a row on a load-sensing pressure, by the chain rule.
   void add_ls(StateIndex row, LsIndex ls, double d) noexcept {
     for (int j = 0; j < size_; ++j) a_[row * size_ + j] += d * a_[(size_ + ls) * size_ + j];
@@ -140,8 +145,8 @@ class HydraulicComponent {
   // with temperatures only.
   virtual void follow_oil(const PortOil& /*oil*/) noexcept {}
 
-  // Raises outflow_slope[volume] (-dQ/dp) to the steeper side near the switch of a unilateral element.
-  virtual void raise_outflow_slopes(const CircuitView&, double* /*outflow_slope*/) const noexcept {}
+  // Raises the slopes of add_jacobian() to those of the steeper side near the switch of a unilateral element.
+  virtual void raise_slopes(const CircuitView&, JacobianStamp&) const noexcept {}
   // A state of a component whose own oil is below the pressure floor, apart from the volumes at its ports; -1: none.
   [[nodiscard]] virtual StateIndex first_cavitating(const CircuitView&) const noexcept { return -1; }
   // StepFlag bits that hold now; load-sensing pressures are those of the last evaluation.

@@ -95,9 +95,12 @@ class Accumulator final : public HydraulicComponent {
     jacobian.add(z_, f_, isothermal_z(view).slope / def_.thermal_time_constant);
   }
   // an empty accumulator: at the gas pressure the partner gets the slope of oil that enters
-  void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept override {
+  void raise_slopes(const CircuitView& view, JacobianStamp& slopes) const noexcept override {
     if (std::fabs(view[p_] - gas(view).p) > transition_ + def_.friction_pressure) return;
-    outflow_slope[p_] += std::fmax(0, K_ * root(0, transition_).slope - flow(view).d_p);
+    const double rise = std::fmax(0, K_ * root(0, transition_).slope - flow(view).d_p);
+    const double by_f = -rise * gas(view).d_f, per_volume = 1 / def_.gas_volume;
+    slopes.add(p_, p_, -rise), slopes.add(f_, p_, per_volume * rise);
+    slopes.add(p_, f_, -by_f), slopes.add(f_, f_, per_volume * by_f);
   }
   [[nodiscard]] std::uint32_t flags(const CircuitView& view) const noexcept override {
     return 1 - view[f_] < kSmallestGasVolume ? static_cast<std::uint32_t>(StepFlag::clamp_active) : 0;

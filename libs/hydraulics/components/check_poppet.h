@@ -71,14 +71,12 @@ class CheckPoppet {
   }
 
   // near the switch of the free direction the partner gets the slope of the poppet at its full lift, the steepest
-  void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept {
+  void raise_slopes(const CircuitView& view, JacobianStamp& slopes) const noexcept {
     const double drop = view[ports_.inlet] - view[ports_.outlet], x = lift(view);
     if (drop <= 0 || std::fabs(x) > 1) return;
     const ValueSlope open = root(drop + (1 - x) * rise_, transition_);
     const double rise = K_ * open.value / rise_ + (1 + throttle_) * K_ * open.slope - flow(view).drop;
-    if (rise <= 0) return;
-    outflow_slope[ports_.inlet] += rise;
-    outflow_slope[ports_.outlet] += rise;
+    if (rise > 0) slopes.pass(ports_.inlet, ports_.outlet, rise);
   }
 
  private:

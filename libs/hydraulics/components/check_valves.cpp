@@ -151,8 +151,8 @@ class CheckValve final : public HydraulicComponent {
   void add_passages(const CircuitView& view, Passages& passages) const noexcept override {
     for (const CheckPoppet& poppet : poppets_) poppet.move(poppet.flow(view), passages);
   }
-  void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept override {
-    for (const CheckPoppet& poppet : poppets_) poppet.raise_outflow_slopes(view, outflow_slope);
+  void raise_slopes(const CircuitView& view, JacobianStamp& slopes) const noexcept override {
+    for (const CheckPoppet& poppet : poppets_) poppet.raise_slopes(view, slopes);
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     for (std::size_t i = 0; i < poppets_.size(); ++i) {

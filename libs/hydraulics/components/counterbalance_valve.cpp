@@ -94,8 +94,8 @@ class CounterbalanceValve final : public HydraulicComponent {
     spool_.stamp_edge(p_2_, p_1_, lowering_flow(view), jacobian);
     check_.stamp(check_.flow(view), jacobian);
   }
-  void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept override {
-    check_.raise_outflow_slopes(view, outflow_slope);
+  void raise_slopes(const CircuitView& view, JacobianStamp& slopes) const noexcept override {
+    check_.raise_slopes(view, slopes);
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("opening", Dimension::none));

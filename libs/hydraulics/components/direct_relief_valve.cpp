@@ -71,14 +71,12 @@ class DirectReliefValve final : public HydraulicComponent {
     jacobian.move(p_1_, p_2_, p_1_, slope);
     jacobian.move(p_1_, p_2_, p_2_, -slope);
   }
-  void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept override {
+  void raise_slopes(const CircuitView& view, JacobianStamp& slopes) const noexcept override {
     // at the seat the slope jumps: use the open side's
     const double p = view[p_1_] - view[p_2_];
     if (std::fabs(p - def_.crack_pressure) > transition_) return;
     const double open = flow(def_.crack_pressure + transition_).slope, now = flow(p).slope;
-    if (open <= now) return;
-    outflow_slope[p_1_] += open - now;
-    outflow_slope[p_2_] += open - now;
+    if (open > now) slopes.pass(p_1_, p_2_, open - now);
   }
   [[nodiscard]] std::uint32_t flags(const CircuitView& view) const noexcept override {
     return lift(view[p_1_] - view[p_2_]).value > kOpenDirect ? static_cast<std::uint32_t>(StepFlag::relief_open) : 0;

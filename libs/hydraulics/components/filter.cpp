@@ -76,8 +76,8 @@ class Filter final : public HydraulicComponent {
     jacobian.move(p_1_, p_2_, p_2_, -G_);
     if (has_bypass()) bypass_.stamp(bypass_.flow(view), jacobian);
   }
-  void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept override {
-    if (has_bypass()) bypass_.raise_outflow_slopes(view, outflow_slope);
+  void raise_slopes(const CircuitView& view, JacobianStamp& slopes) const noexcept override {
+    if (has_bypass()) bypass_.raise_slopes(view, slopes);
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("flow", Dimension::volume_flow));

@@ -121,7 +121,7 @@ class L90lsValve final : public HydraulicComponent {
     }
   }
 
-  void raise_outflow_slopes(const CircuitView& view, double* outflow_slope) const noexcept override {
+  void raise_slopes(const CircuitView& view, JacobianStamp& slopes) const noexcept override {
     const Openings x = openings(view);
     for (int s = kA; s < kSides; ++s) {
       double rise = steeper_return_slope(law_[s], view[port_[s]] - view[t_], kSwitchMargin);
@@ -133,7 +133,7 @@ class L90lsValve final : public HydraulicComponent {
         const SupplyFlow open = supply(law_[s], x.supply[s].value, std::max(drop, 0.0) + kSwitchMargin, load);
         rise += std::max(0.0, (open.d_drop - open.d_load) - (now.d_drop - now.d_load));
       }
-      outflow_slope[port_[s]] += rise;
+      slopes.add(port_[s], port_[s], -rise);
     }
   }
   [[nodiscard]] std::uint32_t flags(const CircuitView& view) const noexcept override {
