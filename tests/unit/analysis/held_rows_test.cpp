@@ -18,7 +18,8 @@ namespace slew::analysis {
 namespace held_rows_test {
 
 scene::Scene load(const std::string& file, const std::string& substep) {
-  return scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + file, {"mechanics.integrator=rk4", "mechanics.max_substep=" + substep});
+  return scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + file,
+                          {"mechanics.integrator=rk4", "mechanics.max_substep=" + substep});
 }
 
 // largest modal speed of a crane that should stay at rest, in the last half of some steps of 1 ms
