@@ -22,36 +22,33 @@ double way_to_empty(double change, double at_empty) noexcept {
 
 }  // namespace
 
-std::span<const hydraulics::ActuatorSprings> EmptyingChambers::springs(const hydraulics::CircuitIntegrator& integrator,
-                                                                       const hydraulics::Circuit& circuit,
-                                                                       const SharedVolumes& shared,
-                                                                       const ReducedMechanics& mechanics,
-                                                                       double H) noexcept {
+void EmptyingChambers::end_springs(const hydraulics::CircuitIntegrator& integrator, const hydraulics::Circuit& circuit,
+                                   const SharedVolumes& shared, const ReducedMechanics& mechanics, double H,
+                                   std::span<hydraulics::ActuatorSprings> springs) noexcept {
   const std::span<const hydraulics::ActuatorLinearisation> actuators = integrator.actuators();
   bool may_empty = false;
-  for (std::size_t i = 0; i < springs_.size(); ++i) {
-    springs_[i] = actuators[i].springs;
+  for (std::size_t i = 0; i < springs.size(); ++i) {
     for (std::size_t side = 0; side < 2; ++side) {
-      may_empty |= way_to_empty(springs_[i][side].F_dot * H, at_empty(actuators[i], side)) > 1;
+      may_empty |= way_to_empty(springs[i][side].F_dot * H, at_empty(actuators[i], side)) > 1;
     }
   }
-  if (!may_empty || !mechanics.has_sample()) return springs_;
-  foresee(integrator, circuit, shared, mechanics, H);
-  for (std::size_t i = 0; i < springs_.size(); ++i) {
+  if (!may_empty || !mechanics.has_sample()) return;
+  foresee(integrator, circuit, shared, mechanics, H, springs);
+  for (std::size_t i = 0; i < springs.size(); ++i) {
     for (std::size_t side = 0; side < 2; ++side) {
       if (ports_[i].t_0[side] == 0) continue;
-      math::RelaxingSpring& spring = springs_[i][side];
+      math::RelaxingSpring& spring = springs[i][side];
       spring = math::ended_at(spring, at_empty(actuators[i], side), ports_[i].t_0[side], H);
       // t_0 has the foreseen motion already
       spring.F_dot += spring.K * ports_[i].way[side] / H;
     }
   }
-  return springs_;
 }
 
 // (1) by the leapfrog method
 void EmptyingChambers::foresee(const hydraulics::CircuitIntegrator& integrator, const hydraulics::Circuit& circuit,
-                               const SharedVolumes& shared, const ReducedMechanics& mechanics, double H) noexcept {
+                               const SharedVolumes& shared, const ReducedMechanics& mechanics, double H,
+                               std::span<const hydraulics::ActuatorSprings> springs) noexcept {
   const std::span<const hydraulics::ActuatorLinearisation> actuators = integrator.actuators();
   const std::size_t m = ports_.size();
   std::array<double, kMaxPorts> F{}, x{}, v{}, a{}, s{};
@@ -73,7 +70,7 @@ void EmptyingChambers::foresee(const hydraulics::CircuitIntegrator& integrator, 
     for (std::size_t i = 0; i < m; ++i) {
       Port& port = ports_[i];
       for (std::size_t side = 0; side < 3; ++side) {
-        const math::RelaxingSpring& spring = springs_[i][side];
+        const math::RelaxingSpring& spring = springs[i][side];
         if (side == 2) {
           port.dF[side] = spring.F_dot * t - spring.K * port.s;
           continue;

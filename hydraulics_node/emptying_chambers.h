@@ -22,13 +22,13 @@ namespace slew::hydraulics_node {
 
 class EmptyingChambers {
  public:
-  explicit EmptyingChambers(std::size_t ports) : springs_(ports), ports_(ports) {}
+  explicit EmptyingChambers(std::size_t ports) : ports_(ports) {}
 
-  // Springs of all ports over H seconds from the integrator's state on; valid until the next call. No
+  // Ends the springs of all ports, over H seconds from the integrator's state on, where their chambers empty. No
   // allocation.
-  std::span<const hydraulics::ActuatorSprings> springs(const hydraulics::CircuitIntegrator& integrator,
-                                                       const hydraulics::Circuit& circuit, const SharedVolumes& shared,
-                                                       const ReducedMechanics& mechanics, double H) noexcept;
+  void end_springs(const hydraulics::CircuitIntegrator& integrator, const hydraulics::Circuit& circuit,
+                   const SharedVolumes& shared, const ReducedMechanics& mechanics, double H,
+                   std::span<hydraulics::ActuatorSprings> springs) noexcept;
 
  private:
   struct Port {
@@ -39,9 +39,9 @@ class EmptyingChambers {
     double t_0[2] = {0, 0};    // s, when it has emptied; 0: not yet
   };
   void foresee(const hydraulics::CircuitIntegrator& integrator, const hydraulics::Circuit& circuit,
-               const SharedVolumes& shared, const ReducedMechanics& mechanics, double H) noexcept;
+               const SharedVolumes& shared, const ReducedMechanics& mechanics, double H,
+               std::span<const hydraulics::ActuatorSprings> springs) noexcept;
 
-  std::vector<hydraulics::ActuatorSprings> springs_;
   std::vector<Port> ports_;
 };
 

@@ -40,8 +40,9 @@ HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
       is_free_running_(scene.session.mode == scene::ExchangeMode::free_running),
       levels_(scene::port_levels(scene)),
       signals_(scene, *circuit_),
-      shared_(*circuit_),
+      shared_(*circuit_, scene.hydraulics),
       reduced_(laws_of(scene)),
+      springs_(m_),
       emptying_(m_),
       late_samples_(m_, cross_count(), is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
       alarm_(scene),
@@ -237,11 +238,12 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
   signals_.foresee(*circuit_, *integrator_);
   const double exchange = exchange_every_ * H_.seconds();
   const std::span<const hydraulics::ActuatorLinearisation> actuators = integrator_->actuators();
-  const std::span<const hydraulics::ActuatorSprings> springs =
-      emptying_.springs(*integrator_, *circuit_, shared_, reduced_, exchange);
+  for (std::size_t i = 0; i < m_; ++i) springs_[i] = actuators[i].springs;
+  const bool takes_part = integrator_->take_part(exchange, springs_);
+  emptying_.end_springs(*integrator_, *circuit_, shared_, reduced_, exchange, springs_);
   for (std::size_t i = 0; i < m_; ++i) {
     const hydraulics::ActuatorLinearisation& a = actuators[i];
-    const math::RelaxingSpring spring = math::one_for_all(springs[i], exchange);
+    const math::RelaxingSpring spring = math::one_for_all(springs_[i], exchange);
     sample.F[i] = a.F;
     sample.F_dot[i] = spring.F_dot;
     sample.K[i] = spring.K;
@@ -261,7 +263,8 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
     if (circuit_->has_temperatures()) circuit_->set_friction(static_cast<int>(i), reduced_.law(i).friction(a.F, a.v));
   }
   if (shared_.any()) {
-    shared_.write(springs, *circuit_, integrator_->state().data(), exchange, sample.lambda, sample.K_cross);
+    shared_.write(springs_, takes_part ? &integrator_->response() : nullptr, *circuit_, integrator_->state().data(),
+                  exchange, sample.lambda, sample.K_cross);
   }
   sample.flags = flags;
   published_ = sample;

@@ -94,6 +94,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   ControlSignals signals_;
   SharedVolumes shared_;
   ReducedMechanics reduced_;
+  std::vector<hydraulics::ActuatorSprings> springs_;  // over an interval
   EmptyingChambers emptying_;
   LateSamples late_samples_;
   CouplingAlarm alarm_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hydraulics_node/shared_volumes.h"
 
+#include "core/index.h"
+#include "hydraulics/start_volumes.h"
 #include "math/relaxing_spring.h"
 
 namespace slew::hydraulics_node {
@@ -16,34 +18,49 @@ double signed_area(const hydraulics::Actuator& actuator, std::size_t side, const
 
 }  // namespace
 
-SharedVolumes::SharedVolumes(const hydraulics::Circuit& circuit) {
+SharedVolumes::SharedVolumes(const hydraulics::Circuit& circuit, const hydraulics::HydraulicsDef& def) {
   const auto actuators = circuit.actuators();
+  const std::vector<int> groups = hydraulics::joined_by_passages(def);
   for (std::size_t i = 0; i < actuators.size(); ++i) {
     for (std::size_t j = 0; j < actuators.size(); ++j) {
       for (const std::size_t side : {0u, 1u}) {
         for (const std::size_t other : {0u, 1u}) {
           const hydraulics::StateIndex volume = volume_of(actuators[i], side);
-          if (i == j || volume != volume_of(actuators[j], other) || circuit.is_fixed(volume)) continue;
-          pairs_.push_back({{i, side}, {j, other}});
+          const hydraulics::StateIndex others = volume_of(actuators[j], other);
+          if (i == j || circuit.is_fixed(volume)) continue;
+          if (volume == others) pairs_.push_back({{i, side}, {j, other}});
+          is_joined_ |= groups[at(volume)] == groups[at(others)];
         }
       }
     }
   }
 }
 
-void SharedVolumes::write(std::span<const hydraulics::ActuatorSprings> springs, const hydraulics::Circuit& circuit,
-                          const double* y, double H, const coupling::PortArray& lambda,
-                          coupling::PortMatrix& K_cross) const noexcept {
+void SharedVolumes::write(std::span<const hydraulics::ActuatorSprings> springs,
+                          const hydraulics::StepResponse* response, const hydraulics::Circuit& circuit, const double* y,
+                          double H, const coupling::PortArray& lambda, coupling::PortMatrix& K_cross) const noexcept {
   const std::size_t m = lambda.size();
   K_cross.resize(m * m);
   for (double& K : K_cross) K = 0;
+  const auto change_at_end = [&](std::size_t port, std::size_t side) {
+    const math::RelaxingSpring& spring = springs[port][side];
+    return spring.K * (math::remaining_share(spring.lambda * H) / math::remaining_share(lambda[port] * H));
+  };
+  for (std::size_t i = 0; i < m && response != nullptr; ++i) {
+    for (const std::size_t side : {0u, 1u}) {
+      if (springs[i][side].K == 0) continue;
+      const double change = change_at_end(i, side);
+      for (std::size_t j = 0; j < m; ++j) {
+        if (j != i) K_cross[i * m + j] += change * response->share_of(i, side, j);
+      }
+    }
+  }
+  if (response != nullptr) return;
   for (const auto& [own, other] : pairs_) {
     const double area = signed_area(circuit.actuators()[own.port], own.side, y);
     if (area == 0) continue;
-    const math::RelaxingSpring& spring = springs[own.port][own.side];
-    const double share = math::remaining_share(spring.lambda * H) / math::remaining_share(lambda[own.port] * H);
     K_cross[own.port * m + other.port] +=
-        spring.K * share * signed_area(circuit.actuators()[other.port], other.side, y) / area;
+        change_at_end(own.port, own.side) * signed_area(circuit.actuators()[other.port], other.side, y) / area;
   }
 }
 

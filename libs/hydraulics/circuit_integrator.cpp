@@ -107,6 +107,7 @@ CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
       inputs_(def.solver == Solver::cvode ? circuit.control_signals().size() + circuit.parameter_values().size() : 0),
       quasi_static_above_(def.quasi_static_above),
       mass_(y_.size(), 1),
+      response_(circuit),
       algebraic_(0) {
   for (int i = 0; i < circuit.volume_count(); ++i) {
     const bool is_chamber = std::any_of(circuit.actuators().begin(), circuit.actuators().end(),

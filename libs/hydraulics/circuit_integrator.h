@@ -18,7 +18,8 @@
 // holds):
 //   F, F_dot = F',  K = K_A + K_B + K_b,  lambda = (K_A l_A + K_B l_B)/K,  l = -(dQ/dp)/C                        (2)
 // l on the steeper side of unilateral valves. The springs of (2) are there one by one, too: over a step
-// their sums do not stand for them (math/relaxing_spring.h). Chambers have no feed-through, D = 0; where they are
+// their sums do not stand for them (math/relaxing_spring.h), nor do they themselves where the circuit around the
+// chambers takes part (step_response.h). Chambers have no feed-through, D = 0; where they are
 // transmission lines (line_chambers.h) F is the force of the lines at v, D their impedance, K = F_dot = lambda = 0. The
 // mean pressure of a volume, and with it the oil that the line takes, is integrated by the method itself: the oil that
 // leaves the volume enters the line at any tolerance.
@@ -35,14 +36,11 @@
 #include "core/step_report.h"
 #include "hydraulics/circuit.h"
 #include "hydraulics/piston_motion.h"
+#include "hydraulics/step_response.h"
 #include "math/dense_lu.h"
-#include "math/relaxing_spring.h"
 #include "math/stiff_system.h"
 
 namespace slew::hydraulics {
-
-// chamber A, chamber B, brake or stop between two stages
-using ActuatorSprings = std::array<math::RelaxingSpring, 3>;
 
 // One actuator's force near (x, v), and its work and impulse in the last step.
 struct ActuatorLinearisation {
@@ -96,6 +94,11 @@ class CircuitIntegrator final : private math::StiffSystem {
   StepReport step(double H, const PistonMotion& motion) noexcept;
 
   [[nodiscard]] std::span<const ActuatorLinearisation> actuators() const noexcept { return published_; }
+  // Changes the springs of actuators() to those over H seconds, as StepResponse::take_part().
+  [[nodiscard]] bool take_part(double H, std::span<ActuatorSprings> springs) noexcept {
+    return response_.take_part(y_.data(), outflow_, C_, f_, H, springs);
+  }
+  [[nodiscard]] const StepResponse& response() const noexcept { return response_; }
   [[nodiscard]] std::span<const double> state() const noexcept { return y_; }
   // Mutable state for tests and tools; call refresh() afterwards.
   [[nodiscard]] std::span<double> mutable_state() noexcept { return y_; }
@@ -180,6 +183,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   std::vector<StateIndex> quasi_static_;
   std::vector<double> before_, balanced_;  // Pa, by quasi-static volume
   std::vector<double> mass_;
+  StepResponse response_;
   math::DenseLu algebraic_;  // matrix of the quasi-static rows and columns
   bool is_consistent_ = true;
 };

@@ -80,6 +80,23 @@ std::vector<int> joined_to_actuators(const HydraulicsDef& def) {
   return nearest;
 }
 
+std::vector<int> joined_by_passages(const HydraulicsDef& def) {
+  std::map<std::string, std::size_t> index;
+  std::vector<int> group;
+  for (std::size_t i = 0; i < def.volumes.size(); ++i) {
+    index.emplace(def.volumes[i].name, i);
+    group.push_back(def.volumes[i].fixed ? -1 : static_cast<int>(i));
+  }
+  for (const auto& [a, b] : passages_of(lines_of(def))) {
+    const int kept = group[index.at(a)], other = group[index.at(b)];
+    if (kept < 0 || other < 0) continue;
+    for (int& of_volume : group) {
+      if (of_volume == other) of_volume = kept;
+    }
+  }
+  return group;
+}
+
 void find_replaced_pressures(const HydraulicsDef& def, Problems& warnings) {
   if (def.start != StartState::equilibrium) return;
   const std::map<std::string, std::string> actuators = volumes_of_actuators(def);
