@@ -149,17 +149,24 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
   SLEW_ASSERT(y.size() == size_);
   StiffReport report;
   double h = step_size_ > 0 ? step_size_ : kFirstFraction * duration;
-  double rest = duration, last = 0;
+  double rest = duration, longest = duration;
+  bool is_last = false;
   const double shortest = kShortestShare * options_.minimum_step;
   const double* J = nullptr;
   Rejected rejected;
   while (rest > 0) {
     const std::uint32_t tries = report.accepted + report.rejected;
     const double allowed = allowed_error(tries);
-    report.is_over_budget = tries >= options_.substep_budget;
-    // budgets used up: a few more steps, with any error that is not gross
-    if (last == 0 && tries >= (1 + kLooserBudgets) * options_.substep_budget) {
-      h = last = std::max(options_.minimum_step, rest / kLastSteps);
+    // budget used up: no step longer than a tenth of the rest
+    if (!report.is_over_budget && tries >= options_.substep_budget) {
+      report.is_over_budget = true;
+      longest = std::max(options_.minimum_step, rest / kLastSteps);
+      h = std::min(h, longest);
+    }
+    // all of them: a few more steps, with any error that is not gross
+    if (!is_last && tries >= (1 + kLooserBudgets) * options_.substep_budget) {
+      is_last = true;
+      h = longest = std::max(options_.minimum_step, rest / kLastSteps);
     }
     // two equal steps rather than a long and a short one
     const bool reaches_end = h >= rest * (1 - kStretch);
@@ -179,7 +186,7 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
     const bool is_shortest = used <= shortest;
     const Errors above = error > 1 && error < kInfinity ? errors(y.data()) : Errors{};
     const bool is_gross = above.stored * options_.relative_tolerance > kGrossShare;
-    const bool is_accepted = error <= allowed || (error < kInfinity && !is_gross && (is_shortest || last > 0));
+    const bool is_accepted = error <= allowed || (error < kInfinity && !is_gross && (is_shortest || is_last));
     if (!is_accepted) {
       if (is_shortest || tries >= kMostBudgets * options_.substep_budget) {
         report.is_finite = impossible >= 0 || error < kInfinity;
@@ -207,10 +214,10 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
     rejected = {};
     rest = reaches_end && !ends_at_bend ? 0 : rest - used;
     // after a bend the step size before it is tried again
-    if (last > 0) {
-      h = std::min(kGrow * used, last);
+    if (is_last) {
+      h = std::min(kGrow * used, longest);
     } else if (!ends_at_bend) {
-      h = next_step(h, used, factor, duration);
+      h = next_step(h, used, factor, longest);
     }
   }
   step_size_ = report.is_over_budget ? options_.minimum_step : h;

@@ -10,8 +10,9 @@
 // 0.2, 6), after two rejections by the order estimated from them. A step that fails is shortened, to kShortestShare of
 // minimum_step; there a step is accepted and reported whose error is below kGrossShare.
 // Once substep_budget is used up, the rest of the interval is reported and goes on at looser tolerances: for another
-// budget at the larger of 10 rtol and kSoundShare, for a third one at ten times that, then in ten steps whose error is
-// below kGrossShare. Without such a step, or after four budgets, the interval ends unfinished (is_impossible).
+// budget at the larger of 10 rtol and kSoundShare, for a third one at ten times that, in steps of at most a tenth of
+// what was left, then in ten steps whose error is below kGrossShare. Without such a step, or after four budgets, the
+// interval ends unfinished (is_impossible).
 //
 // Sources: K. Gustafsson 1994, ACM Trans. Math. Softw. 20, 496 (rejections); A. Sandu et al. 1997, Atmos. Environ. 31,
 // 3459 (RODAS3); form (1) as in Hairer and Wanner 1996, IV.7. M = I unless set_mass() makes rows algebraic: the method
