@@ -14,6 +14,17 @@ bool is_unsolved(const StepReport& report) noexcept {
   return report.has(StepFlag::not_converged) || (report.has(StepFlag::step_budget) && report.residual > 1);
 }
 
+// Sound steps that take back what this one counts.
+int weight_of(const StepReport& report, double accepted_error) noexcept {
+  if (!is_unsolved(report)) return -1;
+  const double share = accepted_error / kMostError;
+  return share < 1 ? 1 + static_cast<int>(share * kMostUnsolved) : kMostUnsolved;
+}
+
+constexpr const char* kOverdrawn =
+    "{}: more oil was drawn from it than it holds, for more than half of the last steps: what flows out of it is no "
+    "oil. Give it a supply (an anti-cavitation valve, a larger inlet), or stop what draws from it";
+
 const char* remedy_of(Solver solver) noexcept {
   switch (solver) {
     case Solver::rk4:
@@ -24,8 +35,8 @@ const char* remedy_of(Solver solver) noexcept {
     case Solver::cvode:
       break;
   }
-  return "Use a larger hydraulics.substep_budget or a shorter session.step, and look at the smallest volumes and "
-         "widest openings beside it";
+  return "Use a larger hydraulics.substep_budget or relative_tolerance, or a shorter session.step, and look at the "
+         "smallest volumes and widest openings beside it";
 }
 
 }  // namespace
@@ -62,23 +73,39 @@ bool ConvergenceWatch::ends_run(const StepReport& report, const hydraulics::Circ
         beyond_waves);
     return true;
   }
-  unsolved_ = std::clamp(unsolved_ + (is_unsolved(report) ? 1 : -1), 0, kMostUnsolved);
-  if (unsolved_ < kMostUnsolved) return false;
-  if (solver_ != Solver::rk4 && integrator.overdrawn() >= 0) {
+  const double accepted = integrator.last_report().accepted_error;
+  if (!count(weight_of(report, accepted))) return false;
+  const std::string_view name = hydraulics::kSolverChoices[static_cast<std::size_t>(solver_)];
+  if (!(accepted < kMostError)) {
     write(
-        "{}: more oil was drawn from it than it holds, for more than half of the last steps: what flows out of it is "
-        "no oil. Give it a supply (an anti-cavitation valve, a larger inlet), or stop what draws from it",
-        offender);
+        "{}: sub-steps of {} were accepted with errors that add up to {:.2g} % of its size in one step, and the "
+        "pressures are wrong. {}",
+        offender, name, 100 * accepted, remedy_of(solver_));
   } else if (solver_ == Solver::rk4) {
     write(
         "{}: of late more sub-steps of rk4 were too long for the circuit than were not, and the pressures are wrong. "
         "{}",
         offender, remedy_of(solver_));
+  } else if (integrator.overdrawn() >= 0) {
+    write(kOverdrawn, offender);
   } else {
-    write("{}: of late more steps were accepted with their error than were solved, and the pressures are wrong. {}",
-          offender, remedy_of(solver_));
+    write(
+        "{}: of late more steps of {} were accepted with an error above hydraulics.relative_tolerance than were "
+        "solved. {}",
+        offender, name, remedy_of(solver_));
   }
   return true;
+}
+
+bool ConvergenceWatch::ends_followed_run(bool is_overdrawn, std::string_view volume) noexcept {
+  if (!count(is_overdrawn ? 1 : -1)) return false;
+  write(kOverdrawn, volume);
+  return true;
+}
+
+bool ConvergenceWatch::count(int weight) noexcept {
+  unsolved_ = std::clamp(unsolved_ + weight, 0, kMostUnsolved);
+  return unsolved_ == kMostUnsolved;
 }
 
 }  // namespace slew::hydraulics_node

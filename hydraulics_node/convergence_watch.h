@@ -5,7 +5,9 @@
 // Four rules, checked after every step:
 //   - The excess of steps accepted with their error over sound ones reaches kMostUnsolved: steps that are not
 //     converged, and steps over the sub-step budget whose error exceeded the tolerance. The count decreases by one with
-//     each sound step, down to zero, so that single steps never add up to an end.
+//     each sound step, down to zero, so that single steps of small errors never add up to an end. A step counts the
+//     more the larger its errors are (math::StiffReport::accepted_error), and ends the run alone where they add up to
+//     kMostError: a volume that is closed afterwards keeps them.
 //   - No sub-step keeps the oil of a volume, or has less than a gross error (math::StiffReport::is_impossible).
 //   - No chamber of level tlm hardens within a step by more than its waves can follow (Circuit::beyond_waves()).
 //   - No piston is out of its barrel (Circuit::first_out_of_barrel()), also in a step that another integrator computes.
@@ -22,11 +24,14 @@
 #include "hydraulics/circuit.h"
 #include "hydraulics/circuit_integrator.h"
 #include "hydraulics/hydraulics_def.h"
+#include "math/stiff_system.h"
 
 namespace slew::hydraulics_node {
 
 // As of the mechanics (mechanics_node/divergence.h): more than a jump of a command takes in a sound run.
 inline constexpr int kMostUnsolved = 20;  // steps
+// Of a state's size, which is 10 bar + p of a pressure: the error with which no single sub-step is accepted.
+inline constexpr double kMostError = math::kGrossShare;
 
 class ConvergenceWatch {
  public:
@@ -37,6 +42,9 @@ class ConvergenceWatch {
   // the third rule. Does not allocate.
   [[nodiscard]] bool ends_run(const StepReport& report, const hydraulics::CircuitIntegrator& integrator,
                               std::string_view offender, std::string_view beyond_waves) noexcept;
+  // The part of the first rule that holds whatever computes a step: a volume has more room without oil than it has
+  // room.
+  [[nodiscard]] bool ends_followed_run(bool is_overdrawn, std::string_view volume) noexcept;
   // The last rule, for the state of the circuit; name: that of each actuator's cylinder.
   template <typename NameOf>
   [[nodiscard]] bool ends_out_of_barrel(const hydraulics::Circuit& circuit, const double* y, NameOf&& name) noexcept {
@@ -59,6 +67,7 @@ class ConvergenceWatch {
   }
 
  private:
+  [[nodiscard]] bool count(int weight) noexcept;
   void write_out_of_barrel(std::string_view cylinder, const hydraulics::Barrel& barrel, double stroke) noexcept;
   template <typename... Values>
   void write(const char* form, const Values&... values) noexcept;

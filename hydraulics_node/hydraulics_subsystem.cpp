@@ -219,6 +219,11 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
   report.flags = circuit_->flags(step.state.data());
   report.offender = circuit_->farthest_beyond_oil_law(step.state.data());
   if (report.offender < 0) report.offender = circuit_->first_cavitating(step.state.data());
+  const int overdrawn = report.has(StepFlag::cavitating) ? circuit_->first_overdrawn(step.state.data()) : -1;
+  if (overdrawn >= 0) report.raise(StepFlag::not_converged), report.offender = overdrawn;
+  if (n >= 0 && convergence_.ends_followed_run(overdrawn >= 0, offender_name(overdrawn))) {
+    report.raise(StepFlag::ended);
+  }
   if (is_out_of_barrel(step.state.data())) report.raise(StepFlag::ended);
   publish(sample.actuators, report.flags, false);
   std::copy(step.work.begin(), step.work.end(), sample.actuators.work.begin());

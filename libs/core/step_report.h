@@ -8,7 +8,7 @@ namespace slew {
 
 enum class StepFlag : std::uint32_t {
   not_converged = 1u << 0,  // an iteration reached its limit; the residual was accepted
-  step_budget = 1u << 1,    // the sub-step budget of H was used up; the last step was accepted with its error
+  step_budget = 1u << 1,    // the sub-step budget of H was used up; the rest went on at looser tolerances
   limit_hit = 1u << 2,      // a joint limit or an end stop is in contact
   clamp_active = 1u << 3,   // a quantity was held at a bound of its validity (pressure floor, input range)
   late_input = 1u << 4,     // the partner's sample was older than the validity of the copy of its model

@@ -15,14 +15,28 @@ void draw_relief(Pen& pen) {
   pen.line({30, 0}, {30, 12});
   pen.line({30, 40}, {30, 52});
   pen.arrow({37, 12}, {37, 40});  // closed at rest: the arrow stands beside the line
+}
+
+void draw_relief_with_spring(Pen& pen) {
+  draw_relief(pen);
   pen.spring({44, 26}, {60, 26});
   pen.adjustable({46, 34}, {60, 17});
+}
+
+// the solenoid of a proportional valve stands beside its spring
+void draw_relief_of(Pen& pen, const ComponentDef& def) {
+  if (!is_set(def, "proportional")) return draw_relief_with_spring(pen);
+  draw_relief(pen);
+  pen.spring({44, 18}, {60, 18});
+  pen.box({44, 24}, 14, 14);
+  pen.line({47, 35}, {55, 27});
+  pen.adjustable({45, 41}, {60, 21});
 }
 
 Symbol relief_symbol(const ComponentDef& def) {
   Symbol symbol{.width = 64, .height = 52, .place = Place::shunt};
   Pen pen;
-  draw_relief(pen);
+  draw_relief_of(pen, def);
   const std::string pilot = text_of(def, "port_3");
   pen.filled("M16 26L10 22L10 30Z");  // stage that is piloted
   if (pilot.empty() || pilot == text_of(def, "port_1")) {
@@ -39,7 +53,7 @@ Symbol relief_symbol(const ComponentDef& def) {
 Symbol direct_relief_symbol(const ComponentDef& def) {
   Symbol symbol{.width = 64, .height = 52, .place = Place::shunt};
   Pen pen;
-  draw_relief(pen);
+  draw_relief_of(pen, def);
   pen.dashed("M30 6H8V26H16");
   symbol.ports.push_back(straight(def, "port_1", Role::inlet, Side::top, 30, 0));
   symbol.ports.push_back(straight(def, "port_2", Role::back, Side::bottom, 30, 52));
@@ -51,7 +65,7 @@ Symbol direct_relief_symbol(const ComponentDef& def) {
 Symbol unloading_symbol(const ComponentDef& def) {
   Symbol symbol{.width = 64, .height = 52, .place = Place::shunt};
   Pen pen;
-  draw_relief(pen);
+  draw_relief_with_spring(pen);
   add_pilot(symbol, def, "port_3", 4, {16, 26});
   pen.dashed("M10 26H16");
   symbol.ports.push_back(straight(def, "port_1", Role::inlet, Side::top, 30, 0));

@@ -32,6 +32,7 @@
 #include "hydraulics/oil_heat.h"
 #include "hydraulics/start_pressures.h"
 #include "hydraulics/vapour.h"
+#include "math/stiff_system.h"
 
 namespace slew::hydraulics {
 
@@ -153,8 +154,9 @@ class Circuit {
   // further than the flow at its end can have taken it, -1: none.
   [[nodiscard]] int emptied_without_outflow(double h, const double* y_before, const double* y) noexcept;
   // Oil of an Euler sub-step, (6) of vapour.h: the first volume where it is off by more than `share` of the size of its
-  // pressure; -1: none.
-  [[nodiscard]] int unbalanced_volume(double share, const double* y_before, const double* y) const noexcept;
+  // pressure, and the largest share.
+  [[nodiscard]] math::StiffSystem::Unbalanced unbalanced_volume(double share, const double* y_before,
+                                                                const double* y) const noexcept;
   // The first volume whose room without oil is larger than the volume itself, -1: none.
   [[nodiscard]] int first_overdrawn(const double* y) const noexcept;
   [[nodiscard]] std::span<const double> vapour_capacities() const noexcept { return vapour_.capacity; }

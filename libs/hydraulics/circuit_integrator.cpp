@@ -33,6 +33,16 @@ math::SparsityPattern coupled_pattern(const Circuit& circuit) {
   return pattern;
 }
 
+// The pistons take the mechanics' positions and speeds at the next exchange.
+std::vector<char> replaced_states(const Circuit& circuit) {
+  std::vector<char> is_replaced(static_cast<std::size_t>(circuit.state_count()), 0);
+  for (int j = 0; j < circuit.actuator_count(); ++j) {
+    is_replaced[static_cast<std::size_t>(circuit.position(j))] = 1;
+    is_replaced[static_cast<std::size_t>(circuit.speed(j))] = 1;
+  }
+  return is_replaced;
+}
+
 math::StiffOptions options_of(const Circuit& circuit, const HydraulicsDef& def) {
   return {.relative_tolerance = def.relative_tolerance,
           .minimum_step = def.minimum_step,
@@ -40,7 +50,8 @@ math::StiffOptions options_of(const Circuit& circuit, const HydraulicsDef& def) 
           .substep_budget = static_cast<std::uint32_t>(def.substep_budget),
           .scale = circuit.scales(),
           .relative = circuit.relatives(),
-          .relative_below_zero = circuit.relatives_below_zero()};
+          .relative_below_zero = circuit.relatives_below_zero(),
+          .is_replaced = replaced_states(circuit)};
 }
 
 std::unique_ptr<math::StiffIntegrator> make_solver(const Circuit& circuit, Solver choice,
@@ -299,7 +310,7 @@ std::int32_t CircuitIntegrator::impossible_state(double h, const double* y_befor
   return circuit_.emptied_without_outflow(h, y_before, y);
 }
 
-std::int32_t CircuitIntegrator::unbalanced_state(const double* y_before, const double* y) noexcept {
+math::StiffSystem::Unbalanced CircuitIntegrator::unbalanced_state(const double* y_before, const double* y) noexcept {
   return circuit_.unbalanced_volume(kMisplacedOil, y_before, y);
 }
 

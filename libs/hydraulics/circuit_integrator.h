@@ -132,7 +132,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   const double* linearise(const double* y, double* f) noexcept override;
   [[nodiscard]] double time_to_bend(const double* y, const double* f, const double* J) noexcept override;
   [[nodiscard]] std::int32_t impossible_state(double h, const double* y_before, const double* y) noexcept override;
-  [[nodiscard]] std::int32_t unbalanced_state(const double* y_before, const double* y) noexcept override;
+  [[nodiscard]] Unbalanced unbalanced_state(const double* y_before, const double* y) noexcept override;
   void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept override;
   struct PressureForce {
     double F = 0, rate = 0;  // N, N/s

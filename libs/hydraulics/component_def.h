@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/field.h"
 #include "core/problem.h"
@@ -74,6 +75,9 @@ struct ComponentType {
 
 // A row of the Def's field table; null if its type has no such field.
 [[nodiscard]] const Field* find_field(const ComponentDef& def, std::string_view key);
+
+// Volumes that a component names, in the order of its fields; they end with the Def.
+[[nodiscard]] std::vector<std::string_view> volumes_of(const ComponentDef& def);
 
 // Member of a Def by the key of its field; Value{} if the type has no such field, or one of another FieldType.
 template <typename Value>

@@ -86,6 +86,19 @@ std::span<const ComponentType> component_types() {
   return types;
 }
 
+std::vector<std::string_view> volumes_of(const ComponentDef& def) {
+  std::vector<std::string_view> names;
+  const ComponentType* const type = find_component_type(def.type_name());
+  if (type == nullptr) return names;
+  for (const Field& row : type->fields) {
+    if (row.reference != "volume" || row.type != FieldType::text) continue;
+    // the table binds members of a Def that may change; nothing is changed here
+    const std::string& name = *static_cast<const std::string*>(row.member(const_cast<ComponentDef&>(def).address()));
+    if (!name.empty()) names.emplace_back(name);
+  }
+  return names;
+}
+
 bool ComponentDef::takes_signal() const {
   const ComponentType* type = find_component_type(type_name());
   return type != nullptr && type->has_control_signal;

@@ -225,7 +225,8 @@ inline constexpr Field kHydraulicsFields[] = {
         "substep_budget",
         {.range = kBudgetRange,
          .read_by = kReadByHalving,
-         .doc = "sub-steps allowed in one communication step; beyond, steps are accepted and flagged"}),
+         .doc = "sub-steps allowed in one communication step; beyond, rodas3 goes on at looser tolerances, "
+                "implicit_euler accepts steps, and the step is flagged"}),
     field<&HydraulicsDef::quasi_static_above>(
         "quasi_static_above", {.dimension = Dimension::frequency,
                                .range = kNotNegative,

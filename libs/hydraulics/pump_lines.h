@@ -41,6 +41,15 @@ struct PumpLines {
     double flow = 0;                  // m3/s, the most that it delivers
     double pressure = 0;              // Pa above tank, at which its controller ends; infinite: it has none
   };
+  // A valve that opens its volume to another one from a pressure on, whatever the signals are.
+  struct Limit {
+    std::string valve, volume, outlet;
+    double setting = 0;  // Pa above the outlet
+  };
+  struct Accumulator {
+    std::string name, volume;
+    double precharge = 0;  // Pa absolute
+  };
   double oil_density = 0;          // kg/m3
   std::vector<Connection> open{};  // volumes that are connected whatever the signals, by valves from a pressure on
   std::vector<Divider> dividers{};
@@ -48,6 +57,8 @@ struct PumpLines {
   std::vector<std::pair<std::string, std::string>> open_at_rest{};  // volumes beside a valve that flow alone shuts
   std::set<std::string> supply{};  // volumes that begin at the pump pressure in an equilibrium start
   std::vector<Pump> pumps{};
+  std::vector<Limit> limits{};
+  std::vector<Accumulator> accumulators{};
 };
 
 // Pre-condition: a def whose references are valid.

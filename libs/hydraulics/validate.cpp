@@ -9,6 +9,7 @@
 #include "core/dimension.h"
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/hydraulics_def.h"
+#include "hydraulics/line_limits.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/start_volumes.h"
 #include "math/pattern_lu.h"
@@ -196,19 +197,6 @@ void check_volumes(const HydraulicsDef& def, Problems& errors) {
                         "a hose, a cylinder, a rigid_volume, quasi_static: true, or fixed: true", ""});
     }
   }
-}
-
-// Volumes of a component.
-std::vector<std::string_view> volumes_of(const ComponentDef& component) {
-  std::vector<std::string_view> names;
-  const ComponentType* const type = find_component_type(component.type_name());
-  if (type == nullptr) return names;
-  for (const Field& row : type->fields) {
-    if (row.reference != "volume") continue;
-    const std::string& name = member<std::string>(row, const_cast<ComponentDef&>(component).address());
-    if (!name.empty()) names.emplace_back(name);
-  }
-  return names;
 }
 
 // The pressure of a quasi-static volume follows from volumes with storage, or a tank, that oil can reach from it. A
@@ -444,6 +432,8 @@ void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
   check_forces(def, errors);
   if (errors.empty()) {
     find_unrelieved_pumps(def, warnings);
+    find_unfilled_accumulators(def, warnings);
+    find_idle_volumes(def, warnings);
     find_replaced_pressures(def, warnings);
   }
   if (errors.empty()) check_size(def, count_unknowns(def), errors);

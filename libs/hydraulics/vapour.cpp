@@ -76,15 +76,20 @@ int Circuit::emptied_without_outflow(double h, const double* y_before, const dou
   return -1;
 }
 
-int Circuit::unbalanced_volume(double share, const double* y_before, const double* y) const noexcept {
+math::StiffSystem::Unbalanced Circuit::unbalanced_volume(double share, const double* y_before,
+                                                         const double* y) const noexcept {
+  math::StiffSystem::Unbalanced found;
   for (std::size_t i = 0; i < volumes_.size(); ++i) {
     // fixed and quasi-static volumes store nothing
     if (!(vapour_.begins_below[i] > 0) || y[i] == y_before[i]) continue;
     const double before = capacity_at(i, y_before), after = capacity_at(i, y);
     const double off = 0.5 * std::fabs((after - before) * (y[i] - y_before[i]));
-    if (off > share * after * (scale_[i] + std::max(y[i], 0.0))) return static_cast<int>(i);
+    const double size = after * (scale_[i] + std::max(y[i], 0.0));
+    if (!(off > share * size)) continue;
+    if (found.state < 0) found.state = static_cast<std::int32_t>(i);
+    found.share = std::max(found.share, off / size);
   }
-  return -1;
+  return found;
 }
 
 int Circuit::first_overdrawn(const double* y) const noexcept {

@@ -66,6 +66,16 @@ ImplicitEuler::Newton ImplicitEuler::try_step(StiffSystem& system, const double*
   return newton;
 }
 
+// Newton's last correction as a share of a state's size.
+double ImplicitEuler::last_correction(const double* y) const noexcept {
+  double largest = 0;
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (matrix_.mass()[i] == 0 || !options_.keeps_error(i)) continue;
+    largest = std::max(largest, std::fabs(d_[i]) / options_.size_of(i, y[i]));
+  }
+  return largest;
+}
+
 StiffReport ImplicitEuler::advance(StiffSystem& system, std::span<double> y, double duration) noexcept {
   SLEW_ASSERT(y.size() == size_);
   StiffReport report;
@@ -81,8 +91,9 @@ StiffReport ImplicitEuler::advance(StiffSystem& system, std::span<double> y, dou
       const std::int32_t impossible = newton.is_finite ? system.impossible_state(h, y.data(), new_.data()) : -1;
       // the budget bounds the cost of sub-steps below minimum_step
       const double shortest = report.rejected < options_.substep_budget ? deepest : options_.minimum_step;
-      const std::int32_t unbalanced = newton.is_finite ? system.unbalanced_state(y.data(), new_.data()) : -1;
-      const bool is_sound = newton.has_converged && impossible < 0 && unbalanced < 0;
+      const StiffSystem::Unbalanced unbalanced =
+          newton.is_finite ? system.unbalanced_state(y.data(), new_.data()) : StiffSystem::Unbalanced{};
+      const bool is_sound = newton.has_converged && impossible < 0 && unbalanced.state < 0;
       if (!is_sound && h > shortest) {
         ++report.rejected;
         h = std::max(0.5 * h, shortest);
@@ -98,7 +109,10 @@ StiffReport ImplicitEuler::advance(StiffSystem& system, std::span<double> y, dou
         report.largest_error = newton.last;
         report.worst_state = newton.worst;
       }
-      if (unbalanced >= 0) report.worst_state = unbalanced;
+      if (unbalanced.state >= 0) report.worst_state = unbalanced.state;
+      const double unsolved = newton.has_converged ? 0 : last_correction(y.data());
+      const double wrong = std::max(unsolved, unbalanced.share);
+      if (!is_sound && wrong > kSoundShare) report.accepted_error += wrong;
       report.is_at_minimum_step = report.is_at_minimum_step || !is_sound;
       ++report.accepted;
       report.is_over_budget = report.rejected > options_.substep_budget;

@@ -33,6 +33,7 @@ class ImplicitEuler final : public StiffIntegrator {
   void set_mass(std::span<const double> mass) noexcept override { matrix_.set_mass(mass); }
 
  private:
+  [[nodiscard]] double last_correction(const double* y) const noexcept;
   struct Newton {
     bool has_converged = false;
     bool is_finite = true;

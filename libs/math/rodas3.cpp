@@ -16,9 +16,11 @@ constexpr double kC21 = 4, kC31 = 1, kC32 = -1, kC41 = 1, kC42 = -1, kC43 = -8.0
 constexpr double kSafety = 0.9;  // factor on the size that the error estimate just allows
 constexpr double kShrink = 0.2;  // bounds on the change of the step size from one step to the next
 constexpr double kGrow = 6;
-constexpr double kFirstFraction = 0.1;     // share of the interval, for the first step
-constexpr double kStretch = 1e-9;          // relative: a rest this small is taken with the step before it
-constexpr int kUncheckedSteps = 10;        // steps for the rest of an interval after the budget is used up
+constexpr double kFirstFraction = 0.1;       // share of the interval, for the first step
+constexpr double kStretch = 1e-9;            // relative: a rest this small is taken with the step before it
+constexpr std::uint32_t kLooserBudgets = 2;  // budgets after the first one, each at a tolerance looser by kLooser
+constexpr double kLooser = 10;
+constexpr int kLastSteps = 10;             // steps for the rest of an interval after these budgets
 constexpr std::uint32_t kMostBudgets = 4;  // tries of an interval, over the budget: some for steps of gross error
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLowestOrder = 0.1;  // lower bound of the order estimated from two rejections
@@ -116,6 +118,27 @@ std::int32_t Rodas3::first_non_finite() const noexcept {
   return -1;
 }
 
+// Error that a step may have, 1 = tolerance, after so many tries in an interval.
+double Rodas3::allowed_error(std::uint32_t tries) const noexcept {
+  const std::uint32_t budgets = std::min(tries / options_.substep_budget, kLooserBudgets + 1);
+  if (budgets == 0) return 1;
+  const double gross = std::max(1.0, kGrossShare / options_.relative_tolerance);
+  double allowed = std::max(kLooser, kSoundShare / options_.relative_tolerance);
+  for (std::uint32_t k = 1; k < budgets; ++k) allowed *= kLooser;
+  return budgets > kLooserBudgets ? gross : std::min(allowed, gross);
+}
+
+Rodas3::Errors Rodas3::errors(const double* y) const noexcept {
+  Errors largest;
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (matrix_.mass()[i] == 0) continue;
+    const double error = std::fabs(k4_[i]) / (options_.relative_tolerance * options_.size_of(i, y[i]));
+    largest.stored = std::max(largest.stored, error);
+    if (options_.keeps_error(i)) largest.kept = std::max(largest.kept, error);
+  }
+  return largest;
+}
+
 // A step cut short by the end of the interval does not shorten the next one. Below minimum_step the size only grows.
 double Rodas3::next_step(double wanted_before, double used, double factor, double longest) const noexcept {
   const double wanted = factor >= 1 ? std::max(wanted_before, used * factor) : used * factor;
@@ -126,15 +149,24 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
   SLEW_ASSERT(y.size() == size_);
   StiffReport report;
   double h = step_size_ > 0 ? step_size_ : kFirstFraction * duration;
-  double rest = duration, unchecked = 0;
+  double rest = duration, longest = duration;
+  bool is_last = false;
   const double shortest = kShortestShare * options_.minimum_step;
   const double* J = nullptr;
   Rejected rejected;
   while (rest > 0) {
-    // budget used up: a few more steps, with any error
-    if (!report.is_over_budget && report.accepted + report.rejected >= options_.substep_budget) {
+    const std::uint32_t tries = report.accepted + report.rejected;
+    const double allowed = allowed_error(tries);
+    // budget used up: no step longer than a tenth of the rest
+    if (!report.is_over_budget && tries >= options_.substep_budget) {
       report.is_over_budget = true;
-      h = unchecked = std::max(options_.minimum_step, rest / kUncheckedSteps);
+      longest = std::max(options_.minimum_step, rest / kLastSteps);
+      h = std::min(h, longest);
+    }
+    // all of them: a few more steps, with any error that is not gross
+    if (!is_last && tries >= (1 + kLooserBudgets) * options_.substep_budget) {
+      is_last = true;
+      h = longest = std::max(options_.minimum_step, rest / kLastSteps);
     }
     // two equal steps rather than a long and a short one
     const bool reaches_end = h >= rest * (1 - kStretch);
@@ -149,29 +181,31 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
     // where a law turns from stiff to soft the estimate takes a stage far beyond the end of the motion for the end
     const std::int32_t impossible = error < kInfinity ? system.impossible_state(used, y.data(), new_.data()) : -1;
     if (impossible >= 0) error = kInfinity;
-    const double factor = std::clamp(kSafety / std::cbrt(std::max(error, 1e-12)), kShrink, kGrow);
+    const double factor = std::clamp(kSafety / std::cbrt(std::max(error / allowed, 1e-12)), kShrink, kGrow);
 
     const bool is_shortest = used <= shortest;
-    // the pressure of an algebraic row may jump
-    const bool is_gross = error * options_.relative_tolerance > kGrossShare && worst_ >= 0 &&
-                          matrix_.mass()[static_cast<std::size_t>(worst_)] != 0;
-    const bool is_accepted = error <= 1 || (error < kInfinity && !is_gross && (is_shortest || report.is_over_budget));
+    const Errors above = error > 1 && error < kInfinity ? errors(y.data()) : Errors{};
+    const bool is_gross = above.stored * options_.relative_tolerance > kGrossShare;
+    const bool is_accepted = error <= allowed || (error < kInfinity && !is_gross && (is_shortest || is_last));
     if (!is_accepted) {
-      if (is_shortest || report.accepted + report.rejected >= kMostBudgets * options_.substep_budget) {
+      if (is_shortest || tries >= kMostBudgets * options_.substep_budget) {
         report.is_finite = impossible >= 0 || error < kInfinity;
         report.is_impossible = report.is_finite;
         report.worst_state = impossible >= 0 ? impossible : report.is_finite ? worst_ : first_non_finite();
         return report;
       }
       ++report.rejected;
-      h = std::max(shortest, used * std::min(shorter(rejected, {used, error}, factor), 0.9));
-      rejected = {used, error};
+      h = std::max(shortest, used * std::min(shorter(rejected, {used, error / allowed}, factor), 0.9));
+      rejected = {used, error / allowed};
       continue;
     }
     if (error > 1 && is_shortest) report.is_at_minimum_step = true;
     if (error > report.largest_error) {
       report.largest_error = error;
       report.worst_state = worst_;
+    }
+    if (above.kept > 1 && above.kept * options_.relative_tolerance > kSoundShare) {
+      report.accepted_error += above.kept * options_.relative_tolerance;
     }
     ++report.accepted;
     system.accepted(used, y.data(), f_.data(), new_.data());
@@ -180,10 +214,10 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
     rejected = {};
     rest = reaches_end && !ends_at_bend ? 0 : rest - used;
     // after a bend the step size before it is tried again
-    if (report.is_over_budget) {
-      h = std::min(kGrow * used, unchecked);
+    if (is_last) {
+      h = std::min(kGrow * used, longest);
     } else if (!ends_at_bend) {
-      h = next_step(h, used, factor, duration);
+      h = next_step(h, used, factor, longest);
     }
   }
   step_size_ = report.is_over_budget ? options_.minimum_step : h;

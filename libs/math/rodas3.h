@@ -8,8 +8,11 @@
 // A step needs three f, one J, one LU and four solves. A step is accepted when max |K_4,i| / (rtol (s_i + r_i |y_i|))
 // <= 1 and the system holds it for possible (StiffSystem::impossible_state()); the next size is h clip(0.9 err^(-1/3),
 // 0.2, 6), after two rejections by the order estimated from them. A step that fails is shortened, to kShortestShare of
-// minimum_step. There, and once substep_budget is used up, a step is accepted and reported whose error is below
-// kGrossShare. Without one, or after four times the budget, the interval ends unfinished (is_impossible).
+// minimum_step; there a step is accepted and reported whose error is below kGrossShare.
+// Once substep_budget is used up, the rest of the interval is reported and goes on at looser tolerances: for another
+// budget at the larger of 10 rtol and kSoundShare, for a third one at ten times that, in steps of at most a tenth of
+// what was left, then in ten steps whose error is below kGrossShare. Without such a step, or after four budgets, the
+// interval ends unfinished (is_impossible).
 //
 // Sources: K. Gustafsson 1994, ACM Trans. Math. Softw. 20, 496 (rejections); A. Sandu et al. 1997, Atmos. Environ. 31,
 // 3459 (RODAS3); form (1) as in Hairer and Wanner 1996, IV.7. M = I unless set_mass() makes rows algebraic: the method
@@ -45,6 +48,13 @@ class Rodas3 final : public StiffIntegrator {
 
  private:
   [[nodiscard]] std::int32_t first_non_finite() const noexcept;
+  [[nodiscard]] double allowed_error(std::uint32_t tries) const noexcept;
+  // Largest errors of the last step from y, 1 = tolerance.
+  struct Errors {
+    double stored = 0;  // of states that are not algebraic: the error of those may be their jump
+    double kept = 0;    // of these, states that are not replaced after the interval
+  };
+  [[nodiscard]] Errors errors(const double* y) const noexcept;
   [[nodiscard]] double next_step(double wanted_before, double used, double factor, double longest) const noexcept;
   [[nodiscard]] double try_step(StiffSystem& system, const double* y, double h) noexcept;
 

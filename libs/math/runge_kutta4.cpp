@@ -10,9 +10,10 @@ namespace {
 
 constexpr int kFirstIterations = 60;  // iterations from an arbitrary vector, and at suspicious sub-steps
 constexpr double kGrossError =
-    1e-2;                           // share of a state and its scale, in one sub-step: a swing followed with w h = 0.5
-constexpr int kMostSuspicions = 4;  // suspicious sub-steps examined per interval
-constexpr int kNextIterations = 4;  // iterations from the vector of the previous interval
+    1e-2;                            // share of a state and its scale, in one sub-step: a swing followed with w h = 0.5
+constexpr double kFifthOrder = 0.4;  // (4)
+constexpr int kMostSuspicions = 4;   // suspicious sub-steps examined per interval
+constexpr int kNextIterations = 4;   // iterations from the vector of the previous interval
 
 }  // namespace
 
@@ -43,30 +44,41 @@ void RungeKutta4::watch(StiffSystem& system, const double* y, const double* f, d
   report.worst_state = radius_.owner();
 }
 
-// (2), in the states' scales.
-bool RungeKutta4::is_suspicious() const noexcept {
-  double later = 0, earlier = 0;
+RungeKutta4::Differences RungeKutta4::differences() const noexcept {
+  Differences sum;
   for (std::size_t i = 0; i < f_.size(); ++i) {
     const double d = (k3_[i] - k2_[i]) / options_.scale[i], e = (k2_[i] - f_[i]) / options_.scale[i];
-    later += d * d;
-    earlier += e * e;
+    sum.later += d * d;
+    sum.earlier += e * e;
   }
-  return 4 * later > kExplicitLimit * kExplicitLimit * earlier;
+  return sum;
 }
 
-// (3), and the system's own balance
+// (2)
+bool RungeKutta4::is_suspicious() const noexcept {
+  const Differences sum = differences();
+  return 4 * sum.later > kExplicitLimit * kExplicitLimit * sum.earlier;
+}
+
+// (3), (4), and the system's own balance
 void RungeKutta4::watch_error(StiffSystem& system, const double* y, double h, StiffReport& report) noexcept {
-  double largest = kGrossError;
+  double largest = kGrossError, kept = 0;
   for (std::size_t i = 0; i < f_.size(); ++i) {
     const double share =
         h / 3 * std::fabs(k3_[i] - k2_[i]) / (options_.scale[i] + std::max(std::fabs(y[i]), std::fabs(new_[i])));
+    if (share > kGrossError && options_.keeps_error(i)) kept = std::max(kept, share);
     if (!(share > largest)) continue;
     largest = share;
     report.is_unstable = true;
     report.worst_state = static_cast<std::int32_t>(i);
   }
+  if (kept > 0) {
+    const Differences sum = differences();
+    report.accepted_error += kept * (kFifthOrder * sum.later < sum.earlier ? kFifthOrder * sum.later / sum.earlier : 1);
+  }
   const std::int32_t impossible = system.impossible_state(h, y, new_.data());
   if (impossible < 0) return;
+  report.accepted_error += kGrossShare;
   report.is_unstable = true;
   report.worst_state = impossible;
 }

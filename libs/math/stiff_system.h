@@ -46,9 +46,13 @@ class StiffSystem {
     return -1;
   }
   // Balance of an Euler sub-step, whose flows are those at its end y: the first state whose content changed by much
-  // else than h times the flow, -1: none.
-  [[nodiscard]] virtual std::int32_t unbalanced_state(const double* /*y_before*/, const double* /*y*/) noexcept {
-    return -1;
+  // else than h times the flow, and the largest such change of content as a share of a state's size.
+  struct Unbalanced {
+    std::int32_t state = -1;  // -1: none
+    double share = 0;
+  };
+  [[nodiscard]] virtual Unbalanced unbalanced_state(const double* /*y_before*/, const double* /*y*/) noexcept {
+    return {};
   }
   // A sub-step from y_before (derivative f_before) to y was accepted; may move y back into its bounds.
   virtual void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept = 0;
@@ -61,6 +65,10 @@ inline constexpr double kShortestShare = 1e-9;
 // Error of a state, as a share of its size, with which no sub-step is accepted, whatever it costs.
 inline constexpr double kGrossShare = 1e-2;
 
+// Error of a state, as a share of its size, that leaves the result sound although the tolerance is tighter: that of the
+// default tolerance.
+inline constexpr double kSoundShare = 1e-4;
+
 // Scales of errors and residuals: the size of state i is s_i + r_i |y_i|, with a separate r_i below zero.
 struct StiffOptions {
   double relative_tolerance = 1e-4;
@@ -70,10 +78,13 @@ struct StiffOptions {
   std::vector<double> scale;                     // s_i of the error measure, one per state, > 0
   std::vector<double> relative;                  // r_i: 1, or 0 for a state whose zero is arbitrary (a position)
   std::vector<double> relative_below_zero = {};  // r_i for y_i < 0; empty: the same
+  std::vector<char> is_replaced = {};  // 1: the caller replaces the state after the interval, and its error does not
+                                       // count in accepted_error; empty: none
 
   [[nodiscard]] double size_of(std::size_t i, double y) const noexcept {
     return scale[i] + (y < 0 && !relative_below_zero.empty() ? relative_below_zero : relative)[i] * std::fabs(y);
   }
+  [[nodiscard]] bool keeps_error(std::size_t i) const noexcept { return is_replaced.empty() || is_replaced[i] == 0; }
 };
 
 struct StiffReport {
@@ -81,7 +92,7 @@ struct StiffReport {
   std::uint32_t rejected = 0;
   std::uint32_t dense_factorisations = 0;  // factorisations with dense pivoting, since a diagonal pivot was too small
   std::uint32_t restarts = 0;              // restarts of a multistep method
-  bool is_over_budget = false;             // rodas3: the rest of the interval was accepted with its error;
+  bool is_over_budget = false;             // rodas3: the rest of the interval was computed at looser tolerances;
                                            // implicit Euler: more halved sub-steps than the budget
   bool is_at_minimum_step = false;         // a step was accepted with its error because it could not be shorter
   bool is_unstable = false;                // an explicit method's sub-step is beyond its stability limit
@@ -90,6 +101,8 @@ struct StiffReport {
                                   // kGrossShare: the interval is not finished
   double largest_error = 0;       // largest error of the accepted steps, 1 = tolerance; explicit: h
                                   // |lambda|_max / limit
+  double accepted_error = 0;      // sum of the errors of sub-steps that were accepted above the tolerance and
+                                  // kSoundShare, each as a share of the size of a state that is not replaced
   std::int32_t worst_state = -1;  // the state with that error; when not finite or impossible: the first such
                                   // state
 };

@@ -36,8 +36,16 @@ struct AddedUnit {
   const char* name;
   const char* definition;
 };
-constexpr AddedUnit kAddedUnits[] = {
-    {"deg", "arc_degree"}, {"rev", "turn"}, {"Nm", "N.m"}, {"Nms", "N.m.s"}, {"Ns", "N.s"}};
+// gallons: 231 in3 (NIST Special Publication 811, 2008, appendix B) and 4.54609 l (Weights and Measures Act 1985,
+// schedule 1), both exact; UDUNITS rounds that of the US
+constexpr AddedUnit kAddedUnits[] = {{"deg", "arc_degree"},
+                                     {"rev", "turn"},
+                                     {"Nm", "N.m"},
+                                     {"Nms", "N.m.s"},
+                                     {"Ns", "N.s"},
+                                     {"lpm", "l/min"},
+                                     {"US_gal", "3.785411784e-3 m^3"},
+                                     {"imp_gal", "4.54609e-3 m^3"}};
 
 // names suggested for an unknown unit
 constexpr std::string_view kCommonUnits[] = {
@@ -227,8 +235,25 @@ std::string_view typographic_space_in(std::string_view text) {
   return {};
 }
 
-// Whether a unit has the ton in it, which is the short one of 907 kg to UDUNITS and 1000 kg to others.
-bool has_ton(std::string_view text) {
+// A word for several units, of which UDUNITS takes one, or another unit altogether: its ton is the short one, its
+// gallon that of the US, its gpm a metre of geopotential.
+struct AmbiguousWord {
+  std::string_view word, meanings, choices;
+};
+constexpr std::string_view kGallons = "US_gal (3.785411784 l) or imp_gal (4.54609 l)";
+constexpr std::string_view kGallonsPerMinute = "US_gal/min (3.785411784 l/min) or imp_gal/min (4.54609 l/min)";
+constexpr std::string_view kQuarts = "a part of a US_gal (3.785411784 l) or of an imp_gal (4.54609 l), or l";
+constexpr AmbiguousWord kAmbiguousWords[] = {
+    {"ton", "several meanings", "t (1000 kg), short_ton (907.18474 kg) or long_ton (1016.0469088 kg)"},
+    {"gal", "two meanings, US and imperial", kGallons},
+    {"gallon", "two meanings, US and imperial", kGallons},
+    {"gpm", "two meanings, US and imperial", kGallonsPerMinute},
+    {"GPM", "two meanings, US and imperial", kGallonsPerMinute},
+    {"quart", "two meanings, US and imperial", kQuarts},
+    {"pint", "two meanings, US and imperial", kQuarts}};
+
+// The ambiguous word in a unit; null: none.
+const AmbiguousWord* ambiguous_word_in(std::string_view text) {
   const auto is_of_word = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   for (std::size_t i = 0; i < text.size();) {
     std::size_t end = i;
@@ -237,16 +262,20 @@ bool has_ton(std::string_view text) {
     for (const std::string_view prefix : {"kilo", "mega"}) {
       if (word.starts_with(prefix)) word.remove_prefix(prefix.size());
     }
-    if (word == "ton" || word == "tons") return true;
+    for (const AmbiguousWord& ambiguous : kAmbiguousWords) {
+      if (word == ambiguous.word || (word.ends_with('s') && word.substr(0, word.size() - 1) == ambiguous.word)) {
+        return &ambiguous;
+      }
+    }
     i = end + 1;
   }
-  return false;
+  return nullptr;
 }
 
 ValueProblem unknown_unit(std::string_view text, Dimension dimension, UnitSystem& units) {
-  if (has_ton(text)) {
-    return {fmt::format("unit '{}': 'ton' has several meanings", text),
-            "t (1000 kg), short_ton (907.18474 kg) or long_ton (1016.0469088 kg)", ""};
+  if (const AmbiguousWord* const ambiguous = ambiguous_word_in(text)) {
+    return {fmt::format("unit '{}': '{}' has {}", text, ambiguous->word, ambiguous->meanings),
+            std::string(ambiguous->choices), ""};
   }
   if (const std::string_view space = typographic_space_in(text); !space.empty()) {
     return {fmt::format("unknown unit '{}': it holds a {}, which looks like a plain space", text, space),
@@ -327,7 +356,7 @@ const Unit* UnitSystem::find(std::string_view text) {
   auto found = known_.find(text);
   if (found == known_.end()) {
     std::optional<Unit> unit;
-    if (looks_like_unit(text) && !has_ton(text)) {
+    if (looks_like_unit(text) && ambiguous_word_in(text) == nullptr) {
       const std::lock_guard lock(udunits_mutex());
       unit = database().parse(std::string(text));
     }

@@ -3,8 +3,9 @@
 //
 // UDUNITS-2 parses the unit and provides the scales; the dimension check is done here, because UDUNITS takes Hz for
 // rad/s and rad for 1. Here the angle is a base dimension (core/dimension.h). Added to its database: deg, rev, Nm, Nms,
-// Ns. Scales that are short decimals, such decimals over 60 or 3600, or those times pi are restored exactly: UDUNITS
-// keeps an inch as 0.025400000000000002 m. So "1050 mm" and 1.05 are the same bits.
+// Ns, lpm, US_gal, imp_gal; refused in it, with the choices: ton, gal, gallon, gpm, quart, pint. Scales that are short
+// decimals, such decimals over 60 or 3600, or those times pi are restored exactly: UDUNITS keeps an inch as
+// 0.025400000000000002 m. So "1050 mm" and 1.05 are the same bits.
 #pragma once
 
 #include <array>

@@ -49,6 +49,7 @@ class Search {
         scene_.mechanics.contact_substep != multibody::MechanicsDef{}.contact_substep) {
       warn("mechanics.contact_substep", "it has no effect: the scene has no contacts", "contacts");
     }
+    for (const auto& component : scene_.hydraulics.components) find_unwired(*component);
     if (!scene_.has_hydraulics()) find_without_circuit();
   }
 
@@ -98,6 +99,18 @@ class Search {
                      component.name, 100 * travel,
                      dead > 0 ? fmt::format(", within {:.3g} % of overlap", 100 * dead) : ""),
          fmt::format("a scale up to the valve's maximum_control_signal, {:g}", most));
+  }
+
+  // a proportional valve stays at its least pressure without a signal
+  void find_unwired(const hydraulics::ComponentDef& component) {
+    if (!hydraulics::member_of<bool>(component, "proportional")) return;
+    const bool is_wired = std::any_of(scene_.inputs.begin(), scene_.inputs.end(),
+                                      [&](const InputDef& input) { return input.primitive == component.name; });
+    if (is_wired) return;
+    warn(component.name + ".proportional",
+         fmt::format("no input names the valve: it opens at its minimum_pressure of {:.6g} bar all the time",
+                     hydraulics::member_of<double>(component, "minimum_pressure") / 1e5),
+         fmt::format("an input with primitive: {}, or a valve of one setting", component.name));
   }
 
   // by the scene's own script, to another value than 0

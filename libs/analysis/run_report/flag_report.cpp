@@ -26,7 +26,7 @@ struct Meaning {
 // in the order of FlagCounter::kFlags
 constexpr std::array<Meaning, FlagCounter::kFlags.size()> kMeanings = {{
     {"an iteration reached its limit and its residual was accepted", "choose a smaller step"},
-    {"the sub-step budget was used up and the error of the last one accepted",
+    {"the sub-step budget was used up and the rest of the step computed at looser tolerances",
      "raise hydraulics.substep_budget or the tolerances"},
     {"a quantity was held at a bound of its validity", "look at the pressures and the inputs"},
     {"a sample was later than the horizon of the partner model",

@@ -7,6 +7,7 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/passages.h"
+#include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -178,6 +179,10 @@ class Accumulator final : public HydraulicComponent {
 };
 
 }  // namespace
+
+void AccumulatorDef::add_lines(PumpLines& lines) const {
+  lines.accumulators.push_back({name, port_1, precharge_pressure});
+}
 
 ComponentType accumulator_type() {
   return {.name = "accumulator",

@@ -35,6 +35,7 @@ struct AccumulatorDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "accumulator"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
 };
 
 [[nodiscard]] ComponentType accumulator_type();

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Direct-acting poppet relief valve, quasi-static.
+// Direct-acting poppet relief valve, quasi-static; with `proportional` its crack pressure follows a control signal.
 //
 //   p = p_1 - p_2,  A_p = pi/4 d^2,  w = pi d sin(alpha)
-//   p A_p = F_0 + k_s y + F_flow,   F_flow = 2 C_d w y p cos(alpha) when included,   F_0 = crack_pressure A_p
+//   p A_p = F_0 + k_s y + F_flow,   F_flow = 2 C_d w y p cos(alpha) when included,   F_0 = p_s A_p,
+//   p_s = crack_pressure, or of proportional_setting.h
 //   y = clip((p A_p - F_0) / (k_s + 2 C_d w p cos(alpha)), 0, maximum_lift)
 //   Q = C_d w y root(2 p / rho)
 //
@@ -11,6 +12,7 @@
 #pragma once
 
 #include "hydraulics/component_def.h"
+#include "hydraulics/components/proportional_setting.h"
 
 namespace slew::hydraulics {
 
@@ -26,9 +28,12 @@ struct DirectReliefValveDef final : ComponentDef {
   double discharge_coefficient = 0.62;
   double maximum_lift = 5e-3;  // m
   FlowForce flow_force = FlowForce::neglected;
+  bool is_proportional = false;
+  ProportionalParameters solenoid;
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "direct_relief_valve"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  [[nodiscard]] bool takes_signal() const override { return is_proportional; }
   void add_lines(PumpLines& lines) const override;
 };
 

@@ -11,7 +11,7 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr Field kReliefValveFields[] = {
+constexpr auto kReliefValveFields = with_proportional<ReliefValveDef>(std::array{
     field<&ReliefValveDef::port_1>(
         "port_1", {.presence = Presence::required, .reference = "volume", .doc = "volume at the inlet"}),
     field<&ReliefValveDef::port_2>("port_2", {.presence = Presence::required,
@@ -39,7 +39,7 @@ constexpr Field kReliefValveFields[] = {
     field<&ReliefValveDef::step_response>(
         "step_response",
         {.dimension = Dimension::time, .range = kPositive, .doc = "three time constants of the opening"}),
-};
+});
 
 constexpr double kOpeningClipWidth = 0.02;  // share of the opening, smoothing of its limits
 constexpr double kOpenPilot = 1e-3;         // opening above which the valve counts as open
@@ -54,6 +54,7 @@ class ReliefValve final : public HydraulicComponent {
         p_2_(builder.volume(def.port_2)),
         pilot_(builder.volume(def.port_3.empty() ? def.port_1 : def.port_3)),
         u_(builder.add_state({.initial = 0, .scale = 1})),
+        setting_(def, builder),
         transition_(builder.def().orifice_transition) {
     apply_parameters();
     if (pilot_ != p_1_) return;
@@ -66,9 +67,12 @@ class ReliefValve final : public HydraulicComponent {
     dependencies.add_restriction(p_1_, p_2_);
     dependencies.add(p_1_, u_), dependencies.add(p_2_, u_);
     dependencies.add(u_, u_), dependencies.add(u_, pilot_), dependencies.add(u_, p_2_);
+    setting_.declare(dependencies);
+    if (setting_.is_used()) dependencies.add(u_, setting_.state());
   }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
     rates.set_rate(u_, rate_ * (opening_command(view).value - view[u_]));
+    setting_.add_rate(view, def_.solenoid, rates);
     rates.move(p_1_, p_2_, flow(view));
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
@@ -76,6 +80,8 @@ class ReliefValve final : public HydraulicComponent {
     jacobian.add(u_, u_, -rate_);
     jacobian.add(u_, pilot_, d_command);
     jacobian.add(u_, p_2_, -d_command);
+    setting_.stamp_rate(def_.solenoid, jacobian);
+    if (setting_.is_used()) jacobian.add(u_, setting_.state(), -d_command * set_pressure(view).slope);
     const ValueSlope r = root(view[p_1_] - view[p_2_], transition_);
     jacobian.move(p_1_, p_2_, u_, K_ * r.value);
     jacobian.move(p_1_, p_2_, p_1_, view[u_] * K_ * r.slope);
@@ -88,11 +94,13 @@ class ReliefValve final : public HydraulicComponent {
     variables.push_back(variable("opening", Dimension::none));
     variables.push_back(variable("flow", Dimension::volume_flow));
     variables.push_back(variable("is_open", Dimension::none));
+    if (setting_.is_used()) variables.push_back(variable("set_pressure", Dimension::pressure));
   }
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
     *values++ = view[u_];
     *values++ = flow(view);
     *values++ = view[u_] > kOpenPilot ? 1 : 0;
+    if (setting_.is_used()) *values++ = set_pressure(view).value;
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
@@ -103,8 +111,11 @@ class ReliefValve final : public HydraulicComponent {
   }
 
  private:
+  [[nodiscard]] ValueSlope set_pressure(const CircuitView& view) const noexcept {
+    return setting_.pressure(view, def_.solenoid, def_.setting_pressure);
+  }
   [[nodiscard]] ValueSlope opening_command(const CircuitView& view) const noexcept {
-    return unit_clip((view[pilot_] - view[p_2_] - def_.setting_pressure) * per_pressure_, kOpeningClipWidth);
+    return unit_clip((view[pilot_] - view[p_2_] - set_pressure(view).value) * per_pressure_, kOpeningClipWidth);
   }
   [[nodiscard]] double flow(const CircuitView& view) const noexcept {
     if (view[u_] == 0) return 0;
@@ -114,13 +125,20 @@ class ReliefValve final : public HydraulicComponent {
   ReliefValveDef def_;
   StateIndex p_1_, p_2_, pilot_;
   StateIndex u_;  // opening 0..1
+  ProportionalSetting setting_;
   double transition_;
   double K_ = 0, per_pressure_ = 0, rate_ = 0;
 };
 
+void validate_relief_valve(const HydraulicsDef&, const ComponentDef& component, Problems& errors, Problems&) {
+  const ReliefValveDef& def = static_cast<const ReliefValveDef&>(component);
+  check_minimum_pressure(def, def.setting_pressure, "setting_pressure", errors);
+}
+
 }  // namespace
 
 void ReliefValveDef::add_lines(PumpLines& lines) const {
+  if (port_3.empty() || port_3 == port_1) lines.limits.push_back({name, port_1, port_2, setting_pressure});
   if (!(setting_pressure < OilCompressibility::kHighest)) return;
   const double most = nominal_flow * std::sqrt(OilCompressibility::kHighest / nominal_pressure_drop);
   lines.open.push_back({.a = port_1, .b = port_2, .flow = most, .is_one_way = true, .pilot = port_3});
@@ -129,12 +147,13 @@ void ReliefValveDef::add_lines(PumpLines& lines) const {
 ComponentType relief_valve_type() {
   return {.name = "relief_valve",
           .fields = kReliefValveFields,
-          .doc = "pilot-operated pressure relief valve",
+          .doc = "pilot-operated pressure relief valve, at a setting or by a control signal",
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<ReliefValveDef>(); },
-          .validate = nullptr,
+          .validate = validate_relief_valve,
           .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
             return std::make_unique<ReliefValve>(static_cast<const ReliefValveDef&>(def), builder);
-          }};
+          },
+          .has_control_signal = true};
 }
 
 }  // namespace slew::hydraulics

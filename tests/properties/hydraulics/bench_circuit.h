@@ -22,6 +22,7 @@
 #include "hydraulics/components/priority_valve.h"
 #include "hydraulics/components/pump.h"
 #include "hydraulics/components/reducing_valve.h"
+#include "hydraulics/components/relief_valve.h"
 #include "hydraulics/components/shuttle_valve.h"
 #include "hydraulics/components/single_acting_cylinder.h"
 #include "hydraulics/components/sources.h"
@@ -209,6 +210,14 @@ inline HydraulicsDef bench_circuit() {
   DirectReliefValveDef& plain = add<DirectReliefValveDef>(circuit, "Relief_B");
   plain.port_1 = "Vol_B", plain.port_2 = "Vol_T", plain.seat_diameter = 0.01, plain.crack_pressure = 100 * kBar;
   plain.spring_constant = 4e4, plain.maximum_lift = 2e-4;
+
+  ReliefValveDef& proportional = add<ReliefValveDef>(circuit, "Relief_C");
+  proportional.port_1 = "Vol_A", proportional.port_2 = "Vol_T", proportional.nominal_flow = 1e-3;
+  proportional.setting_pressure = 260 * kBar, proportional.is_proportional = true;
+  proportional.solenoid.minimum_pressure = 20 * kBar;
+  DirectReliefValveDef& solenoid = add<DirectReliefValveDef>(circuit, "Relief_D");
+  solenoid.port_1 = "Vol_B", solenoid.port_2 = "Vol_T", solenoid.seat_diameter = 0.01;
+  solenoid.crack_pressure = 300 * kBar, solenoid.spring_constant = 4e4, solenoid.is_proportional = true;
 
   OrificeDef& orifice = add<OrificeDef>(circuit, "Orifice");
   orifice.port_1 = "Vol_A", orifice.port_2 = "Vol_B", orifice.diameter = 1e-3;

@@ -140,6 +140,23 @@ TEST(Discharge, two_volumes_keep_their_oil) {
   }
 }
 
+// Was 100.9 bar for 99.1 at 1e-9: ten sub-steps of up to a hundredth took the rest of the step, and the level kept
+// that.
+TEST(Discharge, of_two_volumes_ends_level_although_the_budget_is_used_up) {
+  for (const double tolerance : {1e-6, 1e-8, 1e-9}) {
+    for (const double ratio : {0.01, 0.3, 3.0}) {
+      SCOPED_TRACE(std::to_string(std::log10(tolerance)) + ", W/V " + std::to_string(ratio));
+      HydraulicsDef def = vessel({}, Oil::air, Solver::rodas3, ratio * 1e-6);
+      def.relative_tolerance = tolerance;
+      const Emptying run = empty(def, 5);
+      const double level = level_pressure(def);
+      EXPECT_NEAR(run.other, level, 3e-4 * (level + 10 * kBar));
+      EXPECT_NEAR(run.pressure.back(), level, 3e-4 * (level + 10 * kBar));
+      EXPECT_LE(run.flagged, 1);
+    }
+  }
+}
+
 Discharge random_discharge(std::mt19937& random) {
   const auto between = [&](double low, double high) {
     return low * std::pow(high / low, std::uniform_real_distribution<double>(0, 1)(random));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -519,6 +520,88 @@ TEST(PumpLines, are_relieved_by_a_counterbalance_valve_at_its_setting) {
 
 TEST(PumpLines, of_the_crane_have_their_relief_valve) {
   EXPECT_EQ(what_at(findings(crane_circuit()).warnings, "MainPump.port_a"), "");
+}
+
+// A pump of 30 l/min behind a relief valve, an accumulator behind a check valve.
+HydraulicsDef charging_circuit(double setting, double precharge) {
+  HydraulicsDef def;
+  add_tank(def, "Tank", 1 * kBar);
+  add_volume(def, "Line").rigid_volume = 1e-4, add_volume(def, "Store").rigid_volume = 1e-4;
+  PumpDef& pump = add<PumpDef>(def, "Pump");
+  pump.port_a = "Line", pump.port_b = "Tank", pump.speed = 157, pump.displacement = 3e-6;
+  ReliefValveDef& relief = add<ReliefValveDef>(def, "Relief");
+  relief.port_1 = "Line", relief.port_2 = "Tank", relief.nominal_flow = 1e-3, relief.setting_pressure = setting;
+  CheckValveDef& check = add<CheckValveDef>(def, "Check");
+  check.port_1 = "Line", check.port_2 = "Store", check.common.nominal_flow = 1e-3;
+  AccumulatorDef& accumulator = add<AccumulatorDef>(def, "Accumulator");
+  accumulator.port_1 = "Store", accumulator.gas_volume = 1e-3, accumulator.precharge_pressure = precharge;
+  accumulator.nominal_flow = 1e-3;
+  return def;
+}
+
+TEST(HydraulicsValidation, accumulators_that_no_line_fills_are_named_with_both_pressures) {
+  const std::string path = "Accumulator.precharge_pressure";
+  const auto warning = [&](const HydraulicsDef& def) {
+    const Findings found = findings(def);
+    EXPECT_TRUE(found.errors.empty()) << listing(found.errors);
+    return what_at(found.warnings, path);
+  };
+  EXPECT_EQ(
+      warning(charging_circuit(160 * kBar, 180 * kBar)),
+      "the accumulator never fills: its precharge of 180 bar is not below the 161 bar at which 'Relief' opens (both "
+      "absolute)");
+  EXPECT_EQ(warning(charging_circuit(160 * kBar, 160 * kBar)), "");
+  // on the pump's line itself
+  HydraulicsDef beside = charging_circuit(160 * kBar, 180 * kBar);
+  component<AccumulatorDef>(beside, "Accumulator").port_1 = "Line";
+  EXPECT_NE(warning(beside), "");
+  // a second pump without a limit feeds the store
+  HydraulicsDef fed = charging_circuit(160 * kBar, 180 * kBar);
+  FlowSourceDef& source = add<FlowSourceDef>(fed, "Source");
+  source.port_1 = "Tank", source.port_2 = "Store", source.flow = 1e-4;
+  EXPECT_EQ(warning(fed), "");
+  // piloted by another line, the valve limits nothing
+  HydraulicsDef piloted = charging_circuit(160 * kBar, 180 * kBar);
+  component<ReliefValveDef>(piloted, "Relief").port_3 = "Store";
+  EXPECT_EQ(warning(piloted), "");
+  // a poppet, and a valve whose outlet is held at 40 bar
+  HydraulicsDef poppet = charging_circuit(500 * kBar, 150 * kBar);
+  add_tank(poppet, "Back", 40 * kBar);
+  DirectReliefValveDef& direct = add<DirectReliefValveDef>(poppet, "Direct");
+  direct.port_1 = "Store", direct.port_2 = "Back", direct.seat_diameter = 0.01, direct.crack_pressure = 100 * kBar;
+  direct.spring_constant = 4e4;
+  EXPECT_NE(warning(poppet).find("the 140 bar at which 'Direct' opens"), std::string::npos) << warning(poppet);
+}
+
+TEST(HydraulicsValidation, volumes_in_which_nothing_moves_are_named) {
+  HydraulicsDef def = charging_circuit(160 * kBar, 50 * kBar);
+  EXPECT_EQ(listing(findings(def).warnings), "");
+  add_volume(def, "Return", 1 * kBar).rigid_volume = 1e-3;
+  add_volume(def, "Behind", 1 * kBar).rigid_volume = 1e-3;
+  add_volume(def, "Alone", 7 * kBar).rigid_volume = 1e-3;
+  for (const auto& [name, from, to] : {std::array{"Orifice_1", "Return", "Tank"}, {"Orifice_2", "Return", "Behind"}}) {
+    OrificeDef& orifice = add<OrificeDef>(def, name);
+    orifice.port_1 = from, orifice.port_2 = to, orifice.diameter = 1e-3;
+  }
+  add_hose(def, "Hose", "Tank", 1, 0.02);
+  const Problems warnings = findings(def).warnings;
+  EXPECT_EQ(warnings.size(), 4U) << listing(warnings);
+  EXPECT_NE(what_at(warnings, "Return").find("begins at 1 bar"), std::string::npos) << listing(warnings);
+  EXPECT_NE(what_at(warnings, "Behind"), "");
+  EXPECT_NE(what_at(warnings, "Alone").find("no component leads to another one"), std::string::npos);
+  EXPECT_EQ(what_at(warnings, "Hose.volume"),
+            "the hose does nothing: the pressure of 'Tank' is fixed, whatever it contains");
+  // one that a pressure source feeds moves, and what it feeds
+  HydraulicsDef fed = charging_circuit(160 * kBar, 50 * kBar);
+  add_volume(fed, "Fed", 1 * kBar).rigid_volume = 1e-3;
+  PressureSourceDef& source = add<PressureSourceDef>(fed, "Source");
+  source.port_1 = "Fed", source.set_pressure = 20 * kBar, source.nominal_flow = 1e-4;
+  EXPECT_EQ(listing(findings(fed).warnings), "");
+  // one that begins above the tank empties
+  for (VolumeDef& volume : def.volumes) {
+    if (volume.name == "Behind") volume.initial_pressure = 20 * kBar;
+  }
+  EXPECT_EQ(findings(def).warnings.size(), 2U) << listing(findings(def).warnings);
 }
 
 }  // namespace validate_test

@@ -72,6 +72,35 @@ TEST(RungeKutta4, reports_when_its_step_is_beyond_the_limit) {
   EXPECT_GE(bad.worst_state, 0);
 }
 
+// y' = -lambda y in one step
+class Decay final : public StiffSystem {
+ public:
+  void derivative(const double* y, double* f) noexcept override { f[0] = -y[0]; }
+  const double* jacobian(const double*, const double*) noexcept override { return J_; }
+  void accepted(double, const double*, const double*, double*) noexcept override {}
+
+ private:
+  double J_[1] = {-1};
+};
+
+TEST(RungeKutta4, counts_the_error_that_a_step_makes) {
+  for (const double z : {1.0, 1.5, 1.9}) {
+    Decay system;
+    double y[] = {1};
+    RungeKutta4 solver(1, {.relative_tolerance = 1, .maximum_step = z, .scale = {1e-9}, .relative = {0}});
+    const StiffReport report = solver.advance(system, y, z);
+    EXPECT_TRUE(report.is_unstable) << z;
+    EXPECT_NEAR(report.accepted_error, std::pow(z, 5) / 120, 1e-6) << z;
+    const double error = std::fabs(y[0] - std::exp(-z));
+    EXPECT_GT(report.accepted_error, error) << z;
+    EXPECT_LT(report.accepted_error, 1.5 * error) << z;
+  }
+  Decay system;
+  double y[] = {1};
+  RungeKutta4 solver(1, {.relative_tolerance = 1, .maximum_step = 0.3, .scale = {1e-9}, .relative = {0}});
+  EXPECT_EQ(solver.advance(system, y, 0.3).accepted_error, 0);
+}
+
 TEST(ImplicitEuler, is_of_first_order_and_damps) {
   ImplicitEuler coarse(full(2), 2, options(1e-9, 1e-4)), fine(full(2), 2, options(1e-9, 5e-5));
   const double error = error_after_one_second(coarse);

@@ -85,10 +85,12 @@ class StiffOscillator final : public StiffSystem {
   double J_[9] = {0, 1, 0, -kW* kW, 0, 0, kL, 0, -kL};
 };
 
-Rodas3 oscillator_solver(double tolerance) {
+Rodas3 oscillator_solver(double tolerance, std::uint32_t budget = 200) {
   SparsityPattern pattern(3);
   pattern.add(0, 1), pattern.add(1, 0), pattern.add(2, 0);
-  return Rodas3(pattern, 3, {.relative_tolerance = tolerance, .scale = {1, 10, 1}, .relative = {1, 1, 1}});
+  return Rodas3(
+      pattern, 3,
+      {.relative_tolerance = tolerance, .substep_budget = budget, .scale = {1, 10, 1}, .relative = {1, 1, 1}});
 }
 
 TEST(Rodas3, follows_a_stiff_oscillator_within_its_tolerance) {
@@ -103,6 +105,38 @@ TEST(Rodas3, follows_a_stiff_oscillator_within_its_tolerance) {
     // explicit methods would need 1e5 / 2.8 steps
     EXPECT_LT(steps, 5000u);
   }
+}
+
+// three periods in one interval: at 1e-10 they take 2500 sub-steps, at 1e-4 about 90
+TEST(Rodas3, goes_on_at_a_looser_tolerance_where_the_budget_is_used_up) {
+  for (const std::uint32_t budget : {200u, 500u, 1000u}) {
+    StiffOscillator system;
+    Rodas3 solver = oscillator_solver(1e-10, budget);
+    double y[] = {1, 0, 1};
+    const double t = 6 * 3.141592653589793 / StiffOscillator::kW;
+    const StiffReport report = solver.advance(system, y, t);
+    EXPECT_NEAR(system.time, t, 1e-12);
+    EXPECT_TRUE(report.is_over_budget);
+    EXPECT_LT(report.accepted + report.rejected, 2 * budget);
+    EXPECT_GT(report.largest_error, 1);
+    EXPECT_LE(report.largest_error * 1e-10, 1.0001 * kSoundShare);
+    EXPECT_EQ(report.accepted_error, 0);
+    EXPECT_NEAR(y[0], 1, 60 * kSoundShare) << budget;
+    EXPECT_NEAR(y[1] / StiffOscillator::kW, 0, 60 * kSoundShare) << budget;
+  }
+}
+
+TEST(Rodas3, adds_up_the_errors_that_it_accepts) {
+  StiffOscillator system;
+  Rodas3 solver = oscillator_solver(1e-6, 12);
+  double y[] = {1, 0, 1};
+  const StiffReport report = solver.advance(system, y, 0.5);
+  EXPECT_TRUE(report.is_over_budget);
+  ASSERT_FALSE(report.is_impossible);
+  const double error = std::hypot(y[0] - std::cos(5.0), y[1] / 10 + std::sin(5.0));
+  EXPECT_GT(error, 10 * kSoundShare);
+  EXPECT_GT(report.accepted_error, error / 3);
+  EXPECT_LE(report.accepted_error, report.accepted * report.largest_error * 1e-6);
 }
 
 TEST(Rodas3, is_of_third_order) {

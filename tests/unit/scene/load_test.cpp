@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -43,7 +44,7 @@ TEST(Load, WarnsOfMilliWhereMegaIsLikely) {
 
 TEST(Load, WarnsOfAScriptedChangeBehindTheEndOfTheRun) {
   const std::string script =
-      "volumes:\n  V: {rigid_volume: 1 l}\n  T: {fixed: true}\n"
+      "volumes:\n  V: {rigid_volume: 1 l, initial_pressure: 2 bar}\n  T: {fixed: true}\n"
       "components:\n  R: {type: relief_valve, port_1: V, port_2: T, nominal_flow: 10 l/min, setting_pressure: 25 MPa}\n"
       "script:\n  parameters:\n    - {at: 1 s, set: R.setting_pressure, value: 20 MPa}\n"
       "    - {at: 3 s, set: R.setting_pressure, value: 25 MPa}\n";
@@ -408,6 +409,37 @@ TEST(Load, AnInputWithoutEffectIsReportedAsAWarning) {
   EXPECT_NE(warnings(", force: 1 N", ", scale: 0").find("Stick.scale: the input has no effect"), std::string::npos);
   EXPECT_EQ(warnings(", force: 1 N", "").find("no effect"), std::string::npos);
   EXPECT_EQ(warnings(", force_table: [[0, 0], [1, 5]]", "").find("no effect"), std::string::npos);
+}
+
+TEST(Load, AProportionalValveWithoutAnInputIsReportedAsAWarning) {
+  const auto warnings = [](const std::string& valve, const std::string& inputs) {
+    return all_of(
+        load_text("volumes:\n  A: {fixed: true, initial_pressure: 150 bar}\n  T: {fixed: true}\ncomponents:\n"
+                  "  C: {type: relief_valve, port_1: A, port_2: T, nominal_flow: 60 lpm, setting_pressure: 200 "
+                  "bar" +
+                      valve + "}\n" + inputs,
+                  "test")
+            .warnings);
+  };
+  const std::string proportional = ", proportional: true, minimum_pressure: 12 bar";
+  EXPECT_NE(
+      warnings(proportional, "")
+          .find("C.proportional: no input names the valve: it opens at its minimum_pressure of 12 bar all the time"),
+      std::string::npos);
+  EXPECT_EQ(warnings(proportional, "inputs:\n  Set: {type: analog, primitive: C}\n").find("C.proportional"),
+            std::string::npos);
+  EXPECT_EQ(warnings("", "").find("C.proportional"), std::string::npos);
+  for (const auto& [valve, input, what] :
+       {std::array<std::string, 3>{"", "inputs:\n  Set: {type: analog, primitive: C}\n", "takes no control signal"},
+        {proportional, "inputs:\n  Set: {type: analog, primitive: C}\n  Too: {type: analog, primitive: C}\n",
+         "is driven by 'Set' already"}}) {
+    try {
+      warnings(valve, input);
+      ADD_FAILURE() << what;
+    } catch (const LoadError& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  }
 }
 
 // Defaults of valves and gains of components leave an input without effect; a change of the script gives it one.

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 namespace slew::scene {
 namespace units_test {
@@ -99,6 +101,41 @@ TEST(Units, TheTonOfSeveralMeaningsIsRefusedByName) {
   EXPECT_EQ(read_quantity("3 tonne", Writing::plain, Dimension::mass, units()).value, 3000);
   EXPECT_NEAR(*read_quantity("1 short_ton", Writing::plain, Dimension::mass, units()).value, 907.18474, 1e-9);
   EXPECT_NEAR(*read_quantity("1 long_ton", Writing::plain, Dimension::mass, units()).value, 1016.0469088, 1e-9);
+}
+
+TEST(Units, OfHydraulicCataloguesAreAccepted) {
+  const auto read = [](const char* text, Dimension dimension) {
+    const QuantityResult result = read_quantity(text, Writing::plain, dimension, units());
+    EXPECT_TRUE(result.value) << text << ": " << result.problem.what;
+    return result.value.value_or(0);
+  };
+  EXPECT_EQ(read("60 lpm", Dimension::volume_flow), 1e-3);
+  EXPECT_EQ(read("60 L/min", Dimension::volume_flow), 1e-3);
+  EXPECT_DOUBLE_EQ(read("10 US_gal/min", Dimension::volume_flow), 10 * 231 * 0.0254 * 0.0254 * 0.0254 / 60);
+  EXPECT_DOUBLE_EQ(read("10 imp_gal/min", Dimension::volume_flow), 10 * 4.54609e-3 / 60);
+  EXPECT_DOUBLE_EQ(read("5 US_gal", Dimension::volume), 5 * 3.785411784e-3);
+  // 0.45359237 kg, 9.80665 m/s2, 25.4 mm
+  EXPECT_DOUBLE_EQ(read("3000 psi", Dimension::pressure), 3000 * 0.45359237 * 9.80665 / (0.0254 * 0.0254));
+  EXPECT_DOUBLE_EQ(read("45 cc/rev", Dimension::displacement_volume), 45e-6 / (2 * kPi));
+  EXPECT_DOUBLE_EQ(read("2.75 in3/rev", Dimension::displacement_volume), 2.75 * 16.387064e-6 / (2 * kPi));
+}
+
+// 'gallon' was that of the US without a word
+TEST(Units, TheGallonOfTwoMeaningsIsRefusedWithItsChoices) {
+  for (const auto& [text, word] : {std::pair{"10 gal/min", "'gal'"},
+                                   {"10 gallon/min", "'gallon'"},
+                                   {"10 gallons/min", "'gallon'"},
+                                   {"10 gpm", "'gpm'"},
+                                   {"10 GPM", "'GPM'"},
+                                   {"10 quart/s", "'quart'"}}) {
+    const QuantityResult result = read_quantity(text, Writing::plain, Dimension::volume_flow, units());
+    EXPECT_FALSE(result.value) << text;
+    EXPECT_NE(result.problem.what.find(std::string(word) + " has two meanings"), std::string::npos)
+        << result.problem.what;
+    EXPECT_NE(result.problem.expected.find("US_gal"), std::string::npos) << result.problem.expected;
+    EXPECT_NE(result.problem.expected.find("imp_gal"), std::string::npos) << result.problem.expected;
+  }
+  EXPECT_FALSE(read_quantity("3 gallons", Writing::plain, Dimension::volume, units()).value);
 }
 
 TEST(Units, AScaleThatIsNoShortDecimalStaysAsItIs) {

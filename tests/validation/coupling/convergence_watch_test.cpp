@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A circuit that its solver no longer solves ends the session, with the name of the volume.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,6 +14,7 @@
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "scene/scene.h"
 #include "scene/script.h"
+#include "session/monolithic_session.h"
 
 namespace slew::hydraulics_node::test {
 namespace convergence_watch_test {
@@ -59,6 +62,16 @@ components:
   Pump: {type: flow_source, port_1: Suction, port_2: T, flow: 60 l/min}
 )";
 
+// Empties within 20 ms; with a budget of one sub-step each step has an error of 1e-5 at most, above a tolerance of
+// 1e-10.
+constexpr const char* kSmallErrors = R"(
+session: {duration: 0.05 s}
+hydraulics: {start: table13, relative_tolerance: 2e-10, substep_budget: 1}
+volumes: {V: {rigid_volume: 1 l, initial_pressure: 150 bar}, T: {initial_pressure: 1 bar, fixed: true}}
+components:
+  O: {type: orifice, port_1: V, port_2: T, diameter: 3 mm}
+)";
+
 struct Played {
   explicit Played(const scene::Scene& scene)
       : scene(scene), hydraulics(scene), player(scene), controls(scene.inputs.size()) {
@@ -102,9 +115,10 @@ TEST(ConvergenceWatch, EndsRungeKuttaWhereItSwingsAboutAValve) {
   Played run(scene);
   const StepReport report = run.play();
   EXPECT_TRUE(report.has(StepFlag::ended));
-  EXPECT_EQ(run.n, kMostUnsolved);
+  EXPECT_LE(run.n, kMostUnsolved);
   const std::string text(run.hydraulics.failure_text());
   EXPECT_EQ(text.substr(0, 4), "M1: ");
+  EXPECT_NE(text.find("sub-steps of rk4"), std::string::npos) << text;
   EXPECT_NE(text.find("hydraulics.max_substep"), std::string::npos) << text;
   EXPECT_TRUE(run.step().has_failed());
 }
@@ -131,23 +145,62 @@ TEST(ConvergenceWatch, EndsScenesThatRungeKuttaCannotFollow) {
 }
 
 TEST(ConvergenceWatch, EndsWhatTheBudgetDoesNotSolve) {
-  struct Case {
-    const char* solver;
-    StepIndex steps;  // the failing one included
-  };
-  // rodas3 finds no sub-step that keeps the oil; Euler's accepted ones are counted
-  for (const Case& c : {Case{"rodas3", 1}, Case{"implicit_euler", kMostUnsolved}}) {
-    const scene::Scene scene = scene::load_text(
-        kVessel, "vessel", {std::string("hydraulics.solver=") + c.solver, "hydraulics.substep_budget=1"});
+  // rodas3 finds no sub-step that keeps the oil; what Euler accepts is gross in the first step
+  for (const std::string solver : {"rodas3", "implicit_euler"}) {
+    const scene::Scene scene =
+        scene::load_text(kVessel, "vessel", {"hydraulics.solver=" + solver, "hydraulics.substep_budget=1"});
     Played run(scene);
-    EXPECT_TRUE(run.play().has(StepFlag::ended)) << c.solver;
-    EXPECT_EQ(run.n, c.steps) << c.solver;
-    EXPECT_EQ(run.hydraulics.failure_text().substr(0, 3), "V: ") << c.solver;
-    const scene::Scene usual = scene::load_text(kVessel, "vessel", {std::string("hydraulics.solver=") + c.solver});
+    EXPECT_TRUE(run.play().has(StepFlag::ended)) << solver;
+    EXPECT_EQ(run.n, 1) << solver;
+    EXPECT_EQ(run.hydraulics.failure_text().substr(0, 3), "V: ") << solver;
+    const scene::Scene usual = scene::load_text(kVessel, "vessel", {"hydraulics.solver=" + solver});
     Played solved(usual);
-    EXPECT_FALSE(solved.play().has_failed()) << c.solver;
-    EXPECT_NEAR(solved.value("V.pressure"), 1e5, 10) << c.solver;
+    EXPECT_FALSE(solved.play().has_failed()) << solver;
+    EXPECT_NEAR(solved.value("V.pressure"), 1e5, 10) << solver;
   }
+}
+
+// Two volumes that become level within the first step keep the error of that step for good. Their level is that of
+// their oil: kappa = d ln rho/dp in closed form. With few sub-steps of rodas3 it was 8.41 bar for 11.06, with code 0.
+TEST(ConvergenceWatch, LeavesNoWrongLevelWithoutAnEnd) {
+  const auto log_density = [](double p) {
+    return -std::log(std::exp(-(p - 1e5) / 1.5e9) + 0.005 * std::pow(1e5 / p, 1 / 1.2));
+  };
+  int ended = 0, flagged = 0;
+  for (const double W : {0.01, 0.3, 1.0, 3.0}) {
+    double low = 1e5, high = 150e5;
+    for (int k = 0; k < 100; ++k) {
+      const double p = 0.5 * (low + high);
+      (W * (log_density(p) - log_density(1e5)) < log_density(150e5) - log_density(p) ? low : high) = p;
+    }
+    for (const int budget : {1, 2, 3, 5, 8, 12, 20, 40, 200}) {
+      for (const char* tolerance : {"1e-4", "1e-6", "1e-8", "1e-9"}) {
+        SCOPED_TRACE(fmt::format("W {}, budget {}, tolerance {}", W, budget, tolerance));
+        const std::string text = fmt::format(
+            "session: {{duration: 5 ms}}\nhydraulics: {{start: table13}}\n"
+            "volumes: {{V: {{rigid_volume: 1 cm3, initial_pressure: 150 bar}},\n"
+            "  W: {{rigid_volume: {} cm3, initial_pressure: 1 bar}}}}\n"
+            "components:\n  O: {{type: orifice, port_1: V, port_2: W, diameter: 30 mm}}\n",
+            W);
+        const scene::Scene scene = scene::load_text(text, "level",
+                                                    {std::string("hydraulics.relative_tolerance=") + tolerance,
+                                                     "hydraulics.substep_budget=" + std::to_string(budget)});
+        Played run(scene);
+        const StepReport first = run.step();
+        const bool has_ended = run.play().has_failed();
+        ended += has_ended ? 1 : 0;
+        flagged += !has_ended && first.has(StepFlag::step_budget) ? 1 : 0;
+        if (has_ended) {
+          const std::string message(run.hydraulics.failure_text());
+          EXPECT_TRUE(message.starts_with("V: ") || message.starts_with("W: ")) << message;
+        } else {
+          EXPECT_NEAR(run.value("W.pressure"), low, kMostError * (low + 10e5));
+        }
+      }
+    }
+  }
+  EXPECT_GT(ended, 10);
+  EXPECT_GT(flagged, 10);
 }
 
 TEST(ConvergenceWatch, EndsAPumpThatDrawsFromAnEmptyVolume) {
@@ -156,10 +209,31 @@ TEST(ConvergenceWatch, EndsAPumpThatDrawsFromAnEmptyVolume) {
   EXPECT_TRUE(run.play().has(StepFlag::ended));
   EXPECT_NE(run.hydraulics.failure_text().find("Suction: more oil was drawn"), std::string::npos)
       << run.hydraulics.failure_text();
+  // the same as one system, which has no solver to accept an error
+  const scene::Scene whole = scene::load_text(kSuction, "suction", {"session.solution=monolithic"});
+  session::SubsystemFamily family;
+  const auto monolith = family.make(wire::Role::hydraulics, whole);
+  coupling::OwnSample sample;
+  ASSERT_TRUE(monolith->start({}, sample).is_ok());
+  StepIndex n = 0;
+  StepReport report;
+  while (n < 300 && !report.has_failed()) report = monolith->step(n++, {}, {}, sample);
+  EXPECT_TRUE(report.has(StepFlag::ended));
+  EXPECT_EQ(n, run.n);
+  EXPECT_EQ(monolith->failure_text(), run.hydraulics.failure_text());
+}
+
+TEST(ConvergenceWatch, CountsStepsOfSmallErrors) {
+  const scene::Scene scene = scene::load_text(kSmallErrors, "small");
+  Played run(scene);
+  EXPECT_TRUE(run.play().has(StepFlag::ended));
+  EXPECT_EQ(run.n, kMostUnsolved);
+  const std::string text(run.hydraulics.failure_text());
+  EXPECT_TRUE(text.starts_with("V: of late more steps of rodas3 were accepted with an error above")) << text;
 }
 
 TEST(ConvergenceWatch, IsSavedWithTheState) {
-  const scene::Scene scene = scene::load_text(kShare, "share", {"hydraulics.solver=rk4"});
+  const scene::Scene scene = scene::load_text(kSmallErrors, "small");
   Played first(scene), second(scene);
   for (int k = 0; k < 10; ++k) static_cast<void>(first.step());
   std::vector<std::byte> bytes;
@@ -172,11 +246,10 @@ TEST(ConvergenceWatch, IsSavedWithTheState) {
   EXPECT_EQ(second.n, kMostUnsolved);
 }
 
-// Circuits with the same pressures that Euler has not solved for some steps: they differ in the number of these steps
+// Circuits with the same pressures that have not been solved for some steps: they differ in the number of these steps
 // alone, and the one with more of them ends earlier.
 TEST(ConvergenceWatch, IsPartOfTheHash) {
-  const scene::Scene scene =
-      scene::load_text(kVessel, "vessel", {"hydraulics.solver=implicit_euler", "hydraulics.substep_budget=1"});
+  const scene::Scene scene = scene::load_text(kSmallErrors, "small");
   const auto after = [&](int steps) {
     auto run = std::make_unique<Played>(scene);
     const std::span<double> state = run->hydraulics.integrator().mutable_state();
