@@ -29,6 +29,13 @@ double PortProblem::change(std::size_t row, double speed_change) const noexcept 
   return ratio * (law_at_end(k, ratio * speed_change).force - held_force_[k]);
 }
 
+// Slope between the speeds of its beginning and its end: of dry friction that turns round on the way, and is flat at
+// both; at least 0.
+double PortProblem::slope_over_substep(std::size_t k, double force) const noexcept {
+  const double change = dynamics_end_v_[k] - v_begin_[k];
+  return change != 0 ? std::max(0.0, (law_at_end(k, -change).force - force) / change) : 0.0;
+}
+
 // Slopes of the laws, by row. False: none holds its row.
 bool PortProblem::find_slopes(double h) noexcept {
   const std::size_t rows = mechanism_.row_count();
@@ -44,7 +51,7 @@ bool PortProblem::find_slopes(double h) noexcept {
     const double ratio = ratio_of(row);
     place_[row] = k;
     held_force_[k] = law.force;
-    hold_.law_slope[row] = ratio * ratio * std::max(0.0, -(law.d_v + 0.5 * h * law.d_x));
+    hold_.law_slope[row] = ratio * ratio * std::max(-(law.d_v + 0.5 * h * law.d_x), slope_over_substep(k, law.force));
     hold_.half_mobility[row] = 0.5 * h * W[row * rows + row];
     holds = holds || hold_.law_slope[row] * hold_.half_mobility[row] > kHolds;
   }

@@ -102,6 +102,7 @@ class PortProblem final : private multibody::RowLawChange {
   // hold_rows.cpp: laws that hold their rows within a sub-step of rk4
   [[nodiscard]] coupling::RowForce law_at_end(std::size_t k, double speed_change) const noexcept;
   [[nodiscard]] double change(std::size_t row, double speed_change) const noexcept override;
+  [[nodiscard]] double slope_over_substep(std::size_t k, double force) const noexcept;
   [[nodiscard]] bool find_slopes(double h) noexcept;
   [[nodiscard]] bool find_gain(double h) noexcept;
   [[nodiscard]] multibody::RowHold* hold_rows(double h) noexcept;

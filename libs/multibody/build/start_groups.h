@@ -4,9 +4,8 @@
 //
 // A group with a loop, a gear, or a segmented body of which joints hold more than its root is held: its bodies start
 // undeformed here (welded_start.h; modes in loops: loop_rest.h). A group that nothing connects to Ground falls: gravity
-// strains none of its bodies, and they start undeformed. A straight start that the scene selects for a segmented
-// body is that of all. All others start at rest (settle_segments(), settle_modes()). Internal to the
-// library.
+// strains none of its bodies, and they start undeformed. A straight start that the scene selects for a segmented body
+// is that of all. All others start at rest (settle_segments(), settle_modes()). Internal to the library.
 #pragma once
 
 #include <vector>
