@@ -68,9 +68,13 @@ void Mechanism::free_accelerations_at(double time, std::span<double> a_free) noe
   mark_changed();
 }
 
-bool Mechanism::advance(double h, std::span<const double> mean, std::span<const double> slope) noexcept {
+bool Mechanism::advance(double h, std::span<const double> mean, std::span<const double> slope,
+                        multibody::RowHold* hold) noexcept {
   mark_changed();
-  return dynamics_.advance(model_, state_, workspace_, h, mean, slope);
+  workspace_.hold = hold;
+  const bool is_sound = dynamics_.advance(model_, state_, workspace_, h, mean, slope);
+  workspace_.hold = nullptr;
+  return is_sound;
 }
 
 void Mechanism::observe() noexcept {

@@ -15,6 +15,7 @@
 #include "core/state_hash.h"
 #include "multibody/formulations/dynamics.h"
 #include "multibody/formulations/formulation.h"
+#include "multibody/formulations/row_hold.h"
 #include "scene/scene.h"
 
 namespace slew::mechanics_node {
@@ -75,8 +76,10 @@ class Mechanism {
   }
   // Free accelerations of all rows for the present motion under the loads of another time [s].
   void free_accelerations_at(double time, std::span<double> a_free) noexcept;
-  // Advances by h [s] with the row forces mean + (t - h/2) slope. False: see multibody::Dynamics::advance().
-  [[nodiscard]] bool advance(double h, std::span<const double> mean, std::span<const double> slope) noexcept;
+  // Advances by h [s] with the row forces mean + (t - h/2) slope, which hold corrects in the stages of rk4 (null: not).
+  // False: see multibody::Dynamics::advance().
+  [[nodiscard]] bool advance(double h, std::span<const double> mean, std::span<const double> slope,
+                             multibody::RowHold* hold = nullptr) noexcept;
   // Shows the motion of the joint coordinates, after evaluate().
   void observe() noexcept;
   // The workspace for variables, after observe(): with the motion of all elements, of which a step computes only those

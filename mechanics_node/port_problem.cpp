@@ -24,14 +24,6 @@ constexpr int kStepsOfBlow = 3;
 // depth of the divisions of a sub-step near a stop: 4^5 = 1024 parts
 constexpr std::size_t kDivisions = 5;
 
-int least_micro_steps(double h) noexcept {
-  return std::max(1, static_cast<int>(std::ceil(h / kMicroStep - 1e-9)));
-}
-
-bool takes_blow(double viscous, double W, double delta) noexcept {
-  return viscous * W * delta > 1;
-}
-
 std::vector<Port> ports_of(const scene::Scene& scene) {
   std::vector<Port> ports;
   for (const scene::PortDef& port : scene.ports) {
@@ -49,14 +41,6 @@ bool has_stops(const std::vector<Port>& ports, const multibody::Model& model) no
 
 }  // namespace
 
-int micro_step_count(double h, std::span<const double> viscous, std::span<const double> W) noexcept {
-  const int count = least_micro_steps(h);
-  for (std::size_t k = 0; k < viscous.size(); ++k) {
-    if (takes_blow(viscous[k], W[k], h / count)) return std::max(count, kStepsOfBlow);
-  }
-  return count;
-}
-
 PortProblem::PortProblem(const scene::Scene& scene, Mechanism& mechanism, PartnerForce& partner, RowMobility& mobility)
     : mechanism_(mechanism),
       partner_(partner),
@@ -69,7 +53,14 @@ PortProblem::PortProblem(const scene::Scene& scene, Mechanism& mechanism, Partne
       force_mean_(mechanism.row_count()),
       force_slope_(mechanism.row_count()),
       v_begin_(mechanism.row_count()),
-      z_begin_(mechanism.row_count()) {
+      z_begin_(mechanism.row_count()),
+      hold_(mechanism.row_count(), mechanism.state().u.size()),
+      held_matrix_(mechanism.row_count() * mechanism.row_count()),
+      place_(mechanism.row_count()),
+      held_force_(mechanism.row_count()),
+      dynamics_end_x_(mechanism.row_count()),
+      dynamics_end_v_(mechanism.row_count()) {
+  hold_.laws = this;
   active_.reserve(mechanism.row_count());
   if (!has_stops(ports_, mechanism.model())) return;
   for (std::size_t depth = 0; depth < kDivisions; ++depth) starts_.push_back(mechanism.snapshot());
@@ -174,15 +165,14 @@ void PortProblem::take_row_forces() noexcept {
   }
 }
 
-// Micro-steps of the port problem: more where the viscous friction of a joint takes the speed of its row within one.
-int PortProblem::micro_steps_of(double h) noexcept {
-  const int count = least_micro_steps(h);
+// True if the viscous friction of a joint takes the speed of its row within delta [s].
+bool PortProblem::damps_within(double delta) noexcept {
   for (std::size_t k = 0; k < active_.size(); ++k) {
     if (is_port(active_[k])) continue;
     const double viscous = multibody::law_of(mechanism_.model(), active_[k]).viscous;
-    if (takes_blow(viscous, dynamics_.W()[k * active_.size() + k], h / count)) return std::max(count, kStepsOfBlow);
+    if (viscous * dynamics_.W()[k * active_.size() + k] * delta > 1) return true;
   }
-  return count;
+  return false;
 }
 
 coupling::PortStep PortProblem::advance(const Step& step, double h, bool is_first_substep) noexcept {
@@ -196,9 +186,11 @@ coupling::PortStep PortProblem::advance(const Step& step, double h, bool is_firs
   if (is_first_substep) {
     partner_.remember(step.n, dynamics_.x().first(ports_.size()), dynamics_.z().first(ports_.size()));
   }
-  coupling::PortStep solved = dynamics_.solve(h, micro_steps_of(h), laws_);
+  int micro_steps = std::max(1, static_cast<int>(std::ceil(h / kMicroStep - 1e-9)));
+  if (damps_within(h / micro_steps)) micro_steps = std::max(micro_steps, kStepsOfBlow);
+  coupling::PortStep solved = dynamics_.solve(h, micro_steps, laws_);
   take_row_forces();
-  const bool is_closed = mechanism_.advance(h, force_mean_, force_slope_);
+  const bool is_closed = mechanism_.advance(h, force_mean_, force_slope_, hold_rows(h));
   solved.has_converged = solved.has_converged && is_closed;
   return solved;
 }

@@ -5,7 +5,8 @@
 //   rows x, v, a_free, W  ->  PortDynamics: mean and slope of every row's force  ->  one step of the mechanism.
 // What a_free changes by during a sub-step is continued as over the sub-step before, unless an input, a parameter or a
 // contact has changed since (coupling/trends.h); loads that follow a table are looked up ahead (timed_loads.h). A
-// sub-step that meets a stop may be repeated in parts (stops.cpp).
+// sub-step that meets a stop may be repeated in parts (stops.cpp). Rows that friction or a stop holds answer the modes
+// and springs behind them in every stage of rk4 (hold_rows.cpp).
 #pragma once
 
 #include <cstddef>
@@ -24,11 +25,7 @@
 
 namespace slew::mechanics_node {
 
-// Micro-steps of the port problem over h [s], for rows with the viscous friction of their joints (0 of a port) and
-// their own mobility.
-[[nodiscard]] int micro_step_count(double h, std::span<const double> viscous, std::span<const double> W) noexcept;
-
-class PortProblem {
+class PortProblem final : private multibody::RowLawChange {
  public:
   // mechanism, partner and mobility outlive this. Allocates; nothing else does.
   PortProblem(const scene::Scene& scene, Mechanism& mechanism, PartnerForce& partner, RowMobility& mobility);
@@ -98,9 +95,17 @@ class PortProblem {
   void load_rows(double h) noexcept;
   void load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept;
   void take_row_forces() noexcept;
-  [[nodiscard]] int micro_steps_of(double h) noexcept;
+  [[nodiscard]] bool damps_within(double delta) noexcept;
   [[nodiscard]] coupling::PortStep advance(const Step& step, double h, bool is_first_substep) noexcept;
   void finish_substep(const Step& step) noexcept;
+
+  // hold_rows.cpp: laws that hold their rows within a sub-step of rk4
+  [[nodiscard]] coupling::RowForce law_at_end(std::size_t k, double speed_change) const noexcept;
+  [[nodiscard]] double change(std::size_t row, double speed_change) const noexcept override;
+  [[nodiscard]] double slope_over_substep(std::size_t k, double force) const noexcept;
+  [[nodiscard]] bool find_slopes(double h) noexcept;
+  [[nodiscard]] bool find_gain(double h) noexcept;
+  [[nodiscard]] multibody::RowHold* hold_rows(double h) noexcept;
 
   // stops.cpp: repetition in parts; depth: number of divisions so far
   void take_substep(const Step& step, double h, bool is_first, std::size_t depth) noexcept;
@@ -127,6 +132,10 @@ class PortProblem {
   std::vector<double> force_mean_, force_slope_;  // by row, for the mechanism's step
   std::vector<Mechanism::Snapshot> starts_;       // of sub-steps near a stop, by depth; empty: no row has a stop
   std::vector<double> v_begin_, z_begin_;         // by row of the port problem
+  multibody::RowHold hold_;
+  std::vector<double> held_matrix_;                                   // by row and row
+  std::vector<std::size_t> place_;                                    // in the port problem, by row
+  std::vector<double> held_force_, dynamics_end_x_, dynamics_end_v_;  // at its end, by row of the port problem
 };
 
 }  // namespace slew::mechanics_node

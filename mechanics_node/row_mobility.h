@@ -32,11 +32,13 @@ class RowMobility {
   // Pre-condition of both: the mechanism is evaluated. The result is valid until the next call or evaluation.
   [[nodiscard]] Rows over_exchange() noexcept;
   [[nodiscard]] Rows over_substep(double h) noexcept;
+  // Modes, or springs that change the rows over a sub-step, behind the rows of rk4.
+  [[nodiscard]] bool springs_answer_within_substep() const noexcept { return springs_answer_; }
 
  private:
   [[nodiscard]] Rows at_instant() const noexcept;
   [[nodiscard]] Rows over(double h, multibody::StepShares shares) noexcept;
-  [[nodiscard]] bool differs(std::size_t count, std::span<const double> W, std::span<const double> W_h) const noexcept;
+  [[nodiscard]] bool differs(std::size_t count, double change, std::span<const double> W_h) const noexcept;
 
   Mechanism& mechanism_;
   double exchange_interval_;
@@ -44,6 +46,7 @@ class RowMobility {
   std::unique_ptr<multibody::StepRows> step_rows_;  // null: the rows of the instant hold over any interval
   bool varies_over_exchange_ = false;               // even without active contacts
   bool varies_over_substep_ = false;                // the same for long sub-steps and all rows
+  bool springs_answer_ = false;
 };
 
 }  // namespace slew::mechanics_node

@@ -9,7 +9,6 @@
 #include "core/display.h"
 #include "coupling/static_forces.h"
 #include "hydraulics/circuit.h"
-#include "mechanics_node/held_rows.h"
 #include "scene/ports.h"
 
 namespace slew::analysis {
@@ -37,25 +36,16 @@ std::string unheld_warning(const scene::Scene& scene, const session::DirectSessi
       forces);
 }
 
-void add_unstable_row(const scene::Scene& scene, std::vector<std::string>& warnings) {
-  if (const auto row = mechanics_node::find_unstable_row(scene)) warnings.push_back(mechanics_node::warning_of(*row));
-}
-
 }  // namespace
 
 std::vector<std::string> start_warnings(const scene::Scene& scene, const session::DirectSession& session) {
   std::vector<std::string> warnings = coupling_warnings(scene, session);
-  add_unstable_row(scene, warnings);
   if (std::string unheld = unheld_warning(scene, session); !unheld.empty()) warnings.push_back(std::move(unheld));
   return warnings;
 }
 
 std::vector<std::string> start_warnings(const scene::Scene& scene) {
-  if (scene.ports.empty()) {
-    std::vector<std::string> warnings;
-    add_unstable_row(scene, warnings);
-    return warnings;
-  }
+  if (scene.ports.empty()) return {};
   session::DirectSession session(scene);
   if (!session.start().is_ok()) return {};
   return start_warnings(scene, session);

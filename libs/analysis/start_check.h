@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Warnings that need a started session and come before a run: its coupling levels, loads that the pressures of common
-// volumes cannot hold, and rows that rk4 does not hold against modes (mechanics_node/held_rows.h).
+// Warnings that need a started session and come before a run: its coupling levels, and loads that the pressures of
+// common volumes cannot hold.
 #pragma once
 
 #include <string>
@@ -11,9 +11,8 @@
 
 namespace slew::analysis {
 
-// coupling_warnings(), a sentence about the row that rk4 does not hold, and one sentence with the actuators and the
-// forces that an equilibrium start leaves without pressure (hydraulics/start_pressures.h). Pre-condition: session is
-// started and of this scene.
+// coupling_warnings(), and one sentence with the actuators and the forces that an equilibrium start leaves without
+// pressure (hydraulics/start_pressures.h). Pre-condition: session is started and of this scene.
 [[nodiscard]] std::vector<std::string> start_warnings(const scene::Scene& scene, const session::DirectSession& session);
 
 // The same for a scene that is not started yet; none when it cannot start, which its run reports.

@@ -11,6 +11,7 @@
 #include "multibody/build/build_forces.h"
 #include "multibody/build/build_rows.h"
 #include "multibody/build/loop_rest.h"
+#include "multibody/build/start_groups.h"
 #include "multibody/build/start_pose.h"
 #include "multibody/build/welded_start.h"
 #include "multibody/constraints/constraint.h"
@@ -68,20 +69,32 @@ class Builder {
     model_.contact = build_contacts(def_, model_);
     lump_links(model_);
     for (Cut& cut : model_.cuts) add_supports(model_, cut);
-    // sagging bodies would leave loops open
-    const bool has_loops = model_.has_closing_rows();
-    if (has_loops) straighten_segments(model_, model_.start_q, model_.start_u);
-    // so would those in the poses of the mechanism in which they are rigid
-    const bool is_settled = has_loops || welded || (settle_segments(model_) && settle_modes(model_));
+    // sagging bodies would leave loops open, and so would those in the poses of the mechanism in which they are rigid:
+    // beside such ones the others settle once these have closed
+    const bool has_loops = model_.has_closing_rows(), all_settle = !has_loops && !welded;
+    if (has_loops || !welded) straighten_segments(model_, model_.start_q, model_.start_u);
+    bool is_settled = !all_settle || settle();
     report = assemble(model_);
-    report.is_settled = is_settled;
     if (has_loops) rest_in_loops(def_, model_, report);
     if (welded) take_over(*welded, model_, report);
+    if (!all_settle && !model_.rests_in_loops) is_settled = settle();
+    report.is_settled = is_settled;
     return std::move(model_);
   }
 
  private:
   [[nodiscard]] int body_index(const std::string& name) const { return number_of_(name); }
+
+  // bodies whose group has a static equilibrium that is computed
+  bool settle() {
+    const StartGroups groups = find_start_groups(model_);
+    const auto selected = [](const std::vector<StartRest>& rests) {
+      std::vector<bool> found;
+      for (const StartRest rest : rests) found.push_back(rest == StartRest::computed);
+      return found;
+    };
+    return settle_segments(model_, selected(groups.segmented)) && settle_modes(model_, selected(groups.parts));
+  }
 
   void add_bodies() {
     model_.bodies.resize(def_.bodies.size() + 1);

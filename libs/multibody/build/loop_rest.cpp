@@ -8,6 +8,7 @@
 #include "multibody/build/assembler.h"
 #include "multibody/build/build_rows.h"
 #include "multibody/build/equilibrium.h"
+#include "multibody/build/start_groups.h"
 #include "multibody/model/state.h"
 
 namespace slew::multibody {
@@ -34,6 +35,11 @@ void rest_in_loops(const MechanicsDef& def, Model& model, AssemblyReport& report
   const bool has_sound_loops = report.open.empty() && report.locking.empty();
   if (!bends || !has_sound_loops || def.held_forces.empty() || !model.segmented.empty()) return;
   Model held = model;
+  // a body that falls has no weight to carry
+  const StartGroups groups = find_start_groups(model);
+  for (std::size_t p = 0; p < held.parts.size(); ++p) {
+    if (groups.parts[p] == StartRest::falls) held.parts[p].is_start_given = true;
+  }
   held.rows.clear();
   for (const std::string& force : def.held_forces) add_row(def, force, held);
   State state = start_state(held);

@@ -9,6 +9,7 @@
 
 #include "core/display.h"
 #include "multibody/build/assembly.h"
+#include "multibody/build/start_groups.h"
 #include "multibody/build/validate.h"
 #include "multibody/flexible/deflection.h"
 #include "multibody/formulations/formulation.h"
@@ -26,17 +27,25 @@ namespace {
 // ratio by which a body's mass may extend beyond its points
 constexpr double kLargestGyration = 3;
 
-// Whether flexible bodies start undeformed, whatever their loads (Builder::run()).
-bool is_start_undeformed(const Model& model) {
-  return model.has_closing_rows() || std::any_of(model.segmented.begin(), model.segmented.end(),
-                                                 [](const SegmentedPart& part) { return !part.is_free; });
+// that a body starts undeformed because it falls: the weight would strain it in its joints alone
+void note_fall(const Model& model, const std::string& path, Problems& warnings) {
+  if (norm(model.gravity) == 0) return;
+  warnings.push_back({path,
+                      "the body starts undeformed: no joint, force element or touching contact connects it to Ground, "
+                      "and its weight does not strain it while it falls",
+                      "nothing to do", ""});
 }
 
 }  // namespace
 
 void find_start_deflections(const Model& model, Problems& warnings) {
-  for (const FlexiblePart& part : model.parts) {
-    if (is_start_undeformed(model) && !model.rests_in_loops && !part.is_start_given) {
+  const StartGroups groups = find_start_groups(model);
+  for (std::size_t p = 0; p < model.parts.size(); ++p) {
+    const FlexiblePart& part = model.parts[p];
+    if (groups.parts[p] == StartRest::falls && !part.is_start_given) {
+      note_fall(model, part.name + ".flex_modes", warnings);
+    }
+    if (groups.parts[p] == StartRest::held && !model.rests_in_loops && !part.is_start_given) {
       warnings.push_back(
           {part.name + ".flex_modes",
            "the body starts undeformed, moves as a rigid one that the joints allow, and swings: in a mechanism with "
@@ -93,8 +102,11 @@ void find_moved_modes(const MechanicsDef& mechanics, const Model& model, Problem
 void find_start_bends(const Model& model, Problems& warnings) {
   Workspace ws(model);
   observe(model, start_state(model), ws);
-  for (const SegmentedPart& part : model.segmented) {
-    if (part.start == SegmentStart::at_rest && is_start_undeformed(model)) {
+  const StartGroups groups = find_start_groups(model);
+  for (std::size_t p = 0; p < model.segmented.size(); ++p) {
+    const SegmentedPart& part = model.segmented[p];
+    if (groups.segmented[p] == StartRest::falls) note_fall(model, part.name + ".segments", warnings);
+    if (groups.segmented[p] == StartRest::held && part.start == SegmentStart::at_rest) {
       warnings.push_back({part.name + ".segments",
                           part.is_free
                               ? "the body starts undeformed, moves as a rigid one that the joints allow, and "

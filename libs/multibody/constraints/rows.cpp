@@ -101,57 +101,66 @@ void write_jacobian(const Model& model, const Workspace& ws, const Row& row, std
   }
 }
 
-void evaluate_row(const Model& model, const State& state, std::size_t k, Workspace& ws) noexcept {
-  const Row& row = model.rows[k];
-  const std::size_t dof = ws.udot.size();
-  double bias = 0;
+// coordinate, speed, and x'' with u' = 0
+struct RowMotion {
+  double x = 0, v = 0, bias = 0;
+};
+
+// of every row but those of a joint of the tree, which are coordinates of the state
+RowMotion motion_between(const Model& model, const Row& row, const Workspace& ws) noexcept {
   switch (row.kind) {
     case RowKind::length: {
       const LineMotion& line = ws.lines[at(row.element)];
-      ws.row_x[k] = line.length;
-      ws.row_v[k] = line.rate;
-      bias = bias_of_length(model.lines[at(row.element)], line, ws);
-      break;
+      return {line.length, line.rate, bias_of_length(model.lines[at(row.element)], line, ws)};
     }
     case RowKind::angle: {
       const AngleMotion& angle = ws.angles[at(row.element)];
-      ws.row_x[k] = angle.angle;
-      ws.row_v[k] = angle.rate;
-      bias = bias_of_angle(model.angles[at(row.element)], angle, ws);
-      break;
+      return {angle.angle, angle.rate, bias_of_angle(model.angles[at(row.element)], angle, ws)};
     }
     case RowKind::ball: {
       const RowValue turn = turn_of_ball(model, row, ws);
       const Joint& joint = model.joints[at(row.element)];
-      ws.row_x[k] = 0;
-      ws.row_v[k] = turn.rate;
-      bias = acceleration_of(turn, ws.motion[at(model.bodies[at(joint.body1)].link)],
-                             ws.motion[at(model.bodies[at(joint.body2)].link)]);
-      break;
+      return {0, turn.rate,
+              acceleration_of(turn, ws.motion[at(model.bodies[at(joint.body1)].link)],
+                              ws.motion[at(model.bodies[at(joint.body2)].link)])};
     }
     case RowKind::joint: {
-      if (row.link == 0) {
-        const RowValue cut = coordinate_of_cut(model, row, ws);
-        const Constraint& joint = cut_of(model, row);
-        ws.row_x[k] = cut.g;
-        ws.row_v[k] = cut.rate;
-        bias = acceleration_of(cut, ws.motion[at(joint.link1)], ws.motion[at(joint.link2)]);
-        break;
-      }
-      const Link& link = model.links[at(row.link)];
-      ws.row_x[k] = state.q[at(link.q + row.place)];
-      ws.row_v[k] = state.u[at(link.u + row.place)];
-      if (const int drive = link.drive[at(row.place)]; drive >= 0) bias = ws.drives[at(drive)].acceleration;
-      break;
+      const RowValue cut = coordinate_of_cut(model, row, ws);
+      const Constraint& joint = cut_of(model, row);
+      return {cut.g, cut.rate, acceleration_of(cut, ws.motion[at(joint.link1)], ws.motion[at(joint.link2)])};
     }
   }
+  return {};
+}
+
+bool is_in_tree(const Row& row) noexcept {
+  return row.kind == RowKind::joint && row.link > 0;
+}
+
+double bias_in_tree(const Link& link, const Row& row, const Workspace& ws) noexcept {
+  const int drive = link.drive[at(row.place)];
+  return drive >= 0 ? ws.drives[at(drive)].acceleration : 0.0;
+}
+
+void evaluate_row(const Model& model, const State& state, std::size_t k, Workspace& ws) noexcept {
+  const Row& row = model.rows[k];
+  const std::size_t dof = ws.udot.size();
+  RowMotion motion;
+  if (is_in_tree(row)) {
+    const Link& link = model.links[at(row.link)];
+    motion = {state.q[at(link.q + row.place)], state.u[at(link.u + row.place)], bias_in_tree(link, row, ws)};
+  } else {
+    motion = motion_between(model, row, ws);
+  }
+  ws.row_x[k] = motion.x;
+  ws.row_v[k] = motion.v;
   if (ws.row_is_active[k] == 0) {
     ws.row_a_free[k] = 0;
     return;
   }
   const std::span<double> J(ws.row_J.data() + k * dof, dof);
   write_jacobian(model, ws, row, J);
-  ws.row_a_free[k] = bias + fixed_dot(J, ws.udot_free);
+  ws.row_a_free[k] = motion.bias + fixed_dot(J, ws.udot_free);
   const std::span<const int> supports(model.supports.data() + row.first_support,
                                       model.supports.data() + row.support_end);
   const std::span<double> residual(ws.row_residual.data() + k * dof, dof), rate(ws.row_rate.data() + k * dof, dof);
@@ -164,6 +173,15 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
 }
 
 }  // namespace
+
+double row_acceleration(const Model& model, const Workspace& ws, std::size_t row, std::span<const double> udot,
+                        std::span<double> J) noexcept {
+  const Row& own = model.rows[row];
+  const double bias =
+      is_in_tree(own) ? bias_in_tree(model.links[at(own.link)], own, ws) : motion_between(model, own, ws).bias;
+  write_jacobian(model, ws, own, J);
+  return bias + fixed_dot(J, udot);
+}
 
 const JointLaw& law_of(const Model& model, std::size_t row) noexcept {
   const Row& own = model.rows[row];

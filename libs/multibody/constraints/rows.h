@@ -11,6 +11,11 @@ namespace slew::multibody {
 // Needs motion, elements and factors of the same state, and ws.udot_free.
 void evaluate_rows(const Model& model, const State& state, Workspace& ws) noexcept;
 
+// x'' of an active row under u', from the motion of this q and u with u' = 0; J: its gradient, overwritten, zero
+// outside of the row's path.
+[[nodiscard]] double row_acceleration(const Model& model, const Workspace& ws, std::size_t row,
+                                      std::span<const double> udot, std::span<double> J) noexcept;
+
 // Friction and limits of a joint's row at these coordinates and speeds of all rows, at the end of h [s] that began with
 // the bending z; h = 0: at the instant. Pre-condition: the row is a joint's.
 [[nodiscard]] JointForce joint_force(const Model& model, std::size_t row, std::span<const double> x,

@@ -55,8 +55,9 @@ void straighten_segments(const Model& model, std::span<double> q, std::span<doub
 // Puts chains at rest in the pose that the joints have at the start, in the connectors' relative coordinates x:
 //   R_1^T sum F = 0,   R_1^T sum M = 0     of all loads beyond each connector, about its far end           (1)
 //   x <- x + K_b^-1 (1) of each connector, and if that does not shrink by half, Newton's method             (2)
-// with gravity, springs, constant loads and the beams themselves, all joints held; row forces are not in it. False: no
-// rest is found, as beyond a buckling load; the chains stay straight.
-[[nodiscard]] bool settle_segments(Model& model);
+// with gravity, springs, constant loads and the beams themselves, all joints held; row forces are not in it. Chains
+// that are not selected, and all that are not free, keep their start. False: no rest is found, as beyond a buckling
+// load; the chains stay straight. selected: by Model::segmented.
+[[nodiscard]] bool settle_segments(Model& model, const std::vector<bool>& selected);
 
 }  // namespace slew::multibody

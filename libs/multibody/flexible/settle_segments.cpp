@@ -30,10 +30,11 @@ constexpr double kSettlingProbe = 1e-7;     // step of the differences, the same
 
 class Chains {
  public:
-  explicit Chains(const Model& model) : model_(model), carrier_(model.links.size()) {
+  Chains(const Model& model, const std::vector<bool>& selected) : model_(model), carrier_(model.links.size()) {
     for (std::size_t i = 1; i < carrier_.size(); ++i) carrier_[i] = model.links[i].parent;
-    for (const SegmentedPart& part : model.segmented) {
-      if (!part.is_free) continue;
+    for (std::size_t p = 0; p < model.segmented.size(); ++p) {
+      const SegmentedPart& part = model.segmented[p];
+      if (!part.is_free || !selected[p]) continue;
       for (std::size_t k = 0; k < part.source->connectors.size(); ++k) {
         const FramePair& frames = beam_of(part, k).frames;
         carrier_[at(frames.link2)] = frames.link1;
@@ -118,8 +119,8 @@ class Chains {
 
 class Settling {
  public:
-  explicit Settling(Model& model)
-      : model_(model), chains_(model), ws_(model), state_(start_state(model)), rest_(state_.u.size()) {}
+  Settling(Model& model, const std::vector<bool>& selected)
+      : model_(model), chains_(model, selected), ws_(model), state_(start_state(model)), rest_(state_.u.size()) {}
 
   bool run() {
     begin_contacts(model_, state_, ws_);
@@ -268,22 +269,15 @@ class Settling {
 
 void straighten_segments(const Model& model, std::span<double> q, std::span<double> u) {
   if (model.segmented.empty()) return;
-  const Chains chains(model);
+  const Chains chains(model, std::vector<bool>(model.segmented.size(), true));
   if (chains.count() == 0) return;
   Workspace ws(model);
   chains.place(std::vector<double>(chains.count()), q, u, ws);
 }
 
-bool settle_segments(Model& model) {
-  if (model.segmented.empty()) return true;
-  straighten_segments(model, model.start_q, model.start_u);
-  const bool is_straight = std::any_of(model.segmented.begin(), model.segmented.end(),
-                                       [](const SegmentedPart& part) { return part.start == SegmentStart::straight; });
-  if (is_straight || std::none_of(model.segmented.begin(), model.segmented.end(),
-                                  [](const SegmentedPart& part) { return part.is_free; })) {
-    return true;
-  }
-  return Settling(model).run();
+bool settle_segments(Model& model, const std::vector<bool>& selected) {
+  const bool any = std::find(selected.begin(), selected.end(), true) != selected.end();
+  return !any || Settling(model, selected).run();
 }
 
 }  // namespace slew::multibody

@@ -24,10 +24,13 @@ constexpr double kCurvatureProbe = 1e-2;  // the same, of second differences
 
 class ModalSettling {
  public:
-  explicit ModalSettling(Model& model) : model_(model), ws_(model), state_(start_state(model)) {
+  ModalSettling(Model& model, const std::vector<bool>& selected)
+      : model_(model), ws_(model), state_(start_state(model)) {
     std::fill(state_.u.begin(), state_.u.end(), 0.0);
-    for (const FlexiblePart& part : model_.parts) {
-      if (part.is_start_given) continue;
+    for (std::size_t p = 0; p < model_.parts.size(); ++p) {
+      const FlexiblePart& part = model_.parts[p];
+      if (part.is_start_given || !selected[p]) continue;
+      parts_.push_back(&part);
       for (std::size_t k = 0; k < part.modes; ++k) {
         free_.push_back({static_cast<std::size_t>(part.q) + k, static_cast<std::size_t>(part.u) + k});
       }
@@ -114,14 +117,13 @@ class ModalSettling {
   bool correction_of_bodies() {
     find_force();
     std::size_t first = 0;
-    for (const FlexiblePart& part : model_.parts) {
-      if (part.is_start_given) continue;
-      std::vector<double> factor = part.stiffness;
-      const int modes = static_cast<int>(part.modes);
+    for (const FlexiblePart* part : parts_) {
+      std::vector<double> factor = part->stiffness;
+      const int modes = static_cast<int>(part->modes);
       if (!math::factorize_cholesky(factor.data(), modes)) return false;
       math::substitute_forward(factor.data(), modes, step_.data() + first);
       math::substitute_backward(factor.data(), modes, step_.data() + first);
-      first += part.modes;
+      first += part->modes;
     }
     return true;
   }
@@ -200,14 +202,16 @@ class ModalSettling {
   Model& model_;
   Workspace ws_;
   State state_;
-  std::vector<Mode> free_;    // those of bodies without a given start
-  std::vector<double> step_;  // by free mode
+  std::vector<const FlexiblePart*> parts_;  // selected, without a given start
+  std::vector<Mode> free_;                  // of these
+  std::vector<double> step_;                // by free mode
 };
 
 }  // namespace
 
-bool settle_modes(Model& model) {
-  return model.parts.empty() || ModalSettling(model).run();
+bool settle_modes(Model& model, const std::vector<bool>& selected) {
+  const bool any = std::find(selected.begin(), selected.end(), true) != selected.end();
+  return !any || ModalSettling(model, selected).run();
 }
 
 }  // namespace slew::multibody

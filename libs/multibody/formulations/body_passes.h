@@ -70,6 +70,11 @@ void find_rows(const Model& model, const BodyModel& body, const State& joints, W
 void add_row(const BodyRow& row, double force, const math::BlockLdl& ldl, std::span<double> x) noexcept;
 [[nodiscard]] double along(const BodyRow& row, const math::BlockLdl& ldl, std::span<const double> x) noexcept;
 
+// (2) of row_hold.h at a stage of rk4: adds the answers of the rows' laws to the accelerations of its motion.
+// responses: by row, of the start; both by first_row().
+void answer_rows(const Model& model, const BodyModel& body, const State& joints, const math::BlockLdl& ldl,
+                 std::span<const double> responses, Workspace& ws, std::span<double> accelerations) noexcept;
+
 // Velocities or accelerations of links and modes in a solution, laid out as BodyState::u.
 void read_bodies(const BodyModel& body, const math::BlockLdl& ldl, std::span<const double> solution,
                  std::span<double> u) noexcept;

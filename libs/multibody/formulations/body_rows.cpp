@@ -2,6 +2,7 @@
 #include "core/index.h"
 #include "multibody/constraints/rows.h"
 #include "multibody/formulations/body_passes.h"
+#include "multibody/formulations/row_hold.h"
 
 namespace slew::multibody {
 
@@ -111,6 +112,26 @@ double along(const BodyRow& row, const math::BlockLdl& ldl, std::span<const doub
   add(row.link1, row.J.v1, row.J.w1);
   add(row.link2, row.J.v2, row.J.w2);
   return sum;
+}
+
+void answer_rows(const Model& model, const BodyModel& body, const State& joints, const math::BlockLdl& ldl,
+                 std::span<const double> responses, Workspace& ws, std::span<double> accelerations) noexcept {
+  RowHold& hold = *ws.hold;
+  const std::size_t size = accelerations.size();
+  for (std::size_t k = 0; k < model.rows.size(); ++k) {
+    double excess = 0;
+    if (ws.row_is_active[k] != 0) {
+      const BodyRow row = body_row(model, body, joints, model.rows[k], ws);
+      excess = row.bias + along(row, ldl, accelerations) - hold.expected(k, ws.time);
+    }
+    hold.set_excess(k, excess);
+  }
+  const std::span<const double> forces = hold.answer();
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    if (ws.row_is_active[k] == 0 || forces[k] == 0) continue;
+    const double* response = responses.data() + k * size;
+    for (std::size_t i = 0; i < size; ++i) accelerations[i] += response[i] * forces[k];
+  }
 }
 
 }  // namespace slew::multibody

@@ -21,6 +21,7 @@ bool find_accelerations(const Model& model, const BodyModel& body, const BodySta
     add_row(body_row(model, body, bws.stage_joints, model.rows[k], ws), forces[k], bws.ldl, bws.solution);
   }
   bws.ldl.solve(bws.solution);
+  if (ws.hold != nullptr) answer_rows(model, body, bws.stage_joints, bws.ldl, bws.responses, ws, bws.solution);
   read_bodies(body, bws.ldl, bws.solution, bws.udot);
   return is_regular;
 }
@@ -122,6 +123,10 @@ bool advance(const Model& model, const BodyModel& body, BodyState& state, State&
              BodyWorkspace& bws, double h, std::span<const double> mean, std::span<const double> slope) noexcept {
   for (std::size_t k = 0; k < mean.size(); ++k) bws.row_force[k] = mean[k] - 0.5 * h * slope[k];
   accelerations(model, body, bws, bws.row_force, bws.udot);
+  if (ws.hold != nullptr) {
+    answer_rows(model, body, joints, bws.ldl, bws.responses, ws, bws.solution);
+    read_bodies(body, bws.ldl, bws.solution, bws.udot);
+  }
   const bool is_regular = step_by_runge_kutta(model, state, joints, ws, bws, h, mean, slope, [&](BodyState& stage) {
     const bool is_near_singular = bws.ldl.smallest_pivot() < kNearSingular;
     const bool is_closed = !is_near_singular || project(model, body, stage, bws.stage_joints, ws, bws);

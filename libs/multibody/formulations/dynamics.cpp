@@ -11,6 +11,7 @@
 #include "multibody/constraints/rows.h"
 #include "multibody/contacts/contact_passes.h"
 #include "multibody/formulations/passes.h"
+#include "multibody/formulations/row_hold.h"
 
 namespace slew::multibody {
 namespace {
@@ -95,6 +96,40 @@ void row_forces_at(double t, double h, std::span<const double> mean, std::span<c
   for (std::size_t k = 0; k < mean.size(); ++k) forces[k] = mean[k] + (t - 0.5 * h) * slope[k];
 }
 
+// u' of a stage with the answer of the rows' laws, (2) of row_hold.h
+void answer_excess(Workspace& ws) noexcept {
+  const std::span<const double> forces = ws.hold->answer();
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    if (ws.row_is_active[k] == 0 || forces[k] == 0) continue;
+    const std::span<const double> column = ws.hold->column(k);
+    for (std::size_t j = 0; j < column.size(); ++j) ws.udot[j] += column[j] * forces[k];
+  }
+}
+
+// the first stage, after accelerations() of the rows' forces; also takes the columns
+void hold_at_start(const Model& model, double time, Workspace& ws) noexcept {
+  const std::size_t rows = model.rows.size();
+  for (std::size_t k = 0; k < rows; ++k) {
+    double excess = 0;
+    if (ws.row_is_active[k] != 0) {
+      response_column(model, ws, static_cast<int>(k), ws.hold->column(k));
+      excess = ws.row_a_free[k] - ws.hold->expected(k, time);
+      for (std::size_t l = 0; l < rows; ++l) excess += ws.row_W[k * rows + l] * ws.row_force[l];
+    }
+    ws.hold->set_excess(k, excess);
+  }
+  answer_excess(ws);
+}
+
+void hold_at_stage(const Model& model, double time, Workspace& ws) noexcept {
+  for (std::size_t k = 0; k < model.rows.size(); ++k) {
+    const bool is_active = ws.row_is_active[k] != 0;
+    const double a = is_active ? row_acceleration(model, ws, k, ws.udot, ws.hold->gradient(k)) : 0.0;
+    ws.hold->set_excess(k, is_active ? a - ws.hold->expected(k, time) : 0.0);
+  }
+  answer_excess(ws);
+}
+
 // stages 2 to 4 and the sum; the first stage's u' is in ws.udot and its motion in ws
 bool finish_step(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                  std::span<const double> slope) noexcept {
@@ -115,6 +150,7 @@ bool finish_step(const Model& model, State& state, Workspace& ws, double h, std:
     if (is_near_singular(ws)) is_closed = project(model, ws.q_stage, ws.u_stage, ws) && is_closed;
     row_forces_at(time, h, mean, slope, forces);
     forward_dynamics(model, ws.q_stage, ws.u_stage, forces, ws);
+    if (ws.hold != nullptr) hold_at_stage(model, state.time + time, ws);
     coordinate_rates(model, ws, ws.q_stage, ws.u_stage, ws.qdot);
     combine(ws.q_sum, h * kWeight[stage], ws.qdot, ws.q_sum);
     combine(ws.u_sum, h * kWeight[stage], ws.udot, ws.u_sum);
@@ -140,6 +176,7 @@ bool advance(const Model& model, State& state, Workspace& ws, double h, std::spa
   SLEW_ASSERT(mean.size() == model.rows.size() && slope.size() == model.rows.size());
   row_forces_at(0, h, mean, slope, ws.row_force);
   accelerations(model, ws, ws.row_force, ws.udot);
+  if (ws.hold != nullptr) hold_at_start(model, state.time, ws);
   return finish_step(model, state, ws, h, mean, slope);
 }
 

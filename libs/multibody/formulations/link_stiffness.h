@@ -27,14 +27,18 @@ void add_stiffness(const Model& model, const Workspace& ws, ChangeWeights weight
 // Stiffness of a link's turn about its origin by a force F at s from it.
 void add_pull(int link, math::Vec3 s, math::Vec3 F, double weight, LinkMatrix& matrix) noexcept;
 
-// Calls couple(link1, link2) for every coupled pair of links, contacts included.
+// Calls couple(link1, link2) for the links of every element; for every coupled pair, contacts included.
 template <typename Couple>
-void for_each_coupling(const Model& model, Couple&& couple) {
+void for_each_element_coupling(const Model& model, Couple&& couple) {
   for (const LineElement& line : model.lines) couple(line.link1, line.link2);
   for (const AngleElement& angle : model.angles) couple(angle.link1, angle.link2);
   for_each_force_kind([&](auto row) {
     for (const auto& element : elements_of(row, model.elements)) row.for_each_coupling(element, couple);
   });
+}
+template <typename Couple>
+void for_each_coupling(const Model& model, Couple&& couple) {
+  for_each_element_coupling(model, couple);
   if (model.contact == nullptr) return;
   for (const contact::ContactPair& pair : model.contact->model.pairs()) {
     const auto link_of = [&](std::size_t shape) {

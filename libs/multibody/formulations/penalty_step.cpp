@@ -41,7 +41,9 @@ bool find_accelerations(const Model& model, const PenaltyModel& body, std::span<
   const bool is_regular = prepare(model, body, pws.stage, pws.stage_joints, ws, pws);
   see_change(pws);
   add_row_forces(model, body, pws.stage_joints, ws, forces, pws.ldl, pws.force);
-  return solve(model, body, ws, pws, pws.force, pws.target, pws.udot, pws.multipliers) && is_regular;
+  const bool is_solved = solve(model, body, ws, pws, pws.force, pws.target, pws.udot, pws.multipliers);
+  if (ws.hold != nullptr) answer_rows(model, body.bodies, pws.stage_joints, pws.ldl, pws.responses, ws, pws.udot);
+  return is_solved && is_regular;
 }
 
 // keeps the previous state in pws.sum
@@ -51,6 +53,7 @@ bool take_part(const Model& model, const PenaltyModel& body, BodyState& state, S
   keep_determinants(pws);
   pws.change = 0;
   accelerations(model, pws, pws.row_force, pws.udot);
+  if (ws.hold != nullptr) answer_rows(model, body.bodies, joints, pws.ldl, pws.responses, ws, pws.udot);
   return step_by_runge_kutta(model, state, joints, ws, pws, h, pws.part_mean, slope,
                              [&](const BodyState&) { return find_accelerations(model, body, pws.row_force, ws, pws); });
 }

@@ -103,6 +103,8 @@ struct LoopWorkspace {
   bool is_shown = false;                 // true if they are valid: see are_shown() of loops.h
 };
 
+class RowHold;
+
 struct Workspace {
   explicit Workspace(const Model& model);
   // compiled once, in the source file
@@ -137,6 +139,7 @@ struct Workspace {
   std::vector<double> row_W;                 // rows x rows
   std::vector<double> row_force;             // row forces of the current stage
   std::vector<double> row_part;              // mean over a part of a sub-step
+  RowHold* hold = nullptr;                   // of the owner, corrects row forces in the stages of rk4: row_hold.h
   std::vector<unsigned char> row_is_active;  // 0 or 1
 
   // smallest reactions: reactions to a unit force in each redundant row, by row and joint of the scene; scratch for
