@@ -10,11 +10,11 @@
 //   u' = u'(f) + M^-1 J^T df,   e = J u'(f) + J' u - a(t)                                           (2)
 // with u'(f) under f(t), M^-1 J^T and W those of the start. A law that is exhausted, as dry friction is, gives less
 // than its slope: df lies between 0 and what the law gives if nothing else resists,
-//   law(x + h/2 dv, v + dv) - law(x, v),   dv = h/2 (e + W df) less the row's own share             (3) With h/2 c W
-//   large, W G = 1: the rows move as their law
-// does, and the springs and modes behind them swing as those of a mechanism that is held there, to the order of the
-// rule. Without (2), the force of a held row is late by up to h against the modes and gives them energy. With h/2 c W
-// small, df is of the third order in h. Compared: docs/models/multibody_floating_frame.md.
+//   law(x + h/2 dv, v + dv) - law(x, v),   dv = h/2 (e + W df) less the row's own share             (3)
+// With h/2 c W large, W G = 1: the rows move as their law does, and the springs and modes behind them swing as those of
+// a mechanism that is held there, to the order of the rule. Without (2), the force of a held row is late by up to h
+// against the modes and gives them energy. With h/2 c W small, df is of the third order in h. Compared:
+// docs/models/multibody_floating_frame.md.
 //
 // Stiff damping takes the fastest rates out of (2), and what is left is never faster than the free mechanism: the
 // bounds of element_speeds.h hold.
