@@ -47,15 +47,17 @@ RowMobility::RowMobility(Mechanism& mechanism, std::size_t ports, double exchang
   if (model.rows.empty() || !multibody::has_springs(model)) return;
   auto step_rows = std::make_unique<multibody::StepRows>(model);
   mechanism.evaluate();
-  const auto varies = [&](std::size_t count, double h, double change = kSignificantChange) {
-    return step_rows->evaluate(model, mechanism.state(), mechanism.workspace(), h) &&
+  const auto varies = [&](std::size_t count, double h, double change = kSignificantChange,
+                          multibody::StepShares shares = {}) {
+    return step_rows->evaluate(model, mechanism.state(), mechanism.workspace(), h, shares) &&
            differs(count, change, step_rows->mobility());
   };
   varies_over_exchange_ = ports > 0 && varies(ports, exchange_interval);
   varies_over_substep_ =
       takes_long_substeps(integrator) && (varies_over_exchange_ || varies(model.rows.size(), substep));
-  springs_answer_ =
-      integrator == Integrator::rk4 && (!model.parts.empty() || varies(model.rows.size(), substep, kAnsweringChange));
+  constexpr multibody::StepShares kSpringsAlone{.position = 0.5, .rate = 0, .strain = 1};
+  springs_answer_ = integrator == Integrator::rk4 &&
+                    (!model.parts.empty() || varies(model.rows.size(), substep, kAnsweringChange, kSpringsAlone));
   mechanism.mark_changed();
   if (varies_over_exchange_ || varies_over_substep_ || model.contact != nullptr) step_rows_ = std::move(step_rows);
 }
