@@ -227,12 +227,16 @@ def take_over_behind_reset(folder):
             client = Client(window.address())
             answer = client.call("take_over", {"time": at})
             require(answer["accepted"], f"at {at} s: {answer}")
+            page = re.match("http://([^/]*)/", answer["page"])[1]
+            wait_for("the window of the session", lambda: request(page, "/session.json")[0] == 200)
+            wait_for("its end", lambda: subprocess.run([SLEWRING, "control", "stop", "--session", f"taken{number}",
+                                                        "--domain", domain], capture_output=True).returncode == 0)
+            second = wait_for("its recording", lambda: re.search(rf"taken{number}: (\S*)/session.mcap",
+                                                                 text_of(window.out)))[1]
             window.end()
         finally:
             window.process.kill()
-        runs = f"{folder}/runs"
-        second = f"{runs}/" + sorted(os.listdir(runs))[-1]
-        taken = subprocess.run([SLEWRING, "export", second, "--csv", "--only", "Cyl_Lift.stroke"], check=True,
+        taken = subprocess.run([SLEWRING, "export", os.path.join(folder, second), "--csv", "--only", "Cyl_Lift.stroke"], check=True,
                                capture_output=True, text=True).stdout.splitlines()
         got = next(tuple(float(value) for value in line.split(",")) for line in taken if line[:1].isdigit())
         own = at if number == 0 else at - begin
