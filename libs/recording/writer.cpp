@@ -285,9 +285,8 @@ void Writer::note_lost(std::uint64_t log_time) {
   for (const auto& [epoch, start] : epoch_start_) {
     if (start.time <= log_time && start.time >= newest.time) newest = start;
   }
-  first_lost_step_ =
-      newest.step +
-      static_cast<StepIndex>((log_time - newest.time) / static_cast<std::uint64_t>(communication_step_.ns));
+  first_lost_step_ = newest.step + static_cast<StepIndex>((log_time - newest.time) /
+                                                          static_cast<std::uint64_t>(communication_step_.ns));
 }
 
 std::uint64_t Writer::messages_in_file(ChannelId channel) const {
