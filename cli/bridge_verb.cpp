@@ -82,6 +82,7 @@ std::vector<options::Option> add_lcm_options(options::Command& verb, bridge::Set
 void add_bridge(options::Command& program) {
   options::Command verb = program.command("bridge", "carry a running session to programs of another middleware");
   verb.require_command();
+  verb.footer("Example:\n  slewring bridge lcm --session truck_crane");
   options::Command lcm =
       verb.command("lcm", "variables, health and signal lists to LCM; inputs and parameters from it");
   const auto options = std::make_shared<BridgeOptions>();  // lives as long as the command line's callbacks

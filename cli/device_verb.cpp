@@ -361,6 +361,7 @@ void add_device(options::Command& program) {
   options::Command listing = verb.command("list", "input devices of this machine, or the devices of a scene");
   program::add_scene_file(listing, "scene", options->scene);
   listing.flag("--json", options->is_json, "print JSON and nothing else");
+  listing.footer("Examples:\n  slewring device list\n  slewring device list crane.yaml");
   listing.action([options] { return list(*options); });
 
   options::Command monitoring = verb.command("monitor", "print what a device gives, as it changes");
@@ -378,6 +379,10 @@ void add_device(options::Command& program) {
       .value_name("S")
       .show_default();
   monitoring.flag("--insecure-devices", options->is_insecure, "receive UDP from beyond this machine");
+  monitoring.footer(
+      "Examples:\n"
+      "  slewring device monitor /dev/input/event5\n"
+      "  slewring device monitor Rig --scene crane.yaml");
   monitoring.action([options] { return monitor(*options); });
 
   options::Command calibrating =
@@ -388,6 +393,7 @@ void add_device(options::Command& program) {
   calibrating.option("--ends-time", options->ends_time, "seconds for moving the axes to their ends, in place of Enter")
       .between(0.1, 3600.0)
       .value_name("S");
+  calibrating.footer("Example:\n  slewring device calibrate /dev/input/event5");
   calibrating.action([options] { return calibrate(*options); });
 
   options::Command layout = verb.command("layout", "write the C header of a device's packets, or a note for Simulink");
@@ -397,6 +403,10 @@ void add_device(options::Command& program) {
       .required();
   layout.flag("--simulink", options->is_simulink, "the parameters of Simulink's blocks in place of a C header");
   layout.option("-o,--output", options->output, "file; - is standard output").value_name("FILE").show_default();
+  layout.footer(
+      "Examples:\n"
+      "  slewring device layout crane.yaml Rig -o rig.h\n"
+      "  slewring device layout crane.yaml Rig --simulink -o rig.md");
   layout.action([options] { return write_layout(*options); });
 
   options::Command running = verb.command("run", "run one device against a session that runs already");
@@ -404,6 +414,7 @@ void add_device(options::Command& program) {
   device_node::add_device_options(running, options->run);
   running.find("--session").description("name of the session; without it the only one that runs");
   running.flag("--json", options->is_json, "print the counts at the end as JSON and nothing else");
+  running.footer("Example:\n  slewring device run Rig --devices rig.yaml --session truck_crane");
   running.action([options] { return run_one(*options); });
 
   verb.footer(

@@ -20,6 +20,7 @@
 #include "plotting/csv_export.h"
 #include "plotting/mat_export.h"
 #include "session/recorded.h"
+#include "session/recorded_place.h"
 
 namespace slew::cli {
 namespace {
@@ -43,8 +44,9 @@ void check_values(const recording::Reader& reader, const std::vector<plotting::S
     if (!curve.time.empty()) return;
   }
   throw Failure(ExitCode::bad_input,
-                fmt::format("the recording has no value of these variables in this time; it goes from 0 to {:.6g} s; "
-                            "nothing was written",
+                fmt::format("the recording has no value of these variables in this time; it goes from {:.6g} s to "
+                            "{:.6g} s; nothing was written",
+                            static_cast<double>(session::begin_time_ns(reader)) * 1e-9,
                             static_cast<double>(reader.statistics().end_time) * 1e-9));
 }
 
@@ -101,6 +103,22 @@ void check_output(const ExportOptions& options) {
                                          "replace it with --force");
 }
 
+// A session that was reset or loaded has another time than its recording; played back it begins with its own.
+void to_session_time(const recording::Reader& reader, const session::EpochTimes& of,
+                     std::vector<plotting::Series>& curves) {
+  const std::int64_t begin_ns = of.first_step * reader.identity().communication_step.ns;
+  const std::int64_t later_ns = static_cast<std::int64_t>(of.from_ns) - begin_ns;
+  if (later_ns == 0) return;
+  fmt::print(stderr,
+             "the time of the recording from {} s to {} s is epoch {} of the session, behind a reset or a load; the "
+             "table has the session's own time, from {} s on\n",
+             static_cast<double>(of.from_ns) / 1e9, static_cast<double>(of.to_ns) / 1e9, of.epoch,
+             static_cast<double>(begin_ns) / 1e9);
+  for (plotting::Series& curve : curves) {
+    for (double& at : curve.time) at = static_cast<double>(std::llround(at * 1e9) - later_ns) / 1e9;
+  }
+}
+
 // The operator's inputs in the format of `run --input` and scripts: raw values by input.
 std::string input_text(const recording::Reader& reader, const session::TimeRange& range) {
   const scene::Scene scene = scene::load_text(session::recorded_scene_text(reader), reader.identity().scene);
@@ -112,6 +130,7 @@ std::string input_text(const recording::Reader& reader, const session::TimeRange
   std::vector<plotting::Series> curves = session::read_series(reader, names, session::Units::si, range);
   plotting::keep_common_instants(curves);
   check_values(reader, curves);
+  to_session_time(reader, session::only_epoch(reader, range), curves);
   const std::vector<double>& time = curves.front().time;
   if (time.front() > 0) {
     fmt::print(stderr, "the table begins at {} s; played back, the inputs are neutral before\n", time.front());
@@ -124,11 +143,6 @@ std::string input_text(const recording::Reader& reader, const session::TimeRange
   };
   const std::int64_t step_ns = reader.identity().communication_step.ns;
   for (std::size_t i = 0; i < time.size(); ++i) {
-    if (i > 0 && time[i] <= time[i - 1]) {
-      throw Failure(ExitCode::bad_input,
-                    "the session was reset on the way, so its input is no one table over time; "
-                    "nothing was written; record it without a reset");
-    }
     add_row(time[i], i);
     // a tick holds its values over its step; from there a line leads to the next one that was recorded
     const auto changes = [i](const plotting::Series& curve) { return curve.values[i] != curve.values[i + 1]; };
@@ -191,6 +205,11 @@ ExitCode export_lcm(ExportOptions options) {
   require_writable(options.output);
   const auto reader = session::open_recording(options.recording);
   const scene::Scene scene = scene::load_text(session::recorded_scene_text(*reader), reader->identity().scene);
+  const session::EpochTimes epoch = session::only_epoch(*reader, session::recorded_range(options.from, options.to));
+  if (epoch.epoch > 0) {
+    fmt::print(stderr, "the log is of epoch {} of the session, behind a reset or a load, at the session's own time\n",
+               epoch.epoch);
+  }
   return write_file(options, [&](const std::filesystem::path& path) {
     std::ofstream file(path, std::ios::binary);
     write_log(options, *reader, scene, file);
@@ -212,6 +231,12 @@ ExitCode export_variables(ExportOptions options) {
   const auto reader = session::open_recording(options.recording);
   const std::vector<plotting::Series> curves = session::read_series(*reader, patterns, session::Units::si, range);
   check_values(*reader, curves);
+  if (const std::size_t epochs = session::epoch_times(*reader, range).size(); epochs > 1) {
+    fmt::print(stderr,
+               "the session was reset or loaded within this time: the table has {} epochs one behind the other, in the "
+               "time of the recording, and is no input for 'run --input'\n",
+               epochs);
+  }
   if (options.output.empty() || options.output == "-") {
     plotting::write_csv(curves, std::cout);
     std::cout << std::flush;

@@ -16,6 +16,7 @@
 #include "recording/rewriting.h"
 #include "session/recorded.h"
 #include "session/recorded_events.h"
+#include "session/recorded_place.h"
 
 namespace slew::cli {
 namespace {
@@ -134,7 +135,18 @@ StepCounts step_counts(const recording::Reader& reader, bool is_verifying) {
   return {session::tick_span(reader), analysis::recorded_flags(reader)};
 }
 
-Json to_json(const recording::Reader& reader, const StepCounts& counts, double simulated) {
+// Times of a recording, which may begin later than its session.
+struct Length {
+  double from = 0, to = 0;  // s
+  [[nodiscard]] double duration() const noexcept { return to - from; }
+};
+
+Length length_of(const recording::Reader& reader) {
+  return {static_cast<double>(session::begin_time_ns(reader)) / 1e9,
+          static_cast<double>(reader.statistics().end_time) / 1e9};
+}
+
+Json to_json(const recording::Reader& reader, const StepCounts& counts, const Length& length) {
   const recording::SessionIdentity& identity = reader.identity();
   Json topics = Json::object();
   for (const auto& [topic, count] : counts_of(reader)) {
@@ -148,7 +160,9 @@ Json to_json(const recording::Reader& reader, const StepCounts& counts, double s
           {"build", identity.build},
           {"started_ns", identity.started_ns},
           {"step_ns", identity.communication_step.ns},
-          {"duration", simulated},
+          {"duration", length.duration()},
+          {"from", length.from},
+          {"to", length.to},
           {"complete", reader.has_all_messages()},
           {"left_out", session::left_out_text(reader)},
           {"damage", reader.damage_text()},
@@ -160,7 +174,7 @@ Json to_json(const recording::Reader& reader, const StepCounts& counts, double s
           {"topics", topics}};
 }
 
-void print(const recording::Reader& reader, const StepCounts& counts, double simulated, bool has_all_events) {
+void print(const recording::Reader& reader, const StepCounts& counts, const Length& length, bool has_all_events) {
   const recording::SessionIdentity& identity = reader.identity();
   const session::TickSpan& span = counts.ticks;
   ReportTable rows({"", ""});
@@ -171,9 +185,11 @@ void print(const recording::Reader& reader, const StepCounts& counts, double sim
   rows.add({"started", node::time_text(identity.started_ns)});
   rows.add({"build", identity.build});
   rows.add({"step", duration_text(identity.communication_step.seconds())});
-  rows.add({"length", fmt::format("{}, {} in {} of wall time", duration_text(simulated),
-                                  counted(static_cast<std::uint64_t>(span.steps), "step", "steps"),
-                                  duration_text(span.wall_time))});
+  rows.add(
+      {"length",
+       fmt::format("{}{}, {} in {} of wall time", duration_text(length.duration()),
+                   length.from > 0 ? fmt::format(" from {:.6g} s to {:.6g} s", length.from, length.to) : std::string(),
+                   counted(static_cast<std::uint64_t>(span.steps), "step", "steps"), duration_text(span.wall_time))});
   rows.add({"end", end_of(reader)});
   if (std::string left_out = session::left_out_text(reader); !left_out.empty()) {
     rows.add({"steps", std::move(left_out)});
@@ -196,11 +212,11 @@ ExitCode show(const InfoOptions& options) {
   const auto reader = session::open_recording(options.recording);
   if (options.is_verifying) require(reader->verify());
   const StepCounts counts = step_counts(*reader, options.is_verifying);
-  const double simulated = static_cast<double>(reader->statistics().end_time) * 1e-9;
+  const Length length = length_of(*reader);
   if (options.is_json) {
-    fmt::print("{}\n", to_json(*reader, counts, simulated).dump(2));
+    fmt::print("{}\n", to_json(*reader, counts, length).dump(2));
   } else {
-    print(*reader, counts, simulated, options.has_all_events);
+    print(*reader, counts, length, options.has_all_events);
     if (options.is_verifying) fmt::print("every byte was read and every checksum fits\n");
   }
   return ExitCode::ok;

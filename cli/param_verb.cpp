@@ -206,6 +206,13 @@ ExitCode set(const ParamOptions& options) {
   scene::ParameterDirectory directory(scene::load_text(session.scene_text, session.scene_name));
   const scene::Assignment assignment = directory.parse_assignment(text, spread, scene::Beside::session);
   if (!assignment.status.is_ok()) {
+    if (options.is_json) {
+      fmt::print(
+          "{}\n",
+          Json({{"path", text.substr(0, text.find('='))}, {"accepted", false}, {"reason", assignment.status.text}})
+              .dump(2));
+      std::fflush(stdout);
+    }
     throw Failure(ExitCode::bad_input, "refused, nothing was changed: " + assignment.status.text);
   }
   const scene::ParameterInfo& parameter = *directory.find(assignment.path);

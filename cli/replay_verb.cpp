@@ -21,12 +21,15 @@
 namespace slew::cli {
 namespace {
 
+constexpr std::uint32_t kLastEpoch = UINT32_MAX;
+
 struct ReplayOptions {
   std::string recording;
   std::string assets;
   bool is_verifying = false;
   bool is_json = false;
   std::string until;
+  std::uint32_t epoch = kLastEpoch;
   std::string saved;  // file for the state there
   bool may_replace = false;
   bool goes_on = false;
@@ -87,6 +90,7 @@ ExitCode run_until(const ReplayOptions& options) {
   const std::string assets = options.assets.empty() ? session::recorded_assets(options.recording) : options.assets;
   session::ReplayEnd end;
   end.step = step_until(*reader, assets, options.until);
+  if (options.epoch != kLastEpoch) end.epoch = options.epoch;
   const session::ReplayResult result = session::replay(*reader, session::OnDifference::stop, assets, &end);
   if (const int stop = node::stop_requested.load(); stop != 0) return static_cast<ExitCode>(stop);
   if (!result.is_equal()) {
@@ -120,6 +124,9 @@ ExitCode run_until(const ReplayOptions& options) {
 ExitCode run(const ReplayOptions& options) {
   if (options.until.empty() && (options.goes_on || !options.saved.empty())) {
     throw Failure(ExitCode::bad_input, "--then-live and --save need a time; nothing was done; set it with --until");
+  }
+  if (options.until.empty() && options.epoch != kLastEpoch) {
+    throw Failure(ExitCode::bad_input, "--epoch belongs to a time; nothing was done; set it with --until");
   }
   if (!options.until.empty() && !options.goes_on && options.saved.empty()) {
     throw Failure(ExitCode::bad_input,
@@ -181,8 +188,14 @@ void add_replay(options::Command& program) {
               "folder with the scene's files; without it the copies that lie beside the recording")
       .value_name("FOLDER");
   verb.flag("--json", options->is_json, "for machines");
-  verb.option("--until", options->until, "compute up to this time of the last epoch, such as '2.5 s', comparing")
+  verb.option("--until", options->until,
+              "compute up to this time of the session, such as '2.5 s', comparing; after a "
+              "reset or a load this is not the time of the recording")
       .value_name("TIME")
+      .group("Going on");
+  verb.option("--epoch", options->epoch,
+              "with --until: epoch of that time; 0 is the one before the first reset or load; without it the last one")
+      .value_name("N")
       .group("Going on");
   verb.flag("--then-live", options->goes_on, "run a session from there, as 'slewring run --from' does")
       .group("Going on");

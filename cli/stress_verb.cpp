@@ -118,7 +118,10 @@ void add_what(options::Command& verb, StressOptions& options) {
       .value_name("SOURCE")
       .show_default();
   verb.flag("!--no-record", settings.scene.is_recording, "without a recorder");
-  verb.option("--seconds", settings.seconds, "session time of every cell; a quarter of it more for the yardstick")
+  verb.option(
+          "--seconds", settings.seconds,
+          "session time of every cell, more than twice session.start_grace (without it in the scene 1 s); a quarter "
+          "of it more for the yardstick")
       .between(0.5, 86400.0)
       .value_name("S")
       .show_default();

@@ -14,6 +14,7 @@
 #include "program/add_session_options.h"
 #include "scene/edited_scene.h"
 #include "session/interrupts.h"
+#include "view_node/door_check.h"
 
 namespace slew::cli {
 namespace {
@@ -59,6 +60,8 @@ ExitCode open_window(Options options, const options::Command& verb) {
                   "recording in the place of the scene, or leave it out");
   }
   options.run.scene.file = scene::find_scene(options.source);
+  // in front of the session, which would go on without a window
+  view_node::check_door(options.window);
   if (!verb.has("--duration")) options.run.scene.duration = "0";
   if (!verb.has("--input")) options.run.scene.input = "none";
   if (options.window.assets.empty()) options.window.assets = options.run.assets();

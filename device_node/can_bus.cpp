@@ -124,10 +124,12 @@ std::unique_ptr<CanBus> open_can_log(const std::string& path) {
     if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
     if (auto frame = parse_candump(line)) {
       frames.push_back(*frame);
-    } else if (!line.starts_with("(") || line.find('#') == std::string_view::npos) {
-      throw Failure(
-          ExitCode::bad_input,
-          fmt::format("{}:{}: is no line of 'candump -l'; the device was not started; {}", path, number, kLogRemedy));
+    } else if (!devices::is_logged_without_data(line)) {
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("{}:{}: is no line of 'candump -l': expected '(SECONDS.MICROS) INTERFACE ID#DATA' with "
+                                "an ID of 3 digits up to 7FF or of 8 up to 1FFFFFFF and bytes of 2 digits, 8 at most; "
+                                "the device was not started; {}",
+                                path, number, kLogRemedy));
     }
   }
   if (frames.empty()) {

@@ -70,8 +70,7 @@ void SignalFeed::take(const wire::VariableBlock& block, double time) {
   if (!has_time_) next_time_ = time;
   has_time_ = true;
   if (time < next_time_ - kHalfNanosecond) return;
-  // on the grid of `every`, unless steps are farther apart
-  next_time_ = std::max(next_time_ + every_, time + kHalfNanosecond);
+  next_time_ = time + std::max(every_, kHalfNanosecond);
   for (std::size_t i = 0; i < sources_.size(); ++i) shown_[i] = value_of(sources_[i], *values);
   show_({time, epoch_, shown_});
 }

@@ -67,7 +67,10 @@ class UdpIn final : public InputDevice {
       const auto fault = static_cast<devices::PacketFault>(i);
       refused[std::string(text_of(fault))] = state_.counts.of(fault);
     }
-    return {{"used", state_.counts.used}, {"lost", state_.counts.lost}, {"refused", refused}};
+    return {{"used", state_.counts.used},
+            {"lost", state_.counts.lost},
+            {"jumps", state_.counts.jumps},
+            {"refused", refused}};
   }
 
   [[nodiscard]] std::string text() const override {
@@ -76,6 +79,8 @@ class UdpIn final : public InputDevice {
       text += fmt::format("{} {:g}  ", layout_.fields[layout_.values[i]].def.name, read_[i]);
     }
     text += fmt::format("{} used, {} lost", state_.counts.used, state_.counts.lost);
+    if (state_.counts.jumps > 0)
+      text += fmt::format(", and an unknown number at {} jumps of the sequence", state_.counts.jumps);
     for (std::size_t i = 1; i < state_.counts.refused.size(); ++i) {
       if (state_.counts.refused[i] > 0)
         text += fmt::format(", {} {}", state_.counts.refused[i], text_of(static_cast<devices::PacketFault>(i)));

@@ -191,9 +191,9 @@ Status read_saved(const std::filesystem::path& path, SavedSession& saved) {
     return Status::error(ExitCode::bad_input, path.string() + ": " + what);
   };
   std::string text;
-  if (const auto fault = read_input(path, kMaxAssetBytes, text)) return refuse(fault->text() + "; nothing was started");
+  if (const auto fault = read_input(path, kMaxAssetBytes, text)) return refuse(fault->text() + "; nothing was done");
   if (!text.starts_with(std::string_view(kMagic, sizeof kMagic))) {
-    return refuse("is no saved session; expected a file of 'slewring control save'");
+    return refuse("is no saved session; nothing was done; expected a file of 'slewring control save'");
   }
   const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
   const std::size_t size = bytes.size();
@@ -208,7 +208,7 @@ Status read_saved(const std::filesystem::path& path, SavedSession& saved) {
   if (size >= kFront + kBack) std::memcpy(&check, bytes.data() + size - kBack, kBack);
   const bool is_whole = size >= kFront + kBack && check == check_of(bytes.first(size - kBack)) &&
                         take_fields(bytes.subspan(kFront, size - kFront - kBack), saved);
-  if (!is_whole) return refuse("is cut or damaged; nothing was started; look for an intact copy of the file");
+  if (!is_whole) return refuse("is cut or damaged; nothing was done; look for an intact copy of the file");
   return Status::ok();
 }
 

@@ -231,6 +231,7 @@ void RecorderNode::start_epoch(const wire::Header& init) {
   count_losses(former_, false);
   former_ = std::exchange(streams_, {});
   begin_streams(init.step);
+  if (writer_ != nullptr) writer_->begin_epoch(init.epoch, streams_.begin);
   member_.set_epoch(init.epoch);
   reported_step_ = kJoinStep;
   member_.set_recorded_step(kJoinStep);

@@ -67,6 +67,7 @@ bool has_hash_in_name(std::string_view path) noexcept {
 }
 
 HttpAnswer HttpAnswers::answer(const gateway::Verdict& verdict, const HttpRequest& request) const {
+  if (verdict.service == Service::error) return sentence(verdict.status, verdict.text);
   const bool takes_body = verdict.service == Service::workspace || is_of_scene(verdict.service);
   if (!takes_body && !request.body.empty())
     return sentence(413, "a request has no body here; nothing was changed; use GET");

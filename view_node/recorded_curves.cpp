@@ -48,10 +48,12 @@ RecordedCurves::Answer RecordedCurves::read_curves(const gateway::CurvesRequest&
   const recording::Reader& reader = *recordings_.at(request.recording).reader;
   const std::vector<std::string> recorded = session::recorded_names(reader);
   std::vector<std::string> names;
-  std::ranges::copy_if(request.names, std::back_inserter(names), [&](const std::string& name) {
-    return std::ranges::find(recorded, name) != recorded.end() && std::ranges::find(names, name) == names.end();
-  });
   Answer answer;
+  for (const std::string& name : request.names) {
+    const bool is_recorded = std::ranges::find(recorded, name) != recorded.end();
+    std::vector<std::string>& kind = is_recorded ? names : answer.unknown;
+    if (std::ranges::find(kind, name) == kind.end()) kind.push_back(name);
+  }
   if (names.empty()) return answer;
   std::vector<plotting::Series> curves =
       session::read_series(reader, names, session::Units::si, {nanoseconds(request.from), nanoseconds(request.to)});

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "core/failure.h"
@@ -12,14 +13,21 @@
 namespace slew::view_node {
 
 void SavedFiles::start(const char* command, const std::string& name, Done done) {
+  const bool is_saving = std::string_view(command) == "save";
   if (running_.size() >= kMostAtOnce)
     return done("four states are being saved or loaded; nothing was done; try again later", kJoinStep);
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) return done(folder_ + ": " + error.message() + "; nothing was done; choose a --saves folder", kJoinStep);
-  std::vector<std::string> arguments = {
-      "control",   command,          (std::filesystem::path(folder_) / (name + ".saved")).string(),
-      "--session", session_.session, "--json"};
+  const std::string file = (std::filesystem::path(folder_) / (name + ".saved")).string();
+  // the remedies of the command line are options that a client has not
+  const bool is_there = std::filesystem::exists(file, error);
+  if (is_saving == is_there) {
+    return done(is_there ? file + ": the file exists already; it was left as it is; choose another name"
+                         : file + ": there is no such file; nothing was done; choose the name of a saved state",
+                kJoinStep);
+  }
+  std::vector<std::string> arguments = {"control", command, file, "--session", session_.session, "--json"};
   const std::vector<std::string> network = node::network_arguments(session_);
   arguments.insert(arguments.end(), network.begin(), network.end());
   try {

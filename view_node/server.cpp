@@ -104,6 +104,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return answer(sentence(431, "the request's header has more than 16 KiB; nothing was changed"));
     if (error == http::error::body_limit)
       return answer(sentence(413, "the request's body has more than 1 MiB; nothing was changed"));
+    const bool is_cut = error == http::error::end_of_stream || error == http::error::partial_message;
+    if (error && error.category() == http::make_error_code(http::error::bad_method).category() && !is_cut)
+      return answer(sentence(400, "the request is no HTTP/1.1 (" + error.message() +
+                                      "); nothing was changed; send a method, a path and HTTP/1.1, headers 'Name: "
+                                      "value', and a Content-Length that is a number"));
     if (error) return drop();
     http::request<http::string_body>& request = parser_.get();
     const auto origin = request.find(http::field::origin);

@@ -31,8 +31,9 @@ std::optional<Json> addresses_in(const std::string& line) {
 
 }  // namespace
 
-TakenSession::TakenSession(WindowOptions options, const std::string& name)
+TakenSession::TakenSession(WindowOptions options, const std::string& name, SessionTimeOf session_time_of)
     : options_(std::move(options)),
+      session_time_of_(std::move(session_time_of)),
       name_(options_.session.session.empty()
                 ? fmt::format("{}-live-{}", node::session_name_of(name).substr(0, kNameBytes), getpid())
                 : options_.session.session) {}
@@ -55,10 +56,24 @@ void TakenSession::start(const gateway::ContinuationRequest& request, Done done)
                                         "started; end it with 'slewring control stop --session {}'",
                                         name_, name_)});
   }
+  SessionTime begin;
+  try {
+    begin = session_time_of_(request.time);
+  } catch (const Failure& failure) {
+    return done({.problem = failure.what()});
+  }
+  if (request.duration != 0 && request.duration <= begin.time) {
+    return done(
+        {.problem = fmt::format("'duration' ends the session at {:.6g} s, and it would go on at {:.6g} s of its "
+                                "own time; nothing was started; choose a later end, or 0 for none",
+                                request.duration, begin.time)});
+  }
   std::vector<std::string> arguments = {"replay",
                                         options_.recording,
                                         "--until",
-                                        fmt::format("{} s", request.time),
+                                        fmt::format("{} s", begin.time),
+                                        "--epoch",
+                                        fmt::to_string(begin.epoch),
                                         "--then-live",
                                         "--session",
                                         name_,

@@ -4,6 +4,8 @@
 // window of its own serves it. One at a time; it ends with the window of the recording.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,8 +18,16 @@ namespace slew::view_node {
 
 class TakenSession final : public gateway::Continuation {
  public:
+  // Where a time of the recording lies in the recorded session.
+  struct SessionTime {
+    std::uint32_t epoch = 0;
+    double time = 0;  // s, the session's own
+  };
+  // recorded_time: s, of the recording. Throws Failure when the recording has no step of that time.
+  using SessionTimeOf = std::function<SessionTime(double recorded_time)>;
+
   // options: of the window of the recording. name: of the recorded session.
-  TakenSession(WindowOptions options, const std::string& name);
+  TakenSession(WindowOptions options, const std::string& name, SessionTimeOf session_time_of);
   // Ends the session in order, which takes some seconds at most.
   ~TakenSession() override;
 
@@ -30,6 +40,7 @@ class TakenSession final : public gateway::Continuation {
   void end(const std::string& problem);
 
   WindowOptions options_;
+  SessionTimeOf session_time_of_;
   std::string name_;                                // of the live session
   Done done_;                                       // empty: answered
   std::unique_ptr<ChildProcess> session_, window_;  // both or none

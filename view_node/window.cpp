@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,8 +26,10 @@
 #include "observer/silence_watch.h"
 #include "recording/run_directory.h"
 #include "session/recorded.h"
+#include "session/recorded_place.h"
 #include "session/survey.h"
 #include "view_node/bent_bodies.h"
+#include "view_node/door_check.h"
 #include "view_node/machine_meshes.h"
 #include "view_node/page_files.h"
 #include "view_node/recorded_curves.h"
@@ -46,26 +47,6 @@ using Report = std::function<void(const std::string&)>;
 
 constexpr SimDuration kRound = milliseconds(5);
 constexpr SimDuration kLastRound = milliseconds(500);  // for the last events of clients
-constexpr std::size_t kShortestToken = 16;
-
-std::string read_token(const std::string& path) {
-  if (path.empty()) return "";
-  std::ifstream file(path);
-  if (!file) {
-    throw Failure(ExitCode::bad_input, fmt::format("--token-file {}: the file cannot be read; nothing was started; "
-                                                   "make one with 'openssl rand -hex 16 > FILE'",
-                                                   path));
-  }
-  std::string token;
-  std::getline(file, token);
-  const bool is_plain = token.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.~") ==
-                        std::string::npos;
-  if (file && is_plain && token.size() >= kShortestToken) return token;
-  throw Failure(ExitCode::bad_input,
-                fmt::format("--token-file {}: its first line is no token of at least {} letters, digits, '-', '_', '.' "
-                            "and '~'; nothing was started; make one with 'openssl rand -hex 16 > FILE'",
-                            path, kShortestToken));
-}
 
 ServerDef server_def(const WindowOptions& options) {
   ServerDef def;
@@ -74,18 +55,7 @@ ServerDef server_def(const WindowOptions& options) {
   def.door = {options.hosts, options.origins, read_token(options.token_file)};
   def.web = options.web.empty() ? find_page() : options.web;
   def.is_looking_only = options.is_looking_only;
-  if (!gateway::is_address(options.listen)) {
-    throw Failure(ExitCode::bad_input, fmt::format("--listen {}: this is no address; nothing was started; expected one "
-                                                   "such as 127.0.0.1",
-                                                   options.listen));
-  }
-  if (!gateway::is_loopback(options.listen) && def.door.token.empty()) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("--listen {} leaves this machine, and without a token every program on that network can "
-                              "read and steer the session; nothing was started; name a file with --token-file "
-                              "('openssl rand -hex 16 > FILE' makes one)",
-                              options.listen));
-  }
+  check_address(options.listen, def.door.token);
   return def;
 }
 
@@ -311,6 +281,13 @@ std::vector<RecordedCurves::Recording> recordings_of(const recording::Reader& pl
   return recordings;
 }
 
+TakenSession::SessionTime session_time_of(const std::string& path, double recorded_time) {
+  const auto reader = session::open_recording(path);
+  const session::RecordedPlace place =
+      session::place_of(*reader, static_cast<std::uint64_t>(std::llround(recorded_time * 1e9)));
+  return {place.epoch, static_cast<double>(place.step * reader->identity().communication_step.ns) / 1e9};
+}
+
 ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report& report) {
   const auto reader = session::open_recording(options.recording);
   RecordedSource source(*reader);
@@ -329,7 +306,8 @@ ExitCode run_recorded(const WindowOptions& options, ServerDef def, const Report&
   def.workspace = workspace_path(scene.name);
   def.circuit = draw_circuit(scene);
   gateway_def.assets = std::move(meshes.assets);
-  TakenSession taken(options, identity.session_name);
+  TakenSession taken(options, identity.session_name,
+                     [&](double time) { return session_time_of(options.recording, time); });
   if (!options.is_looking_only) gateway_def.continuation = &taken;
   RecordedCurves curves(recordings_of(*reader, options.beside));
   gateway_def.curves = &curves;

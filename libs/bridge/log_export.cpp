@@ -75,16 +75,18 @@ struct LogExport::State final : observer::Receiver {
 void LogExport::State::take_block(const wire::VariableBlock& block, std::span<const std::byte>, double time) {
   step_ns = view->session().step_ns;
   const StepIndex step = block.header.step;
+  // the range is of the recording's time, which goes on over a reset; the log has the session's
+  const std::int64_t recorded_ns = std::llround(time * 1e9);
+  if (recorded_ns < from_ns || recorded_ns > to_ns) return;
   if (epoch && block.header.epoch != *epoch) {
     throw Failure(
         ExitCode::bad_input,
-        "the session was reset on the way, so its time is no one line; nothing was written; record it without "
-        "a reset");
+        "the session was reset or loaded on the way, so its time is no one line; nothing was written; choose the time "
+        "of one epoch");
   }
   if (!epoch) check_names(outgoing.lists(), *view, "the recording");
   epoch = block.header.epoch;
   const std::int64_t time_ns = step * step_ns;
-  if (time_ns < from_ns || time_ns > to_ns) return;
   if (writer.count() == 0) outgoing.publish_directory(0);
   if (time_ns >= next_directory_ns) {
     next_directory_ns = (time_ns / kDirectoryEveryNs + 1) * kDirectoryEveryNs;

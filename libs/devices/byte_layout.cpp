@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "core/failure.h"
 #include "core/suggestion.h"
@@ -55,18 +55,123 @@ constexpr Field kLayoutFieldFields[] = {
         "output", {.reference = "output", .doc = "sent: output of the scene; without variable and output 0 is sent"}),
 };
 
-// words of C and C++ that a struct in the generated header cannot have
-constexpr std::array<std::string_view, 62> kReservedWords = {
-    "alignas",  "asm",      "auto",      "bool",   "break",    "case",     "catch",   "char",      "class",
-    "const",    "continue", "default",   "delete", "do",       "double",   "else",    "enum",      "explicit",
-    "extern",   "false",    "float",     "for",    "friend",   "goto",     "if",      "inline",    "int",
-    "long",     "mutable",  "namespace", "new",    "nullptr",  "operator", "private", "protected", "public",
-    "register", "requires", "restrict",  "return", "short",    "signed",   "sizeof",  "static",    "struct",
-    "switch",   "template", "this",      "throw",  "true",     "try",      "typedef", "typename",  "union",
-    "unsigned", "using",    "virtual",   "void",   "volatile", "while",    "and",     "not"};
+// Words that a struct in the generated header cannot have: those of C23 and C++20 with their alternative tokens, the
+// types that the header uses, and names that compilers or the header define.
+constexpr std::string_view kReservedWords[] = {"NULL",
+                                               "alignas",
+                                               "alignof",
+                                               "and",
+                                               "and_eq",
+                                               "asm",
+                                               "auto",
+                                               "bitand",
+                                               "bitor",
+                                               "bool",
+                                               "break",
+                                               "case",
+                                               "catch",
+                                               "char",
+                                               "char16_t",
+                                               "char32_t",
+                                               "char8_t",
+                                               "class",
+                                               "co_await",
+                                               "co_return",
+                                               "co_yield",
+                                               "compl",
+                                               "concept",
+                                               "const",
+                                               "const_cast",
+                                               "consteval",
+                                               "constexpr",
+                                               "constinit",
+                                               "continue",
+                                               "contract_assert",
+                                               "decltype",
+                                               "default",
+                                               "delete",
+                                               "do",
+                                               "double",
+                                               "dynamic_cast",
+                                               "else",
+                                               "enum",
+                                               "explicit",
+                                               "export",
+                                               "extern",
+                                               "false",
+                                               "float",
+                                               "for",
+                                               "friend",
+                                               "goto",
+                                               "i386",
+                                               "if",
+                                               "inline",
+                                               "int",
+                                               "int16_t",
+                                               "int32_t",
+                                               "int64_t",
+                                               "int8_t",
+                                               "linux",
+                                               "long",
+                                               "mutable",
+                                               "namespace",
+                                               "new",
+                                               "noexcept",
+                                               "not",
+                                               "not_eq",
+                                               "nullptr",
+                                               "operator",
+                                               "or",
+                                               "or_eq",
+                                               "private",
+                                               "protected",
+                                               "public",
+                                               "register",
+                                               "reinterpret_cast",
+                                               "requires",
+                                               "restrict",
+                                               "return",
+                                               "short",
+                                               "signed",
+                                               "sizeof",
+                                               "slewring_unused",
+                                               "static",
+                                               "static_assert",
+                                               "static_cast",
+                                               "struct",
+                                               "switch",
+                                               "template",
+                                               "this",
+                                               "thread_local",
+                                               "throw",
+                                               "true",
+                                               "try",
+                                               "typedef",
+                                               "typeid",
+                                               "typename",
+                                               "typeof",
+                                               "typeof_unqual",
+                                               "uint16_t",
+                                               "uint32_t",
+                                               "uint64_t",
+                                               "uint8_t",
+                                               "union",
+                                               "unix",
+                                               "unsigned",
+                                               "using",
+                                               "virtual",
+                                               "void",
+                                               "volatile",
+                                               "wchar_t",
+                                               "while",
+                                               "xor",
+                                               "xor_eq"};
 
 bool is_reserved(std::string_view name) {
-  return std::find(kReservedWords.begin(), kReservedWords.end(), name) != kReservedWords.end();
+  // names of the compiler's own, _Bool and __int128 among them
+  const bool is_of_compiler =
+      name.starts_with("__") || (name.size() > 1 && name[0] == '_' && name[1] >= 'A' && name[1] <= 'Z');
+  return is_of_compiler || std::ranges::find(kReservedWords, name) != std::end(kReservedWords);
 }
 
 const LayoutFieldDef* find_field(const LayoutDef& def, std::string_view name) {

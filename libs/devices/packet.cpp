@@ -74,7 +74,7 @@ PacketFault take_sequence(const ByteLayout& layout, std::span<const std::byte> p
       state.has_refused_sequence = true;
       return PacketFault::out_of_sequence;
     }
-    if (is_next) state.counts.lost += ahead - 1;
+    is_next ? state.counts.lost += ahead - 1 : ++state.counts.jumps;
   }
   state.sequence = number;
   state.has_sequence = true;

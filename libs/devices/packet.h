@@ -8,7 +8,8 @@
 //   out_of_sequence        more packets than `most_lost` are missing before it, or it is older than the last one. The
 //                          next number goes on from either: a sender that starts again is used from its second packet
 //   not_finite             a float is NaN or infinite, or scale and offset make it so
-// Packets that are missing before a used one are counted as lost.
+// Packets that are missing before a used one are counted as lost, up to `most_lost` at once. Where the sequence goes on
+// behind an out_of_sequence the number of missing packets is not known, as the sender may have started again: a jump.
 //
 // A packet that is sent holds each value at its bounds (counted), rounds to the nearest number, ties to even. A value
 // that is not finite refuses the packet (counted); nothing is to be sent then.
@@ -37,9 +38,10 @@ enum class PacketFault : std::uint8_t {
 [[nodiscard]] std::string_view text_of(PacketFault fault) noexcept;  // "too short"
 
 struct PacketCounts {
-  std::uint64_t used = 0;  // received and used, or encoded
-  std::uint64_t lost = 0;  // missing in the sequence before used packets
-  std::uint64_t held = 0;  // values held at a bound when sent
+  std::uint64_t used = 0;   // received and used, or encoded
+  std::uint64_t lost = 0;   // missing in the sequence before used packets, without jumps
+  std::uint64_t jumps = 0;  // the sequence went on at another place
+  std::uint64_t held = 0;   // values held at a bound when sent
   std::array<std::uint64_t, static_cast<std::size_t>(PacketFault::number_of_faults)> refused{};
 
   [[nodiscard]] std::uint64_t of(PacketFault fault) const noexcept { return refused[static_cast<std::size_t>(fault)]; }

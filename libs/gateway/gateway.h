@@ -78,9 +78,9 @@ class SavedStates {
 // A live session that goes on from a time of a recording.
 enum class ContinuationInput : std::uint8_t { none, script };
 struct ContinuationRequest {
-  double time = 0;  // s
+  double time = 0;  // s, of the recording
   ContinuationInput input = ContinuationInput::none;
-  double duration = 0;  // s, end of the session's time; 0: none
+  double duration = 0;  // s, end of the session's own time; 0: none
 };
 class Continuation {
  public:
@@ -114,9 +114,10 @@ class RecordedCurves {
   // Names of the recordings for the user, the one that is played first.
   [[nodiscard]] virtual std::vector<std::string> names() const = 0;
   struct Answer {
-    std::string problem{};        // of a refusal; empty: it was read
-    Json curves = Json::array();  // [{name, unit, times [s], values}]; without variables that the recording lacks
-    std::size_t samples = 1;      // from which two values were kept; 1: all are there
+    std::string problem{};               // of a refusal; empty: it was read
+    Json curves = Json::array();         // [{name, unit, times [s], values}]
+    std::vector<std::string> unknown{};  // names that the recording has not
+    std::size_t samples = 1;             // from which two values were kept; 1: all are there
   };
   // done is called once.
   using Done = std::function<void(Answer)>;

@@ -156,6 +156,7 @@ void Gateway::read_curves(const CallPlace& place, const Json& request) {
   def_.curves->read(std::move(wanted), [this, place](RecordedCurves::Answer answer) {
     respond(place, Json({{"accepted", answer.problem.empty()},
                          {"reason", answer.problem},
+                         {"unknown", answer.unknown},
                          {"samples", answer.samples},
                          {"curves", std::move(answer.curves)}}));
   });
@@ -171,8 +172,8 @@ void Gateway::take_over(const CallPlace& place, const Json& request) {
   if (input != "none" && input != "script") return fail(place, "'input' is not none or script; nothing was started");
   if (input == "script") wanted.input = ContinuationInput::script;
   if (const Json* duration = request.find("duration")) wanted.duration = duration->number();
-  if (!(wanted.duration == 0 || (wanted.duration > wanted.time && wanted.duration <= kLongestSession)))
-    return fail(place, "'duration' is neither 0 nor a time behind 'time' of at most 1e9 s; nothing was started");
+  if (!(wanted.duration >= 0 && wanted.duration <= kLongestSession))
+    return fail(place, "'duration' is no time from 0 to 1e9 s; nothing was started");
   def_.continuation->start(wanted, [this, place](const Continuation::Answer& answer) {
     respond(place, Json({{"accepted", answer.problem.empty()},
                          {"reason", answer.problem},

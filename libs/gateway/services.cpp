@@ -42,12 +42,14 @@ Json continuation_schema() {
 
 Json curves_schema() {
   const Json numbers = {{"type", "array"}, {"items", {{"type", "number"}}}};
+  const Json names = {{"type", "array"}, {"items", {{"type", "string"}}}};
   Json curve = object_schema({{"name", member("string", "of the variable")},
                               {"unit", member("string", "SI")},
                               {"times", numbers},
                               {"values", numbers}});
   return object_schema({{"accepted", member("boolean", "")},
                         {"reason", member("string", "of a refusal")},
+                        {"unknown", names},
                         {"samples", member("integer", "whose least and largest values are there; 1: all samples are")},
                         {"curves", {{"type", "array"}, {"items", std::move(curve)}}}});
 }

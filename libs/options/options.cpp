@@ -340,7 +340,9 @@ bool Command::has(const std::string& name) const {
 }
 
 Command Command::command(const std::string& name, const std::string& description) {
-  return {app_->add_subcommand(name, description), chosen_};
+  CLI::App* const command = app_->add_subcommand(name, description);
+  command->footer("");  // CLI11 copies that of the parent
+  return {command, chosen_};
 }
 
 void Command::require_command() {

@@ -183,11 +183,16 @@ std::uint64_t Writer::log_time_of(const MessageStamp& stamp) {
   // a new epoch begins one step behind the last time of the one before
   auto start = epoch_start_.find(stamp.epoch);
   if (start == epoch_start_.end()) {
-    const std::uint64_t step = static_cast<std::uint64_t>(communication_step_.ns);
-    start = epoch_start_.emplace(stamp.epoch, epoch_start_.empty() ? 0 : last_log_time_ + step).first;
+    EpochStart begin;
+    if (!epoch_start_.empty()) {
+      begin.time = last_log_time_ + static_cast<std::uint64_t>(communication_step_.ns);
+      const auto first = first_steps_.find(stamp.epoch);
+      if (first != first_steps_.end()) begin.step = first->second;
+    }
+    start = epoch_start_.emplace(stamp.epoch, begin).first;
   }
-  const SimTime since_reset = start_of(std::max<StepIndex>(stamp.step, 0), communication_step_);
-  return start->second + static_cast<std::uint64_t>(since_reset.ns);
+  const SimTime since_begin = start_of(std::max<StepIndex>(stamp.step - start->second.step, 0), communication_step_);
+  return start->second.time + static_cast<std::uint64_t>(since_begin.ns);
 }
 
 Status Writer::emit(const MessageStamp& stamp, std::uint16_t channel, ByteSpan payload) {
@@ -276,12 +281,12 @@ void Writer::roll_back() {
 void Writer::note_lost(std::uint64_t log_time) {
   if (first_lost_step_) return;
   // place in the newest epoch that begins at or before that time
-  std::uint64_t epoch_start = 0;
+  EpochStart newest;
   for (const auto& [epoch, start] : epoch_start_) {
-    if (start <= log_time) epoch_start = std::max(epoch_start, start);
+    if (start.time <= log_time && start.time >= newest.time) newest = start;
   }
-  first_lost_step_ =
-      static_cast<StepIndex>((log_time - epoch_start) / static_cast<std::uint64_t>(communication_step_.ns));
+  first_lost_step_ = newest.step + static_cast<StepIndex>((log_time - newest.time) /
+                                                          static_cast<std::uint64_t>(communication_step_.ns));
 }
 
 std::uint64_t Writer::messages_in_file(ChannelId channel) const {

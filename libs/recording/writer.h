@@ -5,9 +5,10 @@
 // front; then chunks of about 1 MiB of messages in the order (epoch, step, channel, sequence); index, statistics and
 // footer at the end. If the process dies at any moment, the file is readable up to the last chunk handed over.
 //
-// log_time of a message = simulation time of its step in ns, H * max(step, 0); every reset of the session (a new epoch)
-// continues one step behind the last time written, so that it never goes backwards in the file. Messages that come
-// after their step left the sort window are written with their own time and counted (late_messages).
+// log_time of a message = simulation time of its step in ns, H * max(step, 0); the first step of every later epoch
+// (reset, load) follows one step behind the last time written: the time neither goes backwards in the file nor jumps
+// ahead. Messages that come after their step left the sort window are written with their own time and counted
+// (late_messages).
 // publish_time = wall clock at the publisher, or log_time when that is unknown.
 //
 // Not thread-safe. write() does not allocate once the first chunk is full; it compresses in the caller's thread
@@ -89,6 +90,10 @@ class Writer {
   // Channels of one type share its schema. Errors: storage; bad_input when there are too many.
   [[nodiscard]] Status add_channel(const ChannelDef& channel, ChannelId& id);
 
+  // The step with which an epoch begins: that of a loaded state. Before the epoch's first message; an epoch that is not
+  // named begins with step 0. Messages of earlier steps of it have the time of this one.
+  void begin_epoch(std::uint32_t epoch, StepIndex first_step) { first_steps_[epoch] = first_step; }
+
   // payload: serialised sample with its 4-byte encapsulation header. Once a write has failed, every later one returns
   // that failure and counts the message as lost. Errors: storage; failed for a channel that was not added, a step
   // out of range or a payload above kMaxMessageBytes.
@@ -147,7 +152,13 @@ class Writer {
   std::uint64_t declared_bytes_ = 0;           // bytes of schemas and channels, which the end repeats
   std::vector<std::uint64_t> pending_counts_;  // messages of each channel in the open chunk
 
-  std::map<std::uint32_t, std::uint64_t> epoch_start_;  // ns, log time of step 0 of each epoch
+  // where an epoch lies on the time of the file
+  struct EpochStart {
+    std::uint64_t time = 0;  // ns, log time of its first step
+    StepIndex step = 0;      // that step
+  };
+  std::map<std::uint32_t, EpochStart> epoch_start_;
+  std::map<std::uint32_t, StepIndex> first_steps_;  // of the epochs that do not begin with step 0
   std::uint64_t last_log_time_ = 0;
 
   std::optional<std::int64_t> last_flush_ns_;

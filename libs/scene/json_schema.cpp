@@ -7,6 +7,7 @@
 
 #include "core/json.h"
 #include "flex/field_tables.h"
+#include "multibody/model/defs.h"
 #include "scene/defs.h"
 #include "scene/element_table.h"
 #include "scene/field_reader.h"
@@ -88,7 +89,8 @@ Json type_of(const Field& field, Values values) {
     case FieldType::boolean:
       return or_expression({{"type", "boolean"}}, values);
     case FieldType::text:
-      return {{"type", "string"}};
+      // a text of one number needs no quotes
+      return {{"type", Json::array({"string", "number"})}};
     case FieldType::triple:
       return or_point(list_of(quantity(field.range, values), 3), field, values);
     case FieldType::triples:
@@ -257,7 +259,8 @@ Json element_of_template(std::string_view section) {
   return schema;
 }
 
-Json elements_of(std::string_view section) {
+// All forms of the elements of a section; the last one is laid over a template.
+Json forms_of(std::string_view section) {
   Json types = Json::array();
   for (const ElementTable& table : element_tables()) {
     if (table.section != section) continue;
@@ -275,9 +278,39 @@ Json elements_of(std::string_view section) {
     types.push_back(parts_body(table));
   }
   types.push_back(element_of_template(section));
-  return {{"type", "object"},
-          {"propertyNames", {{"pattern", kNamePattern}, {"maxLength", kMaxNameLength}}},
-          {"additionalProperties", Json{{"oneOf", types}}}};
+  return types;
+}
+
+// An element that may extend an included one: keys of one of the section's forms, none of them required.
+Json partial_element(const Json& forms) {
+  Json parts = Json::array();
+  for (const Json& form : forms.items()) {
+    Json part = form;
+    // what lies over a template takes any key, and only `use` makes it one
+    if (form.at("properties").find(kUseKey) == nullptr) {
+      for (const char* const demand : {"required", "oneOf"}) part.erase(demand);
+    }
+    parts.push_back(std::move(part));
+  }
+  return {{"anyOf", std::move(parts)}};
+}
+
+// Ground is there by itself and has named points alone.
+Json ground(const Json& forms) {
+  Json schema = {{"type", "object"}, {"description", "the world"}, {"additionalProperties", false}};
+  schema["properties"] = {{kPointsKey, forms.items().front().at("properties").at(kPointsKey)}};
+  return schema;
+}
+
+// The elements of a file: whole ones, or with an include also parts of those of the included files.
+enum class Elements { whole, of_include };
+
+Json elements_of(std::string_view section, Elements elements) {
+  const Json forms = forms_of(section);
+  Json schema = {
+      {"additionalProperties", elements == Elements::whole ? Json{{"oneOf", forms}} : partial_element(forms)}};
+  if (section == "bodies") schema["properties"] = {{std::string(multibody::kGroundName), ground(forms)}};
+  return schema;
 }
 
 Json script() {
@@ -322,7 +355,12 @@ std::string flexible_json_schema() {
   Json& properties = schema["properties"];
   properties["include"] = {{"anyOf", Json::array({text, list_of(text, 0)})},
                            {"description", "files that this one is merged over"}};
-  properties["materials"] = named(object_of(flex::material_fields(), "material", "", Values::plain));
+  // with an include a material may be that of the included file with other values
+  Json material = object_of(flex::material_fields(), "material", "", Values::plain);
+  schema["if"] = {{"required", Json::array({"include"})}};
+  schema["else"] = {{"properties", {{"materials", named(material)}}}};
+  material.erase("required");
+  properties["materials"] = named(std::move(material));
   properties["sections"] = named(flexible_section());
   properties["line"] = object_of(flex::line_fields(), "nodes 1, 2, ... at equal distances", "", Values::plain);
   properties["nodes"] = {{"type", "object"},
@@ -389,7 +427,17 @@ std::string json_schema() {
   for (const SingleTable& table : single_tables()) {
     properties[std::string(table.section)] = object_of(table.fields, table.doc, "", Values::of_scene);
   }
-  for (const std::string_view section : element_sections()) properties[std::string(section)] = elements_of(section);
+  Json whole = Json::object(), of_include = Json::object();
+  for (const std::string_view key : element_sections()) {
+    const std::string section(key);
+    properties[section] = {{"type", "object"},
+                           {"propertyNames", {{"pattern", kNamePattern}, {"maxLength", kMaxNameLength}}}};
+    whole[section] = elements_of(section, Elements::whole);
+    of_include[section] = elements_of(section, Elements::of_include);
+  }
+  schema["if"] = {{"required", Json::array({"include"})}};
+  schema["then"] = {{"properties", std::move(of_include)}};
+  schema["else"] = {{"properties", std::move(whole)}};
   return schema.dump(2, Json::Order::as_put) + "\n";
 }
 

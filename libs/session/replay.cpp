@@ -65,7 +65,7 @@ class Replay {
   ReplayResult run() {
     epoch_ = epochs_.first();
     if (end_ != nullptr) {
-      last_epoch_ = epochs_.last();
+      last_epoch_ = end_->epoch.value_or(epochs_.last());
       config_ = io_node::make_config(scene_, "", io_node::Recording::none);
       follower_.emplace(config_);
     }
@@ -77,8 +77,8 @@ class Replay {
     filter.topics.emplace_back(recording::kStateHashesTopic);
     const Status status = reader_.for_each(filter, [this](const recording::RecordedMessage& message) {
       take(message);
-      return has_stopped_ || (is_at_end() && is_all_compared()) || node::stop_requested.load() != 0 ? Visit::stop
-                                                                                                    : Visit::go_on;
+      const bool is_done = has_stopped_ || is_past_end_ || (is_at_end() && is_all_compared());
+      return is_done || node::stop_requested.load() != 0 ? Visit::stop : Visit::go_on;
     });
     if (!status.is_ok()) throw Failure(status.code, status.text);
     if (!has_stopped_ && (end_ == nullptr || is_at_end())) finish_epoch(EpochEnd::recording);
@@ -124,10 +124,11 @@ class Replay {
   void save_end() {
     const double H = scene_.session.step_duration().seconds();
     if (!is_at_end() || next_ > end_->step) {
+      const std::string of = end_->epoch ? fmt::format("epoch {}", *end_->epoch) : "its last epoch";
       throw Failure(ExitCode::bad_input,
-                    fmt::format("the recording ends before step {} (t = {:.6g} s) of its last epoch, or that begins "
-                                "later; nothing was saved; set --until to an earlier time",
-                                end_->step, static_cast<double>(end_->step) * H));
+                    fmt::format("the recording ends before step {} (t = {:.6g} s) of {}, or that begins later; nothing "
+                                "was saved; set --until to an earlier time",
+                                end_->step, static_cast<double>(end_->step) * H, of));
     }
     if (const Status can = session_.can_save(); !can.is_ok()) throw Failure(can.code, can.text);
     io_node::SavedSession& saved = end_->saved;
@@ -263,6 +264,10 @@ class Replay {
     if (!transport::decode(bytes, tick_)) return stop("a tick cannot be decoded");
     const wire::Header& header = tick_.header;
     if (header.phase == Phase::init && header.epoch == epoch_ + 1) {
+      if (end_ != nullptr && epoch_ == last_epoch_) {
+        is_past_end_ = true;
+        return;
+      }
       finish_epoch(EpochEnd::reset);
       if (has_stopped_) return;
       epoch_ = header.epoch;
@@ -453,10 +458,11 @@ class Replay {
   std::optional<io_node::TickFollower> follower_;
   RecordedEpochs epochs_;
   bool has_stopped_ = false;
+  bool is_past_end_ = false;  // the epoch behind the last computed one has begun
   std::uint32_t epoch_ = 0;
-  std::uint32_t last_epoch_ = 0;
-  StepIndex begin_ = 0;  // first step of the epoch
-  StepIndex next_ = 0;   // step that the next tick starts
+  std::uint32_t last_epoch_ = 0;  // of the part that is computed
+  StepIndex begin_ = 0;           // first step of the epoch
+  StepIndex next_ = 0;            // step that the next tick starts
   std::uint64_t init_hash_ = 0;
   std::array<Hashes, wire::kRoles> hashes_;  // by role
   std::map<StepIndex, wire::Tick> waiting_ticks_;

@@ -40,7 +40,8 @@ struct ReplayResult {
 
 // End of the computed part of a recording, and the session's states there.
 struct ReplayEnd {
-  StepIndex step = 0;  // step of the last epoch; replay continues to the next one at which all nodes exchange
+  std::optional<std::uint32_t> epoch;  // none: the last one of the recording
+  StepIndex step = 0;                  // of that epoch; replay continues to the next one at which all nodes exchange
   io_node::SavedSession saved;
 };
 

@@ -174,6 +174,18 @@ TEST_F(Distributed, VerbsLookAtAndChangeARunningSession) {
   EXPECT_NE(listed.out.find("1500 kg  500 kg"), std::string::npos) << listed.out;
   EXPECT_NE(listed.out.find("25 bar"), std::string::npos) << listed.out;
   EXPECT_EQ(slewring({"param", "set", "Bag.mass=-1"}).code, 2);
+  // a program that reads the answer has one of a refusal too
+  for (const char* const refused : {"Bag.mass=-1", "Cyl_Lift.piston_diameter=1", "Nothing.mass=1"}) {
+    const CommandResult json = slewring({"param", "set", refused, "--json"});
+    EXPECT_EQ(json.code, 2) << refused;
+    const nlohmann::json answer = nlohmann::json::parse(json.out);
+    EXPECT_FALSE(answer.at("accepted").get<bool>()) << refused;
+    EXPECT_NE(answer.at("reason").get<std::string>(), "") << refused;
+  }
+  const CommandResult absent = slewring({"control", "load", "no_such.saved"});
+  EXPECT_EQ(absent.code, 2);
+  EXPECT_NE(absent.err.find("nothing was done"), std::string::npos) << absent.err;
+  EXPECT_EQ(absent.err.find("started"), std::string::npos) << absent.err;
   EXPECT_EQ(slewring({"param", "set", "Cyl_Lift.piston_diameter=1"}).code, 2);
 
   const CommandResult early = slewring({"control", "step"});
@@ -253,6 +265,19 @@ TEST_F(Distributed, ResetIsRecordedAndReplayed) {
   const CommandResult replayed = offline({"replay", work_.recording().string(), "--verify", "--json"});
   EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
   EXPECT_EQ(nlohmann::json::parse(replayed.out).at("epochs"), 2);
+  // no table of inputs goes over the return to the start
+  const CommandResult table = offline({"export", work_.recording().string(), "--input"});
+  EXPECT_EQ(table.code, 2) << table.out;
+  EXPECT_EQ(table.out, "");
+  EXPECT_NE(table.err.find("epoch 1 from "), std::string::npos) << table.err;
+  // a state of each epoch
+  for (const char* const epoch : {"0", "1"}) {
+    const std::string saved = (work_.path() / (std::string("epoch") + epoch + ".saved")).string();
+    const CommandResult until =
+        offline({"replay", work_.recording().string(), "--until", "4 ms", "--epoch", epoch, "--save", saved});
+    EXPECT_EQ(until.code, 0) << until.err;
+  }
+  EXPECT_EQ(offline({"replay", work_.recording().string(), "--until", "4 ms", "--epoch", "7", "--save", "x"}).code, 2);
 }
 
 // Ranges, flags, times and plots come from what was seen and what the recorder counted; a reader of the whole recording

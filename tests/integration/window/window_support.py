@@ -139,16 +139,18 @@ UPGRADE = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec_WebSocket_Versi
 
 
 def send_raw(address, data):
-    """Bytes, and whether the connection was closed or answered in the end."""
+    """The answer to these bytes, when the connection is closed; empty: there was none."""
+    answer = b""
     host, port = address.rsplit(":", 1)
     with socket.create_connection((host, int(port)), timeout=DEADLINE) as connection:
         try:
             connection.sendall(data)
             connection.shutdown(socket.SHUT_WR)
-            while connection.recv(65536):
-                pass
+            while part := connection.recv(65536):
+                answer += part
         except OSError:  # closed with bytes unread
             pass
+    return answer
 
 
 def open_websocket(address, target="/"):

@@ -180,6 +180,70 @@ def take_over(folder):
         window.process.kill()
 
 
+def take_over_behind_reset(folder):
+    """A session is taken over from what playback shows at a time, in front of a reset and behind it."""
+    domain = take_domain()
+    session = Program(folder, "session", "run", f"{SOURCES}/scenes/truck_crane.yaml", "--session", "reset", "--step",
+                      "4 ms", "--set", "recording.every=1", "--out", f"{folder}/first", "--quiet", "--domain", domain,
+                      "--duration", "0")
+
+    def control(*words):
+        return subprocess.run([SLEWRING, "control", *words, "--session", "reset", "--domain", domain],
+                              capture_output=True, text=True)
+
+    def has_reached(step):
+        done = control("save", f"{folder}/{len(os.listdir(folder))}.saved")
+        return done.returncode == 0 and int(re.match(r"accepted\((\d+)\)", done.stdout)[1]) > step
+
+    def request_of(word):
+        done = control(word)
+        require(done.returncode == 0, f"{word}: {done.stdout}{done.stderr}")
+
+    try:
+        wait_for("2 s of the session", lambda: has_reached(500))
+        request_of("reset")
+        wait_for("1 s behind the reset", lambda: has_reached(250))
+        request_of("stop")
+        session.process.wait(DEADLINE)
+    finally:
+        session.process.kill()
+    first = f"{folder}/first/" + os.listdir(f"{folder}/first")[0]
+    shown = subprocess.run([SLEWRING, "export", first, "--csv", "--only", "Cyl_Lift.stroke"], check=True,
+                           capture_output=True, text=True).stdout.splitlines()
+    rows = [tuple(float(value) for value in line.split(",")) for line in shown if line[:1].isdigit()]
+    info = json.loads(subprocess.run([SLEWRING, "info", "--json", "--events", first], check=True, capture_output=True,
+                                     text=True).stdout)
+    require(abs(info["duration"] - rows[-1][0]) < 0.01 and info["from"] == 0, f"{info['duration']}, {rows[-1]}")
+    input_table = subprocess.run([SLEWRING, "export", first, "--input"], capture_output=True, text=True)
+    begin = re.search("epoch 1 from ([0-9.]*) s", input_table.stderr)
+    require(input_table.returncode == 2 and begin and not input_table.stdout,
+            f"a table over a reset: {input_table.stdout}{input_table.stderr}")
+    begin = float(begin[1])
+    for number, at in enumerate((rows[len(rows) // 4][0], begin + 0.4)):
+        expected = next(row for row in rows if row[0] >= at - 1e-9)[1]
+        window = Program(folder, "window", "window", first, "--port", "0", "--json", "--session", f"taken{number}",
+                         "--domain", domain)
+        try:
+            client = Client(window.address())
+            answer = client.call("take_over", {"time": at})
+            require(answer["accepted"], f"at {at} s: {answer}")
+            page = re.match("http://([^/]*)/", answer["page"])[1]
+            wait_for("the window of the session", lambda: request(page, "/session.json")[0] == 200)
+            wait_for("its end", lambda: subprocess.run([SLEWRING, "control", "stop", "--session", f"taken{number}",
+                                                        "--domain", domain], capture_output=True).returncode == 0)
+            second = wait_for("its recording", lambda: re.search(rf"taken{number}: (\S*)/session.mcap",
+                                                                 text_of(window.out)))[1]
+            window.end()
+        finally:
+            window.process.kill()
+        taken = subprocess.run([SLEWRING, "export", os.path.join(folder, second), "--csv", "--only", "Cyl_Lift.stroke"], check=True,
+                               capture_output=True, text=True).stdout.splitlines()
+        got = next(tuple(float(value) for value in line.split(",")) for line in taken if line[:1].isdigit())
+        own = at if number == 0 else at - begin
+        require(abs(got[0] - own) < 0.0061, f"the session goes on at {got[0]} s, expected {own} s")
+        require(abs(got[1] - expected) < 1e-4, f"at {at} s: stroke {got[1]} m, shown {expected} m")
+
+
 def opens_browser(folder):
     """The page is opened on a desktop, unless that is not wanted."""
     subprocess.run([SLEWRING, "run", f"{SOURCES}/scenes/single_cylinder.yaml", "--in-process", "--pace", "free",
@@ -302,6 +366,16 @@ def door(folder):
                 (403, request(address, f"/{query}", Origin="null", **foxglove))):
             require(answer[0] == expected, f"expected {expected}, got {answer}")
             require(len(answer[1]) > 10, f"{expected} without a reason")
+        # what is no HTTP is answered with a reason
+        for data in (b"GET / HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n",
+                     b"GET / HTTP/1.1\r\nHost: a\r\nContent-Length: 99999999999999999999\r\n\r\n",
+                     b"\0\1\2\xff\r\n\r\n", b"GET /\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n",
+                     b"GET / HTTP/1.1\r\nHost a\r\n\r\n"):
+            answer = send_raw(address, data)
+            require(answer.startswith(b"HTTP/1.1 400 ") and b"nothing was changed" in answer, f"{data}: {answer}")
+        body = json.dumps({"version": 1})
+        require(send(address, f"/workspace.json{query}", "PUT", body, Origin="http://evil.com")[0] == 403,
+                "a foreign origin with a body")
         # what is no HTTP, a header without an end, a body that was not wanted
         for data in (b"\0" * 1000, b"GET / HTTP/1.1\r\n" + b"X: " + b"y" * 100_000, b"\x16\x03\x01" * 500,
                      f"POST / HTTP/1.1\r\nHost: {address}\r\nContent-Length: 99999999\r\n\r\nabc".encode()):
@@ -335,11 +409,27 @@ def door(folder):
         done = subprocess.run([SLEWRING, "window", "--session", "none", "--domain", domain, *arguments],
                               capture_output=True, text=True, timeout=DEADLINE)
         require(done.returncode == 2 and text in done.stderr, f"{arguments}: {done.returncode}: {done.stderr}")
+    # a scene's session is not started without its window
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        for arguments, code, text in ((("--listen", "0.0.0.0"), 2, "name a file with --token-file"),
+                                      (("--listen", "here"), 2, "is no address"),
+                                      (("--token-file", "/dev/null"), 2, "no token"),
+                                      (("--token-file", "nosuch"), 2, "the file cannot be read"),
+                                      (("--web", "nosuch"), 2, "'nosuch' has no index.html"),
+                                      (("--allow-origin", "*"), 2, "'*' is no origin as browsers send it"),
+                                      (("--port", str(taken.getsockname()[1])), 7, "Address already in use")):
+            done = subprocess.run([SLEWRING, "window", f"{SOURCES}/scenes/truck_crane.yaml", "--domain", domain,
+                                   "--duration", "0.1 s", "--out", f"{folder}/none", *arguments],
+                                  capture_output=True, text=True, timeout=DEADLINE, cwd=folder)
+            require(done.returncode == code and text in done.stderr and "nothing was " in done.stderr,
+                    f"{arguments}: {done.returncode}: {done.stdout}{done.stderr}")
+            require(not os.path.exists(f"{folder}/none"), f"{arguments}: a session was started")
 
 
 CASES = {"AForeignClientWatchesAndChangesALiveSession": live, "ARecordingIsSoughtByAForeignClient": recording,
          "TheDoorRefusesHostileRequests": door, "MeshesFilesAndTheWorkspaceComeByHttp": files,
          "ASessionTakesOverFromARecordingWithTheSameBits": take_over,
+         "ASessionTakesOverFromWhatIsShownBehindAReset": take_over_behind_reset,
          "ThePageShowsChangesAndDrivesASession": page_live, "ThePageFollowsTheSliderOfARecording": page_recording,
          "ASceneIsEditedSavedAndRestartedInThePage": page_edits,
          "ThePageOperatesAndPlots": page_inputs, "ThePageIsOperatedByTouch": page_phone,

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/failure.h"
+#include "device_node/can_bus.h"
 #include "device_node/input_device.h"
 #include "devices/dbc.h"
 #include "devices/j1939.h"
@@ -61,6 +63,24 @@ TEST(CanOut, AFrameForEachMessageHasTheValuesOfOneStep) {
   EXPECT_EQ(frames[1].bytes[3], std::byte{7600 & 0xFF});
   EXPECT_EQ(frames[1].bytes[4], std::byte{7600 >> 8});
   EXPECT_EQ(device->counts().at("sent").integer(), 2);
+}
+
+// a damaged line is no frame that never came
+TEST(CanLogFile, ALineThatIsNoFrameIsRefusedWithItsNumber) {
+  const testing::TemporaryFolder folder("can_log");
+  const std::string front = "(10.000000) can0 100#64000100\n(10.010000) can0 100#R\n\n";
+  for (const char* const line : {"(10.020000) can0 1000#64", "(10.020000) can0 10#64", "(10.020000) can0 800#64",
+                                 "(10.020000) can0 100#640", "(10.020000) can0 100#001122334455667788", "more"}) {
+    const std::string path = folder.write("bad.log", front + line + "\n").string();
+    try {
+      static_cast<void>(open_can_log(path));
+      ADD_FAILURE() << line;
+    } catch (const Failure& failure) {
+      EXPECT_NE(std::string(failure.what()).find("bad.log:4: is no line of 'candump -l'"), std::string::npos)
+          << failure.what();
+    }
+  }
+  EXPECT_NE(open_can_log(folder.write("good.log", front).string()), nullptr);
 }
 
 TEST(CanIn, RecordedFramesMoveInputsWhileAllSignalsAreThere) {

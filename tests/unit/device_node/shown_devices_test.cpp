@@ -95,6 +95,36 @@ TEST(UdpOut, PacketsKeepTheirDistance) {
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(dash.height(i), 2.0 * static_cast<double>(i));
 }
 
+// steps of 1 and 3 ms, and an `every` of 2 ms that is no multiple of them: never less than 2 ms
+TEST(UdpOut, NoTwoPacketsAreCloserThanEvery) {
+  Dash dash;
+  for (StepIndex step = 0; step < 31; step += 3) dash.publish_step(step, static_cast<double>(step), 1e5);
+  for (StepIndex step = 31; step < 40; ++step) dash.publish_step(step, static_cast<double>(step), 1e5);
+  ASSERT_GE(dash.packets.size(), 14u);
+  for (std::size_t i = 1; i < dash.packets.size(); ++i) EXPECT_GE(dash.height(i) - dash.height(i - 1), 2) << i;
+  // the first step behind the time is taken
+  const std::vector<double> last = {30, 32, 34, 36, 38};
+  for (std::size_t i = 0; i < last.size(); ++i) EXPECT_EQ(dash.height(dash.packets.size() - 5 + i), last[i]);
+}
+
+TEST(UdpOut, ABlockRateThatDoesNotDivideEveryGivesTheLongerTime) {
+  Dash dash;
+  // `every` 2 ms, a step published every 1.5 ms: 3 ms, not 1.5 and 3 by turns
+  for (int i = 0; i < 9; ++i) {
+    wire::VariableBlock block;
+    block.header.step = i;
+    block.header.role = wire::Role::mechanics;
+    for (const double value : {-1.0, 1.5 * i}) block.values.push_back(value);
+    dash.device->feed().take(block, 1.5e-3 * i);
+    block.header.role = wire::Role::hydraulics;
+    block.values.clear();
+    block.values.push_back(1e5);
+    dash.device->feed().take(block, 1.5e-3 * i);
+  }
+  ASSERT_EQ(dash.packets.size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_DOUBLE_EQ(dash.height(i), 3.0 * static_cast<double>(i));
+}
+
 TEST(UdpOut, OutputsFollowEveryStepBetweenTwoPackets) {
   Dash dash;
   const double pressures[] = {1e5, 3e5, 1.6e5, 1.6e5, 1.4e5, 1.4e5, 1.4e5};

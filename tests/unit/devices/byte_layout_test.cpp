@@ -226,8 +226,10 @@ TEST(Packet, AfterLostOnesIsUsedUpToTheirLimit) {
   EXPECT_EQ(receiver.state.counts.lost, 2U);
   EXPECT_EQ(receiver.take(small_packet(5, 2)), PacketFault::out_of_sequence);  // 2 to 4
   EXPECT_EQ(receiver.values[0], 1);
+  EXPECT_EQ(receiver.state.counts.jumps, 0U);
   EXPECT_EQ(receiver.take(small_packet(6, 3)), PacketFault::none);  // the sequence goes on from the refused one
   EXPECT_EQ(receiver.state.counts.lost, 2U);
+  EXPECT_EQ(receiver.state.counts.jumps, 1U);  // a loss without a number is stated
 }
 
 TEST(Packet, ThatIsLateIsRefusedAndASenderThatStartsAgainIsUsed) {
@@ -370,6 +372,23 @@ TEST(Layout, RefusesWrongDefinitions) {
   EXPECT_EQ(with([](auto& d) { d.fields[1].name = "n"; }), "Small.n: the name is used twice in the layout");
   EXPECT_EQ(with([](auto& d) { d.fields[1].name = "1x"; }), "Small.1x: '1x' is no name for a field");
   EXPECT_EQ(with([](auto& d) { d.fields[1].name = "float"; }), "Small.float: 'float' is no name for a field");
+  // ISO C11 and C23, C++20: keywords and alternative tokens; what compilers and the header itself define
+  for (const char* const word :
+       {"alignof",       "and",           "and_eq",       "bitand",    "bitor",     "char8_t",
+        "char16_t",      "char32_t",      "co_await",     "co_yield",  "co_return", "compl",
+        "concept",       "consteval",     "constexpr",    "constinit", "decltype",  "dynamic_cast",
+        "export",        "noexcept",      "not_eq",       "nullptr",   "or",        "or_eq",
+        "requires",      "static_assert", "thread_local", "typeid",    "typeof",    "typeof_unqual",
+        "wchar_t",       "xor",           "xor_eq",       "restrict",  "_Alignas",  "_Atomic",
+        "_BitInt",       "_Bool",         "_Complex",     "_Generic",  "_Noreturn", "_Static_assert",
+        "_Thread_local", "__int128",      "uint8_t",      "int64_t",   "NULL",      "linux",
+        "unix"}) {
+    EXPECT_EQ(with([word](auto& d) { d.fields[1].name = word; }),
+              fmt::format("Small.{}: '{}' is no name for a field", word, word));
+  }
+  // near to them, and allowed
+  for (const char* const word : {"xor8", "override", "final", "import", "module", "_x", "Float"})
+    EXPECT_EQ(with([word](auto& d) { d.fields[1].name = word; }), "") << word;
   EXPECT_EQ(with([](auto& d) { d.fields[1].scale = 0; }), "Small.x.scale: 0 maps every value to one number");
   EXPECT_EQ(with([](auto& d) { d.fields[1].scale = NAN; }), "Small.x.scale: nan is out of range");
   EXPECT_EQ(with([](auto& d) { d.fields[1].offset = INFINITY; }), "Small.x.offset: inf is out of range");

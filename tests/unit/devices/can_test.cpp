@@ -379,6 +379,24 @@ TEST(CanLog, LinesOfCandumpAreRead) {
     EXPECT_FALSE(parse_candump(line)) << line;
 }
 
+// remote and error frames are skipped; no other line without a frame is
+TEST(CanLog, FramesWithoutDataAreNoDamagedLines) {
+  EXPECT_EQ(parse_candump("(1.000000) can0 123#11 R")->frame.size, 1u);
+  for (const char* line : {"(1.000000) can0 123#R", "(1.000000) can0 123#R8", "(1.000000) can0 18F00400#R",
+                           "(1.000000) can0 20000004#0004000000000000", "(1.000000) can0 123#R T\r\n"}) {
+    EXPECT_TRUE(is_logged_without_data(line)) << line;
+    EXPECT_FALSE(parse_candump(line)) << line;
+  }
+  for (const char* line :
+       {"(1.000000) can0 1#00", "(1.000000) can0 12#00", "(1.000000) can0 1234#00", "(1.000000) can0 1234567#00",
+        "(1.000000) can0 800#00", "(1.000000) can0 123#001", "(1.000000) can0 123#001122334455667788",
+        "(1.000000) can0 40000000#00", "(1.000000) can0 20000004#004", "(1.000000) can0 123#R9",
+        "(1.000000) can0 800#R", "(1.000000) can0 1234#R", "", "# a comment"}) {
+    EXPECT_FALSE(is_logged_without_data(line)) << line;
+    EXPECT_FALSE(parse_candump(line)) << line;
+  }
+}
+
 TEST(Dbc, WhatIsWrittenReadsBackToTheSame) {
   Problems problems;
   const CanDatabase machine = load_dbc(kMachine, problems);

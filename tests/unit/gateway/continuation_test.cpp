@@ -93,7 +93,7 @@ TEST_F(ContinuationTest, OfOtherTimesAndInputsIsRefused) {
   take_all(gateway, client);
   for (const char* const request :
        {"{}", R"({"time":-1})", R"({"time":2.1})", R"({"time":"1"})", R"({"time":1,"input":"/etc/passwd"})",
-        R"({"time":1,"input":3})", R"({"time":1,"duration":0.5})", R"({"time":1,"duration":1e300})"}) {
+        R"({"time":1,"input":3})", R"({"time":1,"duration":-0.5})", R"({"time":1,"duration":1e300})"}) {
     const std::vector<std::string> frames = call(gateway, client, request);
     ASSERT_EQ(frames.size(), 1u) << request;
     EXPECT_EQ(Json::parse(frames[0])->at("op").text(), "serviceCallFailure") << request;

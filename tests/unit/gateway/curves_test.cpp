@@ -70,12 +70,13 @@ TEST_F(CurvesTest, AreAnsweredWithTheirSamples) {
   EXPECT_EQ(kept.requests[0].to, 1.5);
   EXPECT_EQ(kept.requests[0].most_values, 100u);
   EXPECT_EQ(kept.requests[0].recording, 1u);
-  kept.dones[0]({.curves = Json::array({Json{{"name", "A.x"}}}), .samples = 3});
+  kept.dones[0]({.curves = Json::array({Json{{"name", "A.x"}}}), .unknown = {"A.y"}, .samples = 3});
   const std::vector<std::string> frames = take_all();
   ASSERT_EQ(frames.size(), 1u);
   const Json answer = *Json::parse(std::string_view(frames[0]).substr(17));
   EXPECT_TRUE(answer.at("accepted").boolean());
   EXPECT_EQ(answer.at("samples").integer(), 3);
+  EXPECT_EQ(answer.at("unknown").texts(), (std::vector<std::string>{"A.y"}));
   EXPECT_EQ(answer.at("curves").items()[0].at("name").text(), "A.x");
 }
 

@@ -150,6 +150,26 @@ TEST(Recording, TimeGoesOnAfterAReset) {
   EXPECT_EQ(times, (std::vector<std::uint64_t>{0, 0, 1, 2, 3, 3, 4, 5}));
 }
 
+TEST(Recording, TimeGoesOnWithoutAGapAfterALoad) {
+  const ScratchDirectory scratch;
+  std::unique_ptr<Writer> writer;
+  ASSERT_EQ(Writer::create(scratch / "a.mcap", sample_identity(), small_limits(), writer).text, "");
+  ChannelId channel{};
+  ASSERT_EQ(writer->add_channel({"t", "t::T", "", {}}, channel).text, "");
+  // epoch 2 begins with the state of step 500, epoch 3 with that of step 70, epoch 4 with INIT
+  writer->begin_epoch(2, 500);
+  writer->begin_epoch(3, 70);
+  for (const auto& [epoch, step] : std::vector<std::pair<std::uint32_t, StepIndex>>{
+           {1, -1}, {1, 0}, {1, 1}, {2, -1}, {2, 500}, {2, 501}, {3, -1}, {3, 70}, {3, 71}, {4, -1}, {4, 0}, {4, 1}}) {
+    ASSERT_EQ(writer->write(channel, {epoch, step, 0, 0}, {}).text, "");
+  }
+  ASSERT_EQ(writer->close({}).text, "");
+  std::vector<std::uint64_t> times;
+  for (const KnownMessage& message : read_all(*open(scratch / "a.mcap")))
+    times.push_back(message.log_time_ns / 1'000'000);
+  EXPECT_EQ(times, (std::vector<std::uint64_t>{0, 0, 1, 2, 2, 3, 4, 4, 5, 6, 6, 7}));
+}
+
 TEST(Recording, LateMessagesAreKeptAndCounted) {
   const ScratchDirectory scratch;
   std::unique_ptr<Writer> writer;

@@ -31,7 +31,7 @@ std::string read_file(const std::string& path) {
 TEST(Schema, HasEveryFieldOfEveryTable) {
   const auto schema = nlohmann::json::parse(json_schema());
   for (const ElementTable& table : element_tables()) {
-    const auto& element = schema["properties"][std::string(table.section)]["additionalProperties"];
+    const auto& element = schema["else"]["properties"][std::string(table.section)]["additionalProperties"];
     const auto alternatives = element.contains("oneOf") ? element["oneOf"] : nlohmann::json::array({element});
     bool is_found = false;
     for (const auto& alternative : alternatives) {
@@ -54,7 +54,7 @@ TEST(Schema, HasEveryFieldOfEveryTable) {
 
 TEST(Schema, ReportsWhichFieldsAreLive) {
   const auto schema = nlohmann::json::parse(json_schema());
-  const auto& bodies = schema["properties"]["bodies"]["additionalProperties"]["oneOf"];
+  const auto& bodies = schema["else"]["properties"]["bodies"]["additionalProperties"]["oneOf"];
   // numbers, mesh, each shape, parts; flexible and segmented; the last one is laid over a template
   const std::size_t rigid_forms = 3 + shape_words().size();
   ASSERT_EQ(bodies.size(), rigid_forms + 3);
@@ -66,7 +66,7 @@ TEST(Schema, ReportsWhichFieldsAreLive) {
 
 TEST(Schema, HasTheFieldsOfABodyFromAMesh) {
   const auto schema = nlohmann::json::parse(json_schema());
-  const auto& bodies = schema["properties"]["bodies"]["additionalProperties"]["oneOf"];
+  const auto& bodies = schema["else"]["properties"]["bodies"]["additionalProperties"]["oneOf"];
   EXPECT_EQ(bodies[1]["properties"]["inertia"]["const"], "from_mesh");
   for (const Field& field : mesh_inertia_fields()) {
     EXPECT_TRUE(bodies[1]["properties"].contains(std::string(field.key))) << field.key;
@@ -78,7 +78,7 @@ TEST(Schema, HasTheFieldsOfABodyFromAMesh) {
 
 TEST(Schema, HasTheFieldsOfABodyFromShapes) {
   const auto schema = nlohmann::json::parse(json_schema());
-  const auto& bodies = schema["properties"]["bodies"]["additionalProperties"]["oneOf"];
+  const auto& bodies = schema["else"]["properties"]["bodies"]["additionalProperties"]["oneOf"];
   const auto expect_fields = [](const nlohmann::json& type, std::span<const Field> fields) {
     for (const Field& field : fields) {
       EXPECT_TRUE(type["properties"].contains(std::string(field.key))) << field.key;
@@ -109,16 +109,37 @@ TEST(Schema, HasTheKeysThatTheLoaderResolves) {
   for (const std::string_view key : language_keys()) {
     EXPECT_FALSE(schema["properties"][std::string(key)]["description"].get<std::string>().empty()) << key;
   }
-  const auto& bodies = schema["properties"]["bodies"]["additionalProperties"]["oneOf"];
+  const auto& bodies = schema["else"]["properties"]["bodies"]["additionalProperties"]["oneOf"];
   EXPECT_TRUE(bodies[0]["properties"].contains("points"));
   for (const std::string_view section : element_sections()) {
-    const auto& types = schema["properties"][std::string(section)]["additionalProperties"]["oneOf"];
+    const auto& types = schema["else"]["properties"][std::string(section)]["additionalProperties"]["oneOf"];
     EXPECT_EQ(types.back()["required"][0], "use") << section;
   }
-  for (const auto& joint : schema["properties"]["joints"]["additionalProperties"]["oneOf"]) {
+  for (const auto& joint : schema["else"]["properties"]["joints"]["additionalProperties"]["oneOf"]) {
     if (joint["properties"].contains("use") || joint["properties"]["type"]["const"] != "revolute") continue;
     EXPECT_TRUE(joint["properties"].contains("frame1"));
     EXPECT_EQ(joint["properties"]["point1"]["anyOf"].size(), 2u);
+  }
+}
+
+// an overlay sets one key of an element of the included scene
+TEST(Schema, WithAnIncludeNoKeyIsRequiredAndNoneIsUnknown) {
+  const auto schema = nlohmann::json::parse(json_schema());
+  for (const ElementTable& table : element_tables()) {
+    const auto& forms = schema["then"]["properties"][std::string(table.section)]["additionalProperties"]["anyOf"];
+    const auto& whole = schema["else"]["properties"][std::string(table.section)]["additionalProperties"]["oneOf"];
+    ASSERT_EQ(forms.size(), whole.size()) << table.section;
+    for (std::size_t i = 0; i + 1 < forms.size(); ++i) {
+      EXPECT_FALSE(forms[i].contains("required") || forms[i].contains("oneOf")) << table.section << i;
+      EXPECT_FALSE(forms[i]["additionalProperties"].get<bool>()) << table.section << i;
+      EXPECT_EQ(forms[i]["properties"], whole[i]["properties"]) << table.section << i;
+    }
+    EXPECT_EQ(forms.back()["required"][0], "use") << table.section;
+  }
+  for (const char* const form : {"then", "else"}) {
+    const auto& ground = schema[form]["properties"]["bodies"]["properties"]["Ground"];
+    EXPECT_EQ(ground["properties"].size(), 1u) << form;
+    EXPECT_TRUE(ground["properties"].contains("points")) << form;
   }
 }
 

@@ -47,6 +47,17 @@ class HttpAnswersTest : public ::testing::Test {
   HttpAnswers answers{def, gateway};
 };
 
+// a refusal of the door is the answer, whatever comes with the request
+TEST_F(HttpAnswersTest, ARefusedRequestWithABodyIsRefusedForItsReason) {
+  gateway::Verdict foreign;
+  foreign.status = 403;
+  foreign.text = "the page that made this request is not the gateway's own";
+  const HttpAnswer answer = answers.answer(foreign, {"PUT", "", {"", ""}, "{}"});
+  EXPECT_EQ(answer.status, 403u);
+  EXPECT_EQ(*answer.content, foreign.text + "\n");
+  EXPECT_EQ(answers.answer(file("page.js"), {"GET", "", {"", ""}, "{}"}).status, 413u);
+}
+
 TEST_F(HttpAnswersTest, APackedFileIsForClientsThatTakeIt) {
   folder.write("page.js", "plain");
   folder.write("page.js.gz", "packed");

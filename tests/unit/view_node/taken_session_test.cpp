@@ -8,6 +8,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "core/failure.h"
+
 namespace taken_session_test {
 
 using namespace slew;
@@ -22,10 +24,16 @@ class TakenSessionTest : public ::testing::Test {
     return options;
   }
   void start(std::vector<std::string>& problems) {
-    taken.start({}, [&](const gateway::Continuation::Answer& answer) { problems.push_back(answer.problem); });
+    taken.start({.time = 3}, [&](const gateway::Continuation::Answer& answer) { problems.push_back(answer.problem); });
   }
 
-  TakenSession taken{options(), "winch"};
+  // a recording whose second epoch begins at 2 s
+  static TakenSession::SessionTime session_time_of(double time) {
+    if (time > 4) throw Failure(ExitCode::bad_input, "the recording has no tick there");
+    return time < 2 ? TakenSession::SessionTime{0, time} : TakenSession::SessionTime{1, time - 2};
+  }
+
+  TakenSession taken{options(), "winch", session_time_of};
   std::vector<std::string> first, second;
 };
 
@@ -61,6 +69,18 @@ TEST_F(TakenSessionTest, AWindowThatCannotBeStartedLeavesNoSession) {
   // the next request is not refused for the sake of this one
   start(second);
   EXPECT_TRUE(second.empty());
+}
+
+TEST_F(TakenSessionTest, ATimeIsThatOfItsEpochInTheSession) {
+  const auto problem_of = [&](const gateway::ContinuationRequest& request) {
+    std::string problem;
+    taken.start(request, [&](const gateway::Continuation::Answer& answer) { problem = answer.problem; });
+    return problem;
+  };
+  EXPECT_EQ(problem_of({.time = 5}), "the recording has no tick there");
+  // 3 s of the recording are 1 s of the session, which a duration of 1 s would end at once
+  EXPECT_NE(problem_of({.time = 3, .duration = 1}).find("would go on at 1 s of its own time"), std::string::npos);
+  EXPECT_EQ(problem_of({.time = 3, .duration = 1.5}), "");  // started
 }
 
 }  // namespace taken_session_test
