@@ -5,7 +5,7 @@
 namespace slew::hydraulics_node {
 namespace {
 
-constexpr std::uint32_t kLayout = 3;
+constexpr std::uint32_t kLayout = 4;
 
 }  // namespace
 

@@ -289,7 +289,7 @@ TEST_F(InProcess, AnExportTakesAPartAndNeverReplacesAFileByItself) {
   EXPECT_EQ(slewring({"export", recording, "-o", "unnamed"}).code, 0);
   refused({"--mat", "--csv", "-o", "b.mat"}, 2, "--csv excludes --mat");
   refused({"Cyl_Lft.force", "-o", "b.mat"}, 2, "there is no variable 'Cyl_Lft.force'; did you mean 'Cyl_Lift.force'?");
-  refused({"--from", "2s", "-o", "b.mat"}, 2, "no value of these variables in this time; it goes from 0 to 0.5 s");
+  refused({"--from", "2s", "-o", "b.mat"}, 2, "no value of these variables in this time; it goes from 0 s to 0.5 s");
   refused({"--from", "soon", "-o", "b.mat"}, 2, "--from 'soon' is not a time of the recording");
   refused({"--from", "2s", "--to", "1s", "-o", "b.mat"}, 2, "--to 1s lies before --from 2s");
   refused({"-o", "nowhere/b.mat"}, 6, "nowhere/b.mat: the MAT-file cannot be written");
