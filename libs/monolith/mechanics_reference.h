@@ -8,8 +8,9 @@
 // friction are states, with the rates of joint_law.h. Not for real time.
 // A second reference shares neither coordinates nor equations nor solver with this one: body_reference.h.
 //
-// Not covered: hydraulics and their ports (monolith.h), formulations and steps of the scene, contacts: their memory
-// (impact speeds, bristles that move from point to point) changes at the ends of steps.
+// Not covered: hydraulics and their ports (monolith.h), formulations and steps of the scene, prescribed motions whose
+// acceleration jumps, contacts: their memory (impact speeds, bristles that move from point to point) changes at the
+// ends of steps.
 #pragma once
 
 #include <span>

@@ -55,8 +55,21 @@ void Monolith::restart_with(std::span<const double> controls, std::span<const do
   must_restart_ = false;
 }
 
+// To t_end, with the accelerations of prescribed motions before a jump there, from those behind one at the start.
+std::string Monolith::advance_piece(double t_end) {
+  if (multibody::is_jump_at(equations_.model().drives, solver_.time())) {
+    const std::span<const double> now = solver_.y();
+    std::copy(now.begin(), now.end(), y_.begin());
+    solver_.restart(solver_.time(), y_);
+  }
+  equations_.set_until(t_end);
+  std::string failure = solver_.advance(t_end);
+  equations_.set_until(multibody::kNever);
+  return failure;
+}
+
 // Stops within prescribed motions that are over between two of the solver's own steps: it would step across a ramp from
-// rest to rest.
+// rest to rest. Stops where the acceleration of one jumps: the solver's polynomials do not hold across.
 std::string Monolith::advance_solver(double t_end) {
   const std::vector<multibody::Drive>& drives = equations_.model().drives;
   const double start = solver_.time(), h = t_end - start;
@@ -66,10 +79,10 @@ std::string Monolith::advance_solver(double t_end) {
       const double piece = multibody::motion_piece(drives, multibody::kResolutionOfRungeKutta, start + done, rest, h);
       if (piece >= rest) break;
       done += piece;
-      if (std::string failure = solver_.advance(start + done); !failure.empty()) return failure;
+      if (std::string failure = advance_piece(start + done); !failure.empty()) return failure;
     }
   }
-  return solver_.advance(t_end);
+  return advance_piece(t_end);
 }
 
 // window by window, with the loops closed in the solver's own values at the end of each

@@ -61,6 +61,7 @@ class Monolith final : private DifferentialEquation {
   void rates(double t, const double* y, double* f) noexcept override { equations_.rates(t, y, f); }
   [[nodiscard]] std::string advance_closed(SimTime t);
   [[nodiscard]] std::string advance_solver(double t_end);
+  [[nodiscard]] std::string advance_piece(double t_end);
   void restart_with(std::span<const double> controls, std::span<const double> slopes);
 
   SceneEquations equations_;

@@ -93,6 +93,9 @@ class SceneEquations {
   // Input channels over the time from t_0 on, (7); both by channel index.
   void set_controls(double t_0, std::span<const double> controls, std::span<const double> slopes);
 
+  // End of the time for which rates() is called next [s]: jumps of prescribed accelerations there are left out.
+  void set_until(double time) noexcept { workspace_.until = time; }
+
   // Error: no live parameter of that path, or a value out of range.
   Status set_parameter(std::string_view path, double value);
   // Present value, SI; none: no live parameter of that path.

@@ -99,6 +99,7 @@ class StartPlacement {
     if (problems_.size() > known) return {};
     std::vector<Pose> poses = start_poses(def_, problems_);
     tree_ = find_tree(def_, problems_);
+    if (std::any_of(def_.gears.begin(), def_.gears.end(), fits_poses)) keep_gears(poses = assembled(false));
     std::vector<double> from, travel;
     double steps = 1;
     for (const StartCoordinate& coordinate : coordinates_) {
@@ -170,6 +171,18 @@ class StartPlacement {
     return std::any_of(tree_.begin(), tree_.end(), [index](const TreeEdge& edge) { return edge.joint == index; });
   }
 
+  // ratio 0 holds its joint where the start puts it
+  static bool fits_poses(const GearDef& gear) { return !is_given(gear.offset) && gear.ratio != 0; }
+
+  // gears without offset get the one of the given poses, with loops closed
+  void keep_gears(const std::vector<Pose>& poses) {
+    for (GearDef& gear : def_.gears) {
+      if (!fits_poses(gear)) continue;
+      const double q1 = coordinates_of(joint_named(def_, gear.joint1), poses)[0];
+      gear.offset = coordinates_of(joint_named(def_, gear.joint2), poses)[0] - gear.ratio * q1;
+    }
+  }
+
   // the tree's coordinates of geared joints count whole turns
   void follow_turns(const Model& model, const State& state, const std::vector<Pose>& poses) {
     for (const GearDef& gear : def_.gears) {
@@ -183,9 +196,8 @@ class StartPlacement {
     }
   }
 
-  // Change of the first coordinate of each joint by these values of the named ones, also of slides that gears with an
-  // offset move. Without it a gear fits the poses, and its other joint stays; angles, which have turns, are left to the
-  // gear's row.
+  // Change of the first coordinate of each joint by these values of the named ones, also of slides that gears move;
+  // angles, which have turns, are left to the gear's row.
   [[nodiscard]] std::vector<double> changes_of_joints(const std::vector<Pose>& poses,
                                                       const std::vector<double>& values) const {
     std::vector<double> change(def_.joints.size());

@@ -2,12 +2,13 @@
 // Start poses for given joint coordinates, with closed loops.
 //
 // The given poses of the bodies are the beginning: at first the joints must fit within kRoughTolerance. The joints
-// named here then go to their coordinates in small steps, and so do slides that are geared to them with a stated
-// offset; the tree beyond them moves along, its other joints as they are. At each step, Newton's method (assembly.h)
-// closes all loops and gears while the named coordinates are held as prescribed motions are, so that a loop stays on
-// the branch on which the poses begin. The bodies that follow are those that the joints' rows move in the metric of the
-// masses. An angle beyond half a turn gives the joint its whole turns (JointAxisDef::start_turns), and those joints
-// that gears turn with it.
+// named here then go to their coordinates in small steps, and so do slides that are geared to them; the tree beyond
+// them moves along, its other joints as they are. At each step, Newton's method (assembly.h) closes all loops and gears
+// while the named coordinates are held as prescribed motions are, so that a loop stays on the branch on which the poses
+// begin. The bodies that follow are those that the joints' rows move in the metric of the masses. A gear without offset
+// keeps the offset that fits the given poses, whichever joint is named; coordinates of all its joints that disagree
+// with it are a problem. A gear of ratio 0 holds its joint where it is put. An angle beyond half a turn gives the joint
+// its whole turns (JointAxisDef::start_turns), and those joints that gears turn with it.
 //
 // Not covered: flexible and segmented bodies, joints without coordinates (spherical, fixed).
 #pragma once

@@ -287,8 +287,10 @@ bool Dynamics::settle_part(const Model& model, State& state, Workspace& ws, doub
     // no values are carried from part to part
     s.matrix->ldl.set_smallest_pivot(model.has_closing_rows() ? ws.loops.factor.smallest_pivot() : 1.0);
   }
+  ws.until = state.time + h;
   is_sound =
       is_sound && multibody::advance(model, s.model, s.rule, {state, bodies}, ws, *s.matrix, s.ws, h, mean, slope);
+  ws.until = kNever;
   // a corner that lands beside resting contacts is an impact
   if (is_sound && !ws.contact->is_hit && is_finite(state)) return true;
   ws.contact->is_lost = was_lost;
@@ -304,7 +306,10 @@ bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, dou
     return take_motions(model, state, ws, h, mean, slope);
   }
   const bool is_fine_enough = is_resolved(ws, h);
-  return take_substep(model, state, ws, h, mean, slope) && is_fine_enough;
+  ws.until = state.time + h;
+  const bool is_sound = take_substep(model, state, ws, h, mean, slope) && is_fine_enough;
+  ws.until = kNever;
+  return is_sound;
 }
 
 // In pieces that resolve the prescribed motions. Their lengths differ: instead of generalised_alpha, whose lead would
@@ -317,13 +322,14 @@ bool Dynamics::take_motions(const Model& model, State& state, Workspace& ws, dou
   bool is_sound = true;
   double done = 0;
   for (int count = 1; done < h; ++count) {
-    if (count > 1) evaluate(model, state, ws);
     const double rest = h - done;
     double piece = motion_piece(model.drives, motion_resolution_, start + done, rest, h);
     if (count == kMostMotionPieces && piece < rest) {
       piece = rest;
       is_sound = false;
     }
+    ws.until = start + done + piece;
+    if (count > 1) evaluate(model, state, ws);
     // the rows' forces continue along their lines
     const double later = done + 0.5 * piece - 0.5 * h;
     for (std::size_t k = 0; k < mean.size(); ++k) piece_mean_[k] = mean[k] + later * slope[k];
@@ -331,6 +337,7 @@ bool Dynamics::take_motions(const Model& model, State& state, Workspace& ws, dou
     is_sound = take_substep(model, state, ws, piece, piece_mean_, slope) && is_fine_enough && is_sound;
     done = piece < rest ? done + piece : h;
   }
+  ws.until = kNever;
   if (leads) {
     stages_->rule.integrator = Integrator::generalised_alpha;
     stages_->forget_lead();

@@ -114,6 +114,7 @@ struct Workspace {
 
   double time = 0;                  // s, time of the motion
   std::vector<MotionValue> drives;  // by Model::drives, at that time: set_time()
+  double until = kNever;            // s, end of the present piece: set_time() leaves jumps of p'' there to the next one
   double mean_over = 0;             // s; not 0: set_time() takes mean accelerations over so long from then on
   std::vector<LinkMotion> motion;
   std::vector<ArticulatedInertia> inertia;

@@ -24,7 +24,7 @@ void set_time(const Model& model, double time, Workspace& ws) noexcept {
   for (std::size_t k = 0; k < model.drives.size(); ++k) {
     const MotionLaw& law = model.drives[k].law;
     MotionValue& value = ws.drives[k];
-    value = evaluate(law, time);
+    value = law.jumps.empty() ? evaluate(law, time) : evaluate(law, time, ws.until);
     if (ws.mean_over > 0) value.acceleration = (evaluate(law, time + ws.mean_over).speed - value.speed) / ws.mean_over;
   }
 }

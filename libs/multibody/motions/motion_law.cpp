@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "multibody/motions/motion_law.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -30,6 +31,18 @@ MotionValue ramp_motion(const MotionLaw& law, double time) noexcept {
           change * 60 * tau * rest * (rest - tau) / (law.duration * law.duration)};
 }
 
+// of a table that is held beyond its ends: constant there
+std::vector<MotionJump> jumps_of(const math::CubicSpline& spline) {
+  constexpr double kRounding = 1e-9;
+  double largest = 0;
+  for (const math::SplinePoint& point : spline.points) largest = std::max(largest, std::fabs(point.second));
+  const math::SplinePoint &first = spline.points.front(), &last = spline.points.back();
+  std::vector<MotionJump> jumps;
+  if (std::fabs(first.second) > kRounding * largest) jumps.push_back({first.x, 0, first.second});
+  if (std::fabs(last.second) > kRounding * largest) jumps.push_back({last.x, last.second, 0});
+  return jumps;
+}
+
 }  // namespace
 
 MotionValue evaluate(const MotionLaw& law, double time) noexcept {
@@ -51,6 +64,14 @@ MotionValue evaluate(const MotionLaw& law, double time) noexcept {
   value.position += more.integral;
   value.speed += more.y;
   value.acceleration = more.slope;
+  return value;
+}
+
+MotionValue evaluate(const MotionLaw& law, double time, double until) noexcept {
+  MotionValue value = evaluate(law, time);
+  for (const MotionJump& jump : law.jumps) {
+    if (jump.is_at(time)) value.acceleration = jump.time < until - kSameInstant ? jump.behind : jump.before;
+  }
   return value;
 }
 
@@ -77,6 +98,8 @@ MotionLaw motion_law(const MotionDef& def, double start) {
     law.spline = math::cubic_spline(def.points, ends);
   }
   law.first = start - (law.spline.empty() ? 0.0 : math::value_at(law.spline, 0).integral);
+  const bool is_held = def.shape == MotionShape::table && def.ends == TableEnds::hold;
+  if (is_held && !law.spline.empty()) law.jumps = jumps_of(law.spline);
   law.resolution = table_resolution(law);
   return law;
 }

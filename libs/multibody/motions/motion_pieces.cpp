@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "multibody/motions/drive.h"
 
@@ -14,7 +13,6 @@ namespace {
 
 // largest error of p' after a jump of p''', as a share of the range of p' around it
 constexpr double kLargestError = 0.01;
-constexpr double kNever = std::numeric_limits<double>::infinity();
 // Instants closer than this share of a sub-step are one.
 constexpr double kOneInstant = 1e-6;
 // An interval of a table shorter than this number of sub-steps is divided as a whole, a longer one next to its jumps.
@@ -62,9 +60,30 @@ Need need_of(const MotionLaw& law, const MotionResolution& resolution, double ti
   return law.spline.empty() ? Need{} : table_need(law, resolution, time, kOneInstant * h, h);
 }
 
+double time_to_jump(const MotionLaw& law, double time, double rest) noexcept {
+  for (const MotionJump& jump : law.jumps) {
+    const bool is_within = jump.time > time && jump.time < time + rest;
+    if (is_within && !jump.is_at(time) && !jump.is_at(time + rest)) return jump.time - time;
+  }
+  return rest;
+}
+
 }  // namespace
 
+double time_to_jump(std::span<const Drive> drives, double time, double rest) noexcept {
+  for (const Drive& drive : drives) rest = time_to_jump(drive.law, time, rest);
+  return rest;
+}
+
+bool is_jump_at(std::span<const Drive> drives, double time) noexcept {
+  return std::any_of(drives.begin(), drives.end(), [time](const Drive& drive) {
+    const auto& jumps = drive.law.jumps;
+    return std::any_of(jumps.begin(), jumps.end(), [time](const MotionJump& jump) { return jump.is_at(time); });
+  });
+}
+
 bool is_motion_fast(const MotionLaw& law, const MotionResolution& resolution, double time, double h) noexcept {
+  if (time_to_jump(law, time, h) < h) return true;
   double at = time;
   const double end = time + h * (1 - kOneInstant);
   // at most the points of a table within h
@@ -135,7 +154,8 @@ double motion_piece(std::span<const Drive> drives, const MotionResolution& resol
                     double h) noexcept {
   double piece = rest;
   for (const Drive& drive : drives) piece = motion_piece(drive.law, resolution, time, rest, h, piece);
-  return piece > rest - kOneInstant * h ? rest : piece;
+  if (piece > rest - kOneInstant * h) piece = rest;
+  return time_to_jump(drives, time, piece);
 }
 
 FastMotion find_fast_motion(const MotionLaw& law, const MotionResolution& resolution, double h) {

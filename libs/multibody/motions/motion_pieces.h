@@ -11,6 +11,8 @@
 // A ramp by D in T has J = 60 D/T^3 and R = 1.875 D/T: h <= T/13 of rk4, T/20 of other rules. A harmonic motion has no
 // jumps: with 10 and 16 sub-steps a period (1) is 5e-5 and 1.3e-2 of its speed.
 // A sub-step beyond that is cut at the jumps and divided evenly between them. Others stay whole, with the same bits.
+// A jump of p'' (MotionJump) within a sub-step would leave up to a half of h p'' as a speed: every sub-step is cut
+// there. A stage at the end of a piece takes p'' before the jump, one at its start that behind it (Workspace::until).
 #pragma once
 
 #include <span>
@@ -36,6 +38,11 @@ inline constexpr int kMostMotionPieces = 64;
 
 // Longest sub-step of (2) by interval of the law's table, for kink = 1; empty: no table. Allocates.
 [[nodiscard]] std::vector<double> table_resolution(const MotionLaw& law);
+
+// Time from `time` [s] to the first jump of p'' within `rest` [s], its end excluded; `rest`: none.
+[[nodiscard]] double time_to_jump(std::span<const Drive> drives, double time, double rest) noexcept;
+// True if p'' of a law jumps at `time`.
+[[nodiscard]] bool is_jump_at(std::span<const Drive> drives, double time) noexcept;
 
 // True if a law needs shorter sub-steps than h between `time` and `time + h` [s].
 [[nodiscard]] bool is_motion_fast(const MotionLaw& law, const MotionResolution& resolution, double time,

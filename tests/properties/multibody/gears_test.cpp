@@ -182,5 +182,55 @@ TEST(Gears, StartMovesTheGearedStageAndLeavesTheHingeBehindIt) {
   }
 }
 
+// Three shafts at 0, K = -J by a stated offset, L = -2 K by the written poses: L = -2 K whichever shaft is named.
+MechanicsDef three_shafts() {
+  MechanicsDef def;
+  for (const auto& [body, joint, x] : {std::tuple("A", "J", 0.0), {"B", "K", 1.0}, {"C", "L", 2.0}}) {
+    def.bodies.push_back({.name = body, .position = {x, 0, 0}, .mass = 1, .inertia = {0.1, 0.1, 0.1}});
+    def.joints.push_back({.name = joint, .point1 = {x, 0, 0}, .body2 = body});
+  }
+  def.gears = {{.name = "JK", .joint1 = "J", .joint2 = "K", .ratio = -1, .offset = 0},
+               {.name = "KL", .joint1 = "K", .joint2 = "L", .ratio = -2}};
+  return def;
+}
+
+TEST(Gears, WithoutOffsetKeepTheRelationOfTheWrittenPosesAtAStart) {
+  constexpr double kDegree = M_PI / 180;
+  using Starts = std::vector<StartCoordinate>;
+  for (const Starts& named :
+       {Starts{{"J", 0, 30 * kDegree}}, Starts{{"K", 0, -30 * kDegree}}, Starts{{"L", 0, 60 * kDegree}},
+        Starts{{"K", 0, -30 * kDegree}, {"L", 0, 60 * kDegree}}}) {
+    MechanicsDef def = three_shafts();
+    Problems problems;
+    put_joints(def, named, problems);
+    ASSERT_TRUE(problems.empty()) << testing::text_of(problems);
+    Formulated shafts(def);
+    EXPECT_NEAR(shafts.value("J.position"), 30 * kDegree, 1e-9) << named[0].joint;
+    EXPECT_NEAR(shafts.value("K.position"), -30 * kDegree, 1e-9) << named[0].joint;
+    EXPECT_NEAR(shafts.value("L.position"), 60 * kDegree, 1e-9) << named[0].joint;
+  }
+}
+
+TEST(Gears, WithoutOffsetRefuseAStartOfAllTheirJointsThatDisagrees) {
+  for (const char* other : {"J", "K"}) {
+    MechanicsDef def = three_shafts();
+    Problems problems;
+    put_joints(def, std::vector<StartCoordinate>{{other, 0, 0.5}, {"L", 0, 0.3}}, problems);
+    ASSERT_EQ(problems.size(), 1u) << other;
+    EXPECT_EQ(problems[0].path, "start");
+    EXPECT_NE(problems[0].what.find("cannot be closed with these coordinates"), std::string::npos) << problems[0].what;
+  }
+}
+
+// 0 holds joint 2 wherever it is put
+TEST(Gears, OfRatioZeroHoldAJointWhereTheStartPutsIt) {
+  MechanicsDef def = three_shafts();
+  def.gears[1].ratio = 0;
+  Problems problems;
+  put_joints(def, std::vector<StartCoordinate>{{"L", 0, 0.3}}, problems);
+  ASSERT_TRUE(problems.empty()) << testing::text_of(problems);
+  EXPECT_NEAR(Formulated(def).value("L.position"), 0.3, 1e-9);
+}
+
 }  // namespace gears_test
 }  // namespace slew::multibody

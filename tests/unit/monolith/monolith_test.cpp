@@ -283,5 +283,18 @@ TEST(Monolith, SeesARampThatIsOverWithinAStep) {
   EXPECT_NEAR(monolith.variable("Pin.velocity"), -8.4935, 1e-3);
 }
 
+// p'' jumps at the end of the table, on a step and within one. Right: I q'' = -m l p'' cos q over the table alone.
+TEST(Monolith, RestartsWhereAPrescribedAccelerationJumps) {
+  const std::string path = std::string(SLEWRING_SOURCE_DIR) + "/tests/unit/monolith/cart_on_a_table.yaml";
+  for (const auto& [end, speed] : {std::pair(0.1, -0.0476820), {0.1005, -0.0474448}}) {
+    scene::Scene scene = scene::load_file(path, {});
+    scene.mechanics.motions[0].points[1][0] = end;
+    Monolith monolith(scene);
+    ASSERT_TRUE(monolith.start().is_ok());
+    for (int k = 1; k <= 300; ++k) ASSERT_TRUE(monolith.advance_to(SimTime{k * 1'000'000}, {}).is_ok()) << k;
+    EXPECT_NEAR(monolith.variable("Pin.velocity"), speed, 1e-6) << end;
+  }
+}
+
 }  // namespace monolith_test
 }  // namespace slew::monolith

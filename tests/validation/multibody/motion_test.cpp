@@ -366,6 +366,66 @@ TEST_P(FastMotion, OfAHarmonicShakesWhatHangsOnIt) {
   }
 }
 
+// A table of two points with `ends: hold` moves the cart by 0.1 m: p'' jumps from 0 to 6 D/T^2 and from -6 D/T^2 to 0.
+// Without gravity I q'' = -m l cos q p'', with I = 0.501 kg m2, integrated apart over the table (RK4 in 1e5 steps, p''
+// of the table alone); q' is constant behind it. Tolerance: 1e-3 of the 3 rad/s in the middle of the table, which rules
+// of order 2 leave in ten sub-steps.
+struct Jump {
+  double begin, end;  // s
+  double h;           // s
+  double speed;       // right, rad/s, at 0.6 s
+};
+constexpr Jump kJumps[] = {{0, 0.1005, 1e-3, -0.0474448},
+                           {0, 0.1, 1e-3, -0.0476820},
+                           {0.0503, 0.1503, 1e-3, -0.0476820},
+                           {0.2, 0.3, 1e-2, -0.0476820}};
+
+TEST_P(FastMotion, OfATableThatIsHeldLeavesNoSpuriousSpeed) {
+  const auto [formulation, integrator] = GetParam();
+  MechanicsDef def = cart_with_pendulum();
+  def.formulation = formulation;
+  def.integrator = integrator;
+  def.gravity = {0, 0, 0};
+  def.bodies[1].inertia = {0.001, 0.001, 0.001};
+  for (const Jump& jump : kJumps) {
+    def.motions[0].points = {{jump.begin, 0}, {jump.end, 0.1}};
+    Formulated m(def);
+    // `penalty` reports its F/(alpha omega^2) in such long steps
+    EXPECT_EQ(m.try_run(0.6, jump.h), formulation != Formulation::penalty || jump.h < 1e-2);
+    EXPECT_NEAR(m.value("Pin.velocity"), jump.speed, 1e-3) << jump.end << " s in steps of " << jump.h << " s";
+  }
+}
+
+TEST(FastMotion, IsCutWhereItsAccelerationJumps) {
+  MotionLaw law = motion_law({.name = "Drive", .points = {{0.2, 0}, {0.3005, 0.1}}}, 0);
+  ASSERT_EQ(law.jumps.size(), 2u);
+  const double p2 = 6 * 0.1 / (0.1005 * 0.1005);
+  EXPECT_NEAR(law.jumps[0].behind, p2, 1e-9 * p2);
+  EXPECT_NEAR(law.jumps[1].before, -p2, 1e-9 * p2);
+  // one-sided values, also where the time is off by rounding
+  for (const double rounding : {-1e-13, 0.0, 1e-13}) {
+    EXPECT_NEAR(evaluate(law, 0.3005 + rounding, 0.3005).acceleration, -p2, 1e-9 * p2);
+    EXPECT_EQ(evaluate(law, 0.3005 + rounding, kNever).acceleration, 0);
+    EXPECT_EQ(evaluate(law, 0.2 + rounding, 0.2).acceleration, 0);
+    EXPECT_NEAR(evaluate(law, 0.2 + rounding, 0.201).acceleration, p2, 1e-9 * p2);
+  }
+  const auto piece = [&law](double time, double h) {
+    Drive drive;
+    drive.law = law;
+    return motion_piece(std::span<const Drive>(&drive, 1), kResolutionOfRungeKutta, time, h, h);
+  };
+  EXPECT_NEAR(piece(0.3, 1e-3), 5e-4, 1e-12);
+  EXPECT_NEAR(piece(0.3005, 1e-3), 1e-3, 1e-15);
+  // next to an end of the sub-step
+  EXPECT_NEAR(piece(0.3005 - 1e-9, 1e-2), 1e-9, 1e-13);
+  EXPECT_NEAR(piece(0.2905 + 1e-9, 1e-2), 1e-2 - 1e-9, 1e-13);
+  // tables without a jump
+  EXPECT_TRUE(
+      motion_law({.name = "Drive", .points = {{0, 0}, {0.1, 0.1}}, .ends = TableEnds::continued}, 0).jumps.empty());
+  EXPECT_TRUE(
+      motion_law({.name = "Drive", .shape = MotionShape::speed, .points = {{0, 0}, {0.1, 0.1}}}, 0).jumps.empty());
+}
+
 INSTANTIATE_TEST_SUITE_P(Under, FastMotion,
                          ::testing::Values(std::tuple(Formulation::recursive, Integrator::rk4),
                                            std::tuple(Formulation::recursive, Integrator::sdirk2),
