@@ -51,6 +51,13 @@ ValueSlope Circuit::Piece::elastic_wall_at(double p) const noexcept {
   return {1 / B, -0.5 / (B * p)};
 }
 
+double Circuit::Piece::wall_growth(double p) const noexcept {
+  if (has_constant_wall) return wall_compressibility * p;
+  const auto reached = [this](double B) { return (B / wall.factor) * (B / wall.factor); };
+  const double soft = std::min(p, reached(wall.lowest)), stiff = std::clamp(p, soft, reached(wall.highest));
+  return soft / wall.lowest + 2 * (std::sqrt(stiff) - std::sqrt(soft)) / wall.factor + (p - stiff) / wall.highest;
+}
+
 // (1)
 [[gnu::always_inline]] inline Circuit::Capacity Circuit::capacity(std::size_t volume, const double* y) const noexcept {
   const double p = y[volume];

@@ -93,6 +93,9 @@ class Circuit {
   // non-zero entries of jacobian()
   [[nodiscard]] const math::SparsityPattern& pattern() const noexcept { return pattern_; }
   [[nodiscard]] double pressure_floor() const noexcept { return floor_; }  // Pa absolute; below, the oil cavitates
+  [[nodiscard]] double near_floor() const noexcept {
+    return near_floor_;
+  }  // Pa absolute; below it oil with air is soft
   [[nodiscard]] double lowest_pressure() const noexcept { return oil_.lowest_pressure(); }
 
   // start states [y without x and v; the caller sets those, x before: areas of stages follow it]
@@ -157,6 +160,10 @@ class Circuit {
   // pressure, and the largest share.
   [[nodiscard]] math::StiffSystem::Unbalanced unbalanced_volume(double share, const double* y_before,
                                                                 const double* y) const noexcept;
+  // (7) of vapour.h, for volumes that may cavitate: w over u, and u over w.
+  [[nodiscard]] bool may_cavitate(std::size_t volume) const noexcept { return vapour_.begins_below[volume] > 0; }
+  [[nodiscard]] OilMeasure oil_measure(std::size_t volume, double u) const noexcept;
+  [[nodiscard]] double state_of_oil(std::size_t volume, double w) const noexcept;
   // The first volume whose room without oil is larger than the volume itself, -1: none.
   [[nodiscard]] int first_overdrawn(const double* y) const noexcept;
   [[nodiscard]] std::span<const double> vapour_capacities() const noexcept { return vapour_.capacity; }
@@ -282,6 +289,7 @@ class Circuit {
       return has_constant_wall ? ValueSlope{wall_compressibility, 0} : elastic_wall_at(p);
     }
     [[nodiscard]] ValueSlope elastic_wall_at(double p) const noexcept;
+    [[nodiscard]] double wall_growth(double p) const noexcept;  // int_0^p 1/B dp
   };
   // All contents of a volume: constant ones summed, the others one by one.
   struct VolumeContent {
@@ -332,6 +340,14 @@ class Circuit {
   void chamber_rates(const double* y, double* dp) const noexcept;
   [[nodiscard]] double chamber_growth(std::size_t volume, const double* y) const noexcept;
   [[nodiscard]] double capacity_at_floor(std::size_t volume, const double* y) const noexcept;
+  // Oil and walls of the contents that no piston changes; one unit of oil where there is none.
+  struct RigidContent {
+    double volume, walls, most_walls;  // m3; m3/Pa: constant walls, and with the elastic ones at their softest
+    double at_reference = 0;           // m3/Pa, C_r(p_r) of (7)
+  };
+  void list_rigid_contents();
+  // int_pf^p C_r dp [m3] with its derivatives; pre-condition: p >= floor
+  [[nodiscard]] OilMeasure rigid_oil(std::size_t volume, double p) const noexcept;
   void move_through_floor(std::size_t volume, double dV, double share, double* y) noexcept;
   void to_state_slopes(const double* y) noexcept;
   [[nodiscard]] bool is_closed(std::size_t volume, const double* y, const double* f) const noexcept;
@@ -355,6 +371,7 @@ class Circuit {
   int size_ = 0;
   OilCompressibility oil_;
   double floor_, kappa_at_floor_, near_floor_;  // Pa, 1/Pa, Pa
+  double content_at_floor_;                     // content() of the oil there
   Vapour vapour_;
   std::vector<std::string> volume_name_;
   std::vector<char> is_fixed_;
@@ -367,6 +384,7 @@ class Circuit {
 
   std::vector<Piece> pieces_;  // pieces, by volume
   std::vector<VolumeContent> volumes_;
+  std::vector<RigidContent> rigid_;         // by volume
   std::vector<std::size_t> with_chambers_;  // volumes that pistons change
   std::vector<LineChamber> lines_;          // two by actuator
   int beyond_waves_ = -1;

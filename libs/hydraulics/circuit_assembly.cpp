@@ -23,6 +23,7 @@ Circuit::Circuit(const HydraulicsDef& def)
       floor_(def.pressure_floor),
       kappa_at_floor_(oil_.at(def.pressure_floor).value),
       near_floor_(def.pressure_floor + kNearFloor * def.pressure_scale),
+      content_at_floor_(oil_.content(def.pressure_floor)),
       start_(def.start),
       start_return_(def.start_return_pressure),
       start_slew_(def.start_slew_pressure),
@@ -55,6 +56,7 @@ Circuit::Circuit(const HydraulicsDef& def)
   joined_ = joined_to_actuators(def);
   reliefs_ = builder.reliefs();
   add_contents(builder);
+  list_rigid_contents();
 
   scale_.assign(at(volume_count()), def.pressure_scale);
   for (const Actuator& actuator : actuators_) scale_.push_back(actuator.position_scale);

@@ -314,6 +314,19 @@ math::StiffSystem::Unbalanced CircuitIntegrator::unbalanced_state(const double* 
   return circuit_.unbalanced_volume(kMisplacedOil, y_before, y);
 }
 
+bool CircuitIntegrator::has_measure(std::size_t state) const noexcept {
+  return state < C_.size() && circuit_.may_cavitate(state);
+}
+
+math::StiffSystem::Measure CircuitIntegrator::measure(std::size_t state, double y) const noexcept {
+  const OilMeasure w = circuit_.oil_measure(state, y);
+  return {w.value, w.slope, w.bend};
+}
+
+double CircuitIntegrator::state_of_measure(std::size_t state, double w) const noexcept {
+  return circuit_.state_of_oil(state, w);
+}
+
 // (1); the slope at the end of a sub-step is taken when the next one starts.
 void CircuitIntegrator::accepted(double h, const double* y_before, const double* f_before, double* y) noexcept {
   close_quadrature(y_before, f_before);

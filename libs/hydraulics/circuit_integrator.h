@@ -133,6 +133,9 @@ class CircuitIntegrator final : private math::StiffSystem {
   [[nodiscard]] double time_to_bend(const double* y, const double* f, const double* J) noexcept override;
   [[nodiscard]] std::int32_t impossible_state(double h, const double* y_before, const double* y) noexcept override;
   [[nodiscard]] Unbalanced unbalanced_state(const double* y_before, const double* y) noexcept override;
+  [[nodiscard]] bool has_measure(std::size_t state) const noexcept override;
+  [[nodiscard]] Measure measure(std::size_t state, double y) const noexcept override;
+  [[nodiscard]] double state_of_measure(std::size_t state, double w) const noexcept override;
   void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept override;
   struct PressureForce {
     double F = 0, rate = 0;  // N, N/s

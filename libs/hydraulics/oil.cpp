@@ -11,6 +11,9 @@ namespace {
 constexpr double kHighestTabulated = 4e9;  // Pa; beyond, kappa keeps its last value
 constexpr double kLowestFraction = 1e-3;   // share of the floor: the table's lower end
 
+constexpr int kMostIterations = 8;       // quadratic from a linear guess within 1/32 of an octave
+constexpr double kSettledShare = 1e-15;  // share of a segment: rounding
+
 // int_0^t of a cubic
 double integral(const std::array<double, 4>& c, double t) noexcept {
   return (((c[3] / 4 * t + c[2] / 3) * t + c[1] / 2) * t + c[0]) * t;
@@ -51,6 +54,28 @@ double OilCompressibility::content(double p) const noexcept {
   const double t = (p - s.start) * s.inverse_width;
   const double within = t > 1 ? integral(s.coefficient, 1) + (t - 1) * at(p).value : integral(s.coefficient, t);
   return content_[i] + within / s.inverse_width;
+}
+
+double OilCompressibility::pressure_of(double sum, double wall) const noexcept {
+  // the last segment that begins below
+  std::size_t low = 0, high = segment_.size();
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (content_[middle] + wall * segment_[middle].start <= sum ? low : high) = middle;
+  }
+  const Segment& s = segment_[low];
+  const auto& c = s.coefficient;
+  const double width = 1 / s.inverse_width, within = (sum - content_[low] - wall * s.start) * s.inverse_width;
+  const double whole = integral(c, 1) + wall;
+  if (within >= whole) return s.start + width * (1 + (within - whole) / (((c[3] + c[2]) + c[1]) + c[0] + wall));
+  double t = within / whole;
+  for (int i = 0; i < kMostIterations; ++i) {
+    const double kappa = ((c[3] * t + c[2]) * t + c[1]) * t + c[0] + wall;
+    const double step = (within - integral(c, t) - wall * t) / kappa;
+    t += step;
+    if (std::fabs(step) <= kSettledShare) break;
+  }
+  return s.start + width * t;
 }
 
 // (1), (2)

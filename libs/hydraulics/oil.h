@@ -41,6 +41,8 @@ class OilCompressibility {
   }
   // int kappa dp from the table's start to p, exact for the kappa of at(); below the start 0.
   [[nodiscard]] double content(double p) const noexcept;
+  // The p with content(p) + wall p = sum, to rounding; wall >= 0 [1/Pa]. Pre-condition: p is not below the table.
+  [[nodiscard]] double pressure_of(double sum, double wall) const noexcept;
   // (2), (3) evaluated directly, to build the table.
   [[nodiscard]] ValueSlope exact(double p) const noexcept;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two smooth functions that replace the kinks of fluid-power laws, with their slopes.
+// Smooth functions that replace the kinks of fluid-power laws, with their slopes.
 //
 //   ramp(x, w) = 0 for x <= 0;  w t^2 (2 - t), t = x/w, for 0 < x < w;  x for x >= w                            (1)
 //     positive part with a continuous slope, exact outside (0, w); below by at most 4/27 w inside
@@ -7,6 +7,8 @@
 //     sgn(d) sqrt|d| for |d| >> d_t, d / sqrt(d_t) for |d| << d_t
 //   least(a, b, w) = a - ramp(a - b, w_a),  w_a = a - a^2/(4 w) for a < 2 w, else w                             (3)
 //     lower of a, b >= 0 as smooth_min, with a width that shrinks with a: 0 if either is 0
+//   underlap(x, w) = 0 for x <= -w;  (x + w)^2/(4 w) for -w < x < w;  x for x >= w                              (4)
+//     edge of a spool that is still open by w/4 in the middle, exact outside (-w, w)
 #pragma once
 
 #include <cmath>
@@ -22,6 +24,13 @@ struct ValueSlope {
   if (x >= w) return {x, 1};
   const double t = x / w;
   return {x * t * (2 - t), t * (4 - 3 * t)};
+}
+
+[[nodiscard]] inline ValueSlope underlap(double x, double w) noexcept {
+  if (x <= -w) return {0, 0};
+  if (x >= w) return {x, 1};
+  const double t = (x + w) / (2 * w);
+  return {w * t * t, t};
 }
 
 // Largest slope of (1), inside (0, w): the steeper side of the switch.

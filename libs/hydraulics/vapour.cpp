@@ -15,9 +15,12 @@ constexpr int kLiquidParts = 4;          // Runge-Kutta parts, for the liquid pa
 constexpr double kClosed = 1e-12;        // share of the flow swept by the pistons: rounding of a sum of flows
 constexpr double kLargestChange = 0.02;  // share of a pressure, per part of a piston's displacement
 constexpr int kMostParts = 64;
-constexpr double kFallingFlow = 2;  // (4) of vapour.h: mean flow of a sub-step over that at its end
-constexpr double kAtFloor = 1e-3;   // share of the floor: rounding of a state that ends there
-constexpr double kFull = 1 + 1e-6;  // (5) of vapour.h, with its rounding
+constexpr double kFallingFlow = 2;       // (4) of vapour.h: mean flow of a sub-step over that at its end
+constexpr double kAtFloor = 1e-3;        // share of the floor: rounding of a state that ends there
+constexpr double kOilReference = 100e5;  // Pa, p_r of (7) of vapour.h: oil with little air
+constexpr int kMeasureIterations = 30;   // quadratic from below; 5 to 8 are used
+constexpr double kSettledOil = 1e-15;    // share of a pressure: rounding
+constexpr double kFull = 1 + 1e-6;       // (5) of vapour.h, with its rounding
 
 }  // namespace
 
@@ -90,6 +93,62 @@ math::StiffSystem::Unbalanced Circuit::unbalanced_volume(double share, const dou
     found.share = std::max(found.share, off / size);
   }
   return found;
+}
+
+void Circuit::list_rigid_contents() {
+  for (std::size_t i = 0; i < volumes_.size(); ++i) {
+    const VolumeContent& contents = volumes_[i];
+    RigidContent rigid{contents.volume, contents.wall, contents.wall};
+    for (std::size_t k = contents.begin; k < contents.end; ++k) {
+      const Piece& piece = pieces_[k];
+      if (piece.position >= 0) continue;
+      rigid.volume += piece.volume;
+      rigid.most_walls += piece.volume * piece.wall_at(floor_).value;
+    }
+    rigid_.push_back(rigid.volume > 0 ? rigid : RigidContent{1, 0, 0});
+    rigid_.back().at_reference = rigid_oil(i, kOilReference).slope;
+  }
+}
+
+OilMeasure Circuit::rigid_oil(std::size_t volume, double p) const noexcept {
+  const RigidContent& rigid = rigid_[volume];
+  const ValueSlope kappa = oil_.at(p);
+  OilMeasure oil{rigid.volume * (oil_.content(p) - content_at_floor_) + rigid.walls * (p - floor_),
+                 rigid.volume * kappa.value + rigid.walls, rigid.volume * kappa.slope};
+  if (rigid.most_walls == rigid.walls) return oil;
+  for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
+    const Piece& piece = pieces_[k];
+    if (piece.position >= 0) continue;
+    const ValueSlope wall = piece.wall_at(p);
+    oil.value += piece.volume * (piece.wall_growth(p) - piece.wall_growth(floor_));
+    oil.slope += piece.volume * wall.value;
+    oil.bend += piece.volume * wall.slope;
+  }
+  return oil;
+}
+
+OilMeasure Circuit::oil_measure(std::size_t volume, double u) const noexcept {
+  const double unit = rigid_[volume].at_reference;
+  OilMeasure oil = rigid_oil(volume, std::max(u, floor_));
+  if (u < floor_) oil = {(u - floor_) * oil.slope, oil.slope, 0};
+  return {oil.value / unit, oil.slope / unit, oil.bend / unit};
+}
+
+double Circuit::state_of_oil(std::size_t volume, double w) const noexcept {
+  const RigidContent& rigid = rigid_[volume];
+  const double oil = w * rigid.at_reference;
+  if (oil < 0) return floor_ + oil / rigid_oil(volume, floor_).slope;
+  // exact with constant walls; else below the solution, from where Newton rises to it: the walls stiffen
+  const double walls = rigid.most_walls / rigid.volume;
+  double p = oil_.pressure_of(oil / rigid.volume + content_at_floor_ + walls * floor_, walls);
+  if (rigid.most_walls == rigid.walls) return p;
+  for (int i = 0; i < kMeasureIterations; ++i) {
+    const OilMeasure reached = rigid_oil(volume, p);
+    const double step = (oil - reached.value) / reached.slope;
+    p += step;
+    if (std::fabs(step) <= kSettledOil * p) break;
+  }
+  return std::max(p, floor_);
 }
 
 int Circuit::first_overdrawn(const double* y) const noexcept {

@@ -34,7 +34,8 @@ struct CvodeStepper::Memory {
   StiffSystem* system = nullptr;
   const StiffOptions* options = nullptr;
   std::size_t stride = 0;
-  std::vector<double> offset, y;
+  std::vector<double> offset, y, rate;
+  std::vector<StiffSystem::Measure> measures;
 
   ~Memory() {
     CVodeFree(&cvode);
@@ -46,9 +47,16 @@ struct CvodeStepper::Memory {
     SUNContext_Free(&context);
   }
 
+  // w(y_i); pre-condition here and below: there is a system.
+  [[nodiscard]] double measure_of(std::size_t i, double state) const noexcept {
+    return system->has_measure(i) ? system->measure(i, state).value : state;
+  }
+  [[nodiscard]] double state_of(std::size_t i, double w) const noexcept {
+    return system->has_measure(i) ? system->state_of_measure(i, w) : w;
+  }
   const double* state(N_Vector at) noexcept {
     const realtype* const values = N_VGetArrayPointer(at);
-    for (std::size_t i = 0; i < y.size(); ++i) y[i] = values[i] + offset[i];
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = state_of(i, values[i] + offset[i]);
     return y.data();
   }
 
@@ -60,7 +68,11 @@ struct CvodeStepper::Memory {
       N_VConst(0, out);
       return 0;
     }
-    m.system->derivative(m.state(at), f);
+    const double* const y = m.state(at);
+    m.system->derivative(y, f);
+    for (std::size_t i = 0; i < m.y.size(); ++i) {
+      if (m.system->has_measure(i)) f[i] *= m.system->measure(i, y[i]).slope;
+    }
     // a trial point outside of the laws: CVODE takes a shorter step
     return std::all_of(f, f + m.y.size(), [](double x) { return std::isfinite(x); }) ? 0 : 1;
   }
@@ -68,11 +80,19 @@ struct CvodeStepper::Memory {
   static int jacobian(realtype, N_Vector at, N_Vector f, SUNMatrix out, void* user, N_Vector, N_Vector, N_Vector) {
     Memory& m = *static_cast<Memory*>(user);
     if (m.system == nullptr) return 0;  // zero already
-    const double* const J = m.system->jacobian(m.state(at), N_VGetArrayPointer(f));
+    const double* const y = m.state(at);
+    const realtype* const z_rate = N_VGetArrayPointer(f);
     const std::size_t n = m.y.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      m.measures[i] = m.system->has_measure(i) ? m.system->measure(i, y[i]) : StiffSystem::Measure{y[i], 1, 0};
+      m.rate[i] = z_rate[i] / m.measures[i].slope;
+    }
+    const double* const J = m.system->jacobian(y, m.rate.data());
+    // d(w_i' f_i)/dw_j = (w_i' J_ij + w_i'' f_i if i = j) / w_j'
     for (std::size_t j = 0; j < n; ++j) {
       realtype* const column = SM_COLUMN_D(out, static_cast<sunindextype>(j));
-      for (std::size_t i = 0; i < n; ++i) column[i] = J[i * m.stride + j];
+      for (std::size_t i = 0; i < n; ++i) column[i] = m.measures[i].slope * J[i * m.stride + j] / m.measures[j].slope;
+      column[j] += m.measures[j].bend * m.rate[j] / m.measures[j].slope;
     }
     return 0;
   }
@@ -83,7 +103,8 @@ struct CvodeStepper::Memory {
     const realtype* const values = N_VGetArrayPointer(at);
     realtype* const weight = N_VGetArrayPointer(out);
     for (std::size_t i = 0; i < m.y.size(); ++i) {
-      const double size = options.size_of(i, values[i] + m.offset[i]);
+      const double w = values[i] + m.offset[i];
+      const double size = options.size_of(i, m.system == nullptr ? w : m.state_of(i, w));
       weight[i] = 1 / (kShareOfTolerance * options.relative_tolerance * size);
     }
     return 0;
@@ -96,12 +117,14 @@ CvodeStepper::CvodeStepper(std::size_t jacobian_stride, StiffOptions options)
       reached_(options_.scale.size()),
       f_(reached_),
       new_(reached_),
-      given_(reached_) {
+      given_(reached_),
+      moved_(reached_) {
   const auto n = static_cast<sunindextype>(reached_.size());
   Memory& m = *memory_;
   m.options = &options_;
   m.stride = jacobian_stride;
-  m.offset = m.y = reached_;
+  m.offset = m.y = m.rate = reached_;
+  m.measures.resize(reached_.size());
   SLEW_CHECK(SUNContext_Create(nullptr, &m.context) == 0);
   m.z = N_VNew_Serial(n, m.context);
   m.work = N_VNew_Serial(n, m.context);
@@ -127,7 +150,8 @@ CvodeStepper::~CvodeStepper() = default;
 void CvodeStepper::begin_at(std::span<const double> y, StiffReport& report) noexcept {
   Memory& m = *memory_;
   std::fill(m.offset.begin(), m.offset.end(), 0.0);
-  std::copy(y.begin(), y.end(), N_VGetArrayPointer(m.z));
+  realtype* const z = N_VGetArrayPointer(m.z);
+  for (std::size_t i = 0; i < y.size(); ++i) z[i] = m.measure_of(i, y[i]);
   SLEW_CHECK(CVodeReInit(m.cvode, 0, m.z) == CV_SUCCESS);
   t_ = 0;
   has_history_ = true;
@@ -136,24 +160,17 @@ void CvodeStepper::begin_at(std::span<const double> y, StiffReport& report) noex
 
 // (1), or a new start after a jump.
 void CvodeStepper::take_along(std::span<const double> y, StiffReport& report) noexcept {
-  bool is_smooth = has_history_;
-  for (std::size_t i = 0; is_smooth && i < y.size(); ++i) {
-    const double size = options_.size_of(i, y[i]);
-    is_smooth = std::fabs(y[i] - reached_[i]) <= kJump * size;
-  }
-  if (!is_smooth) {
-    begin_at(y, report);
-    return;
-  }
-  for (std::size_t i = 0; i < y.size(); ++i) memory_->offset[i] += y[i] - reached_[i];
+  if (!has_history_ || !take_move(reached_, y)) begin_at(y, report);
 }
 
-// The change of y by accepted() as an offset (1); false: too large for an offset.
-bool CvodeStepper::take_correction() noexcept {
-  for (std::size_t i = 0; i < new_.size(); ++i) {
-    if (std::fabs(new_[i] - given_[i]) > kJump * options_.size_of(i, new_[i])) return false;
+// A move of y from outside as an offset (1); false: too large for an offset.
+bool CvodeStepper::take_move(std::span<const double> before, std::span<const double> after) noexcept {
+  Memory& m = *memory_;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    moved_[i] = after[i] == before[i] ? 0 : m.measure_of(i, after[i]) - m.measure_of(i, before[i]);
+    if (!(std::fabs(moved_[i]) <= kJump * options_.size_of(i, after[i]))) return false;
   }
-  for (std::size_t i = 0; i < new_.size(); ++i) memory_->offset[i] += new_[i] - given_[i];
+  for (std::size_t i = 0; i < after.size(); ++i) m.offset[i] += moved_[i];
   return true;
 }
 
@@ -187,10 +204,10 @@ StiffReport CvodeStepper::advance(StiffSystem& system, std::span<double> y, doub
     t_ = reached;
     ++report.accepted;
     const realtype* const z = N_VGetArrayPointer(m.z);
-    for (std::size_t i = 0; i < y.size(); ++i) given_[i] = new_[i] = z[i] + m.offset[i];
+    for (std::size_t i = 0; i < y.size(); ++i) given_[i] = new_[i] = m.state_of(i, z[i] + m.offset[i]);
     system.accepted(h, y.data(), f_.data(), new_.data());
     std::copy(new_.begin(), new_.end(), y.begin());
-    if (new_ != given_ && !take_correction()) {
+    if (new_ != given_ && !take_move(given_, new_)) {
       done += t_ - begin;
       begin_at(y, report);
       begin = 0, t_end = duration - done;

@@ -2,11 +2,12 @@
 // SUNDIALS CVODE (variable-order BDF, Newton with the system's own Jacobian, dense LU) as a StiffIntegrator.
 //
 // Keeps its history over intervals while the motion is smooth: restarting every interval costs ten times the accuracy.
-// Restarts after inputs_jumped(), and if the caller moved y by more than 1e-3 of a state's size since the last interval
-// ended. Smaller moves (position corrections of a coupling) become an offset: with
-//   y = z + o,   z' = f(z + o),   o <- o + (y_given - y_reached)                                             (1)
-// z is continuous, and the error test judges the small remaining jump in z'. Errors per step are held below
-// rtol (s_i + r_i |y_i|), root mean square. Each interval ends exactly, by CVODE's stop time.
+// Restarts after inputs_jumped(), and if the caller moved w(y) by more than 1e-3 of a state's size since the last
+// interval ended. Smaller moves (position corrections of a coupling) become an offset: with
+//   w(y) = z + o,   z' = w'(y) f(y),   o <- o + (w(y_given) - w(y_reached))                                  (1)
+// z is continuous, and the error test judges the small remaining jump in z'. w is the measure of a state that has one
+// (stiff_system.h), else the state: BDF keeps linear sums of z to rounding, at any tolerance. Errors of w per step are
+// held below rtol (s_i + r_i |y_i|), root mean square. Each interval ends exactly, by CVODE's stop time.
 //
 // The same calls give the same bits. Source: Hindmarsh et al. 2005, ACM TOMS 31, 363. Memory is taken at build; the
 // cost of an interval is not bounded in a useful way (100 000 steps): for reference runs, not for real time.
@@ -40,7 +41,7 @@ class CvodeStepper final : public StiffIntegrator {
 
   void begin_at(std::span<const double> y, StiffReport& report) noexcept;
   void take_along(std::span<const double> y, StiffReport& report) noexcept;
-  [[nodiscard]] bool take_correction() noexcept;
+  [[nodiscard]] bool take_move(std::span<const double> before, std::span<const double> after) noexcept;
   [[nodiscard]] std::int32_t worst_state() const noexcept;
 
   StiffOptions options_;
@@ -48,7 +49,7 @@ class CvodeStepper final : public StiffIntegrator {
   bool has_history_ = false;
   double t_ = 0;                 // s, since the restart
   std::vector<double> reached_;  // y at the end of the last interval
-  std::vector<double> f_, new_, given_;
+  std::vector<double> f_, new_, given_, moved_;
 };
 
 }  // namespace slew::math

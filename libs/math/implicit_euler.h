@@ -3,6 +3,8 @@
 //
 //   M (y_new - y) / h = f(y_new)                                                                            (1)
 //   (M/h - J) d = f(y_k) - M (y_k - y)/h,  y_k+1 = y_k + d                                     Newton       (2)
+//   w(y_new) - w(y) = h w'(y_new) f(y_new)       in place of (1), of a state with a measure w               (3)
+// (3) keeps sums of what such states store to rounding (StiffSystem::measure()).
 //
 // h is the interval over the smallest whole number that brings it to maximum_step or below. Newton takes a fresh
 // Jacobian each iteration and ends when max |d_i| / (rtol (s_i + r_i |y_i|)) <= 0.1. A sub-step whose iteration does
@@ -41,12 +43,16 @@ class ImplicitEuler final : public StiffIntegrator {
     std::int32_t worst = -1;
   };
   Newton try_step(StiffSystem& system, const double* y, double h, StiffReport& report) noexcept;
+  [[nodiscard]] const double* stamp_measures(const StiffSystem& system, const double* y, const double* J,
+                                             double c) noexcept;
   [[nodiscard]] bool solve(const double* J, double c, StiffReport& report) noexcept;
 
   std::size_t size_;
   StiffOptions options_;
   StageMatrix matrix_;
   std::vector<double> f_, new_, slope_, d_;
+  std::size_t stride_;
+  std::vector<double> grown_, storage_, measured_J_;  // (w(y_k) - w(y))/w'(y_k), w'(y_k); J of (2) with (3)
 };
 
 }  // namespace slew::math

@@ -54,6 +54,15 @@ class StiffSystem {
   [[nodiscard]] virtual Unbalanced unbalanced_state(const double* /*y_before*/, const double* /*y*/) noexcept {
     return {};
   }
+  // Measure w(y_i) of what a state stores, with its two first derivatives, for a state whose storage is far from linear
+  // in it: w is increasing, and its rate a flow. A method that advances w in place of y_i keeps sums of what is stored
+  // to rounding, at any tolerance. state_of_measure() inverts it.
+  struct Measure {
+    double value, slope, bend;
+  };
+  [[nodiscard]] virtual bool has_measure(std::size_t /*state*/) const noexcept { return false; }
+  [[nodiscard]] virtual Measure measure(std::size_t /*state*/, double y) const noexcept { return {y, 1, 0}; }
+  [[nodiscard]] virtual double state_of_measure(std::size_t /*state*/, double w) const noexcept { return w; }
   // A sub-step from y_before (derivative f_before) to y was accepted; may move y back into its bounds.
   virtual void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept = 0;
 };

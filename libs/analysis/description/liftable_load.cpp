@@ -27,6 +27,7 @@ namespace {
 constexpr double kLowered = 0.01;    // part of a setting
 constexpr double kOfSetting = 0.25;  // effect from which a setting limits
 constexpr double kTank = 5e5;        // Pa absolute, the most of a tank
+constexpr double kNoForce = 1e-9;    // share of the static force: rounding of pressures times areas
 
 // Whether a pump, a source, an accumulator or a fixed volume above the pressure of a tank feeds the circuit.
 bool has_supply(const hydraulics::HydraulicsDef& circuit) {
@@ -38,6 +39,19 @@ bool has_supply(const hydraulics::HydraulicsDef& circuit) {
            component->add_lines(lines);
            return !lines.pumps.empty() || !lines.held.empty() || component->type_name() == "accumulator";
          });
+}
+
+// Valves that take a signal and that no input of the scene commands.
+std::vector<std::string> uncommanded_valves(const scene::Scene& scene) {
+  const hydraulics::Circuit circuit(scene.hydraulics);
+  std::vector<std::string> names;
+  for (const auto& component : scene.hydraulics.components) {
+    const auto commands = [&](const scene::InputDef& input) { return input.primitive == component->name; };
+    const bool is_commanded = std::any_of(scene.inputs.begin(), scene.inputs.end(), commands);
+    const bool takes_signal = circuit.find_control(component->name) >= 0;
+    if (takes_signal && !is_commanded && component->type_name().ends_with("valve")) names.push_back(component->name);
+  }
+  return names;
 }
 
 class Finder {
@@ -157,8 +171,10 @@ class Finder {
       for (const std::size_t other : limit.with) port.with.push_back(result.ports[other].name);
       const coupling::LineForceDef& ends = scene_.ports[i].line_force;
       port.is_at_end = direction > 0 ? port.stroke >= ends.stroke_max : port.stroke <= ends.stroke_min;
+      if (std::fabs(port.largest_force) <= kNoForce * std::fabs(port.static_force)) port.largest_force = 0;
       if (!result.has_answer() || port.load < result.limit().load) result.limiting = static_cast<int>(i);
     }
+    if (result.has_answer() && result.limit().largest_force == 0) result.uncommanded = uncommanded_valves(scene_);
   }
 
   void name_settings(LiftingPort& port) {
@@ -233,6 +249,13 @@ std::string force_text(const LiftingPort& port, double F) {
 std::string limit_text(const LiftableLoad& load) {
   const LiftingPort& port = load.limit();
   const std::string with = port.with.empty() ? "" : fmt::format(" beside {}", fmt::join(port.with, ", "));
+  if (port.largest_force == 0) {
+    const std::string why = load.uncommanded.empty()
+                                ? "nothing feeds it at full stick of any input"
+                                : fmt::format("no input commands {}", fmt::join(load.uncommanded, ", "));
+    return fmt::format("0 kg of {}: {} has no force, {} in {}{}: {}", load.payload, port.name,
+                       quantity_text(port.pressure, "Pa"), port.chamber, with, why);
+  }
   return fmt::format("{} kg of {}: {} presses with {} at most, {} in {}{}", std::round(std::max(0.0, port.load)),
                      load.payload, port.name, force_text(port, std::fabs(port.largest_force)),
                      quantity_text(port.pressure, "Pa"), port.chamber, with);

@@ -54,7 +54,8 @@ struct LiftableLoad {
   double mass = 0;      // kg, in the scene at that time
   std::string refusal;  // why there is no answer where a payload hangs on cylinders; empty: there may be one
   std::vector<LiftingPort> ports;
-  int limiting = -1;  // port with the smallest load; -1: none carries the payload
+  int limiting = -1;                     // port with the smallest load; -1: none carries the payload
+  std::vector<std::string> uncommanded;  // valves that take a signal and have no input, if limit() has no force
 
   [[nodiscard]] bool has_answer() const noexcept { return limiting >= 0; }
   [[nodiscard]] const LiftingPort& limit() const { return ports[static_cast<std::size_t>(limiting)]; }

@@ -62,6 +62,7 @@ constexpr Field kEngineFields[] = {
 constexpr double kFuelWidth = 0.02;       // share of the fuel, smoothing of the governor's limits
 constexpr double kCombustionWidth = 0.1;  // share of g, smoothing
 constexpr double kCombustionRange = 0.1;  // share of stall_speed over which combustion sets in
+constexpr int kHalvings = 60;             // of the droop, to rounding
 constexpr double kFrictionSpeed = 1;      // w_f [rad/s], below which the friction goes to zero
 // (5): a load of 250 Nm creeps at 0.1 rad/s on 2 kg m2; rk4 follows it with sub-steps of 2 ms
 constexpr double kHoldTime = 1e-3, kHoldWidth = 1e-2;  // tau_h [s], w_h [rad/s]
@@ -77,12 +78,17 @@ class Engine final : public HydraulicComponent {
         control_(builder.add_control(def.name, SignalMoves::a_state)),
         full_load_(*find_curve(builder.def(), def.torque_curve)) {}
 
-  // at the governed speed under its own losses
+  // at rest under its own losses: (1) and (2) balance between the governed speeds at full load and without any, the
+  // latter of an engine that is switched off
   void start(double* y) const noexcept override {
-    const double w_s = governed(0), most = full_torque(w_s).value;
-    const double u = most > 0 ? std::min(1.0, loss(w_s).value / most) : 0;
-    y[w_] = w_s * (1 + def_.droop * (1 - u)) / shaft_.reference;
-    y[u_] = u;
+    const double w_s = governed(0);
+    double high = (1 + def_.droop) * w_s, low = full_torque(w_s).value > 0 ? w_s : high;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double w = 0.5 * (low + high);
+      (fuel_command(w_s, w).value * full_torque(w).value > loss(w).value ? low : high) = w;
+    }
+    y[w_] = high / shaft_.reference;
+    y[u_] = fuel_command(w_s, high).value;
   }
   void declare_dependencies(DependencyList& dependencies) const override {
     for (const StateIndex row : {w_, u_}) dependencies.add(row, w_), dependencies.add(row, u_);
@@ -133,10 +139,13 @@ class Engine final : public HydraulicComponent {
     return std::max({def_.speed + def_.speed_per_signal * signal, def_.minimum_speed, def_.stall_speed});
   }
   // u_c of (2), with its slope over w
-  [[nodiscard]] ValueSlope fuel_command(const CircuitView& view) const noexcept {
-    const double w_s = governed(view.control[control_]), range = def_.droop * w_s;
-    const ValueSlope u = unit_clip((w_s + range - speed(view)) / range, kFuelWidth);
+  [[nodiscard]] ValueSlope fuel_command(double w_s, double w) const noexcept {
+    const double range = def_.droop * w_s;
+    const ValueSlope u = unit_clip((w_s + range - w) / range, kFuelWidth);
     return {u.value, -u.slope / range};
+  }
+  [[nodiscard]] ValueSlope fuel_command(const CircuitView& view) const noexcept {
+    return fuel_command(governed(view.control[control_]), speed(view));
   }
   // T_full g
   [[nodiscard]] ValueSlope full_torque(double w) const noexcept {

@@ -63,6 +63,8 @@ class ReliefValve final : public HydraulicComponent {
                         .outlet = p_2_,
                         .fully_open = def.setting_pressure + def.opening_pressure_rise});
   }
+  // at the opening that the start pressures command
+  void start(double* y) const noexcept override { y[u_] = opening_command({y, nullptr, nullptr, nullptr}).value; }
   void declare_dependencies(DependencyList& dependencies) const override {
     dependencies.add_restriction(p_1_, p_2_);
     dependencies.add(p_1_, u_), dependencies.add(p_2_, u_);

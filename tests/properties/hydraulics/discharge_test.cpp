@@ -8,6 +8,7 @@
 #include <string>
 
 #include "hydraulics/circuit_integrator.h"
+#include "hydraulics/components/hose.h"
 #include "hydraulics/components/restrictions.h"
 #include "hydraulics/components/sources.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
@@ -130,9 +131,7 @@ TEST(Discharge, two_volumes_keep_their_oil) {
           const Emptying run = empty(def, 5);
           const double level = level_pressure(def);
           EXPECT_NEAR(run.pressure.back() / run.other, 1, 1e-3);
-          // the Euler step is of first order in the flow that a capacity divides
-          const double bound = solver == Solver::implicit_euler ? 0.2 : 1e-3;
-          EXPECT_NEAR(run.pressure.back() / level, 1, bound) << level / kBar;
+          EXPECT_NEAR(run.pressure.back() / level, 1, 1e-3) << level / kBar;
           EXPECT_EQ(run.flags, 0u);
         }
       }
@@ -220,6 +219,97 @@ TEST(Discharge, without_a_sub_step_that_keeps_the_oil_ends) {
   EXPECT_EQ(report.offender, 0);
   EXPECT_EQ(integrator.state()[0], 150 * kBar);
   EXPECT_TRUE(integrator.step(kStep, HeldSpeed(0)).has_failed());
+}
+
+// 42 ml of 0.4 l drawn into vapour and put back, twenty times: the volume comes back to its 40 bar. Hose: 2 m of 16 mm
+// beside the block.
+constexpr int kPulls = 20;
+
+struct Pulled {
+  double pressure = 0, lowest = 1e9;  // Pa, at the end and meanwhile
+  std::uint32_t flags = 0;
+};
+
+void add_hose(HydraulicsDef& def) {
+  HoseDef& hose = add<HoseDef>(def, "Hose");
+  hose.volume = "V", hose.length = 2, hose.diameter = 16e-3;
+}
+
+Pulled pull(Solver solver, double tolerance, bool has_hose, double H) {
+  HydraulicsDef def;
+  def.solver = solver, def.start = StartState::table13, def.relative_tolerance = tolerance;
+  add_tank(def, "Tank");
+  add_volume(def, "V", 40 * kBar).rigid_volume = 4e-4;
+  if (has_hose) add_hose(def);
+  FlowSourceDef& source = add<FlowSourceDef>(def, "Source");
+  source.port_1 = "V", source.port_2 = "Tank", source.flow_per_signal = 10 * kLitrePerMinute;
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  integrator.start({}, {}, {});
+  const int quarter = static_cast<int>(std::lround(0.2 / H));
+  Pulled run;
+  for (int k = 0; k < 4 * kPulls * quarter; ++k) {
+    // out in two quarters of a pull, back in the others, each as a trapezium over its steps
+    const int at = k % (2 * quarter), ramp = quarter / 2;
+    const double size = std::min({1.0, (at + 0.5) / ramp, (2 * quarter - at - 0.5) / ramp});
+    circuit.set_control(circuit.find_control("Source"), k / (2 * quarter) % 2 == 0 ? size : -size);
+    run.flags |= integrator.step(H, HeldSpeed(0)).flags;
+    run.lowest = std::min(run.lowest, circuit.pressure(1, integrator.state().data()).value);
+  }
+  run.pressure = circuit.pressure(1, integrator.state().data()).value;
+  return run;
+}
+
+void expect_kept(Solver solver) {
+  for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+    for (const bool has_hose : {false, true}) {
+      SCOPED_TRACE(std::to_string(std::log10(tolerance)) + (has_hose ? ", hose" : ""));
+      const Pulled run = pull(solver, tolerance, has_hose, 5e-3);
+      EXPECT_LT(run.lowest, 0.054 * kBar);
+      EXPECT_NEAR(run.pressure / (40 * kBar), 1, 1e-5);
+      EXPECT_EQ(run.flags & ~static_cast<std::uint32_t>(StepFlag::cavitating), 0U);
+    }
+  }
+}
+
+TEST(Discharge, oil_that_is_drawn_out_and_put_back_is_kept) {
+  for (const Solver solver : {Solver::implicit_euler, Solver::cvode}) {
+    SCOPED_TRACE(kSolverChoices[static_cast<std::size_t>(solver)]);
+    expect_kept(solver);
+  }
+}
+
+// of rigid contents, hoses and both oil laws, from tension to beyond the law
+TEST(Discharge, the_measure_of_oil_is_the_integral_of_the_capacity) {
+  for (const Oil oil : kOils) {
+    for (const bool has_hose : {false, true}) {
+      HydraulicsDef def = vessel({1e-3, 1 * kBar, 1e-3}, oil, Solver::cvode);
+      if (has_hose) add_hose(def);
+      const Circuit circuit(def);
+      std::vector<double> y(static_cast<std::size_t>(circuit.state_count()), kBar), C(y);
+      double before = 0, sum = 0, p_before = def.pressure_floor;
+      const double unit = [&] {
+        y[0] = 100 * kBar;
+        circuit.capacities(y.data(), C.data());
+        return C[0];
+      }();
+      for (double p = def.pressure_floor; p < 2000 * kBar; p *= 1.001) {
+        y[0] = p;
+        circuit.capacities(y.data(), C.data());
+        sum += 0.5 * (before + C[0] / unit) * (p - p_before);
+        before = C[0] / unit, p_before = p;
+        const OilMeasure w = circuit.oil_measure(0, p);
+        EXPECT_NEAR(w.value, sum, 1e-6 * sum) << p;
+        EXPECT_NEAR(w.slope, C[0] / unit, 1e-12 * w.slope) << p;
+        EXPECT_NEAR(circuit.state_of_oil(0, w.value), p, 1e-10 * p);
+        const double d = 1e-5 * p, bend = (circuit.oil_measure(0, p + d).slope - w.slope) / d;
+        EXPECT_NEAR(w.bend, bend, 1e-3 * (std::fabs(bend) + w.slope / p));
+      }
+      for (const double u : {-1e9, -1e5, 0.0, 0.9 * def.pressure_floor}) {
+        EXPECT_NEAR(circuit.state_of_oil(0, circuit.oil_measure(0, u).value), u, 1e-12 * (std::fabs(u) + 1));
+      }
+    }
+  }
 }
 
 TEST(Discharge, a_volume_that_is_drawn_empty_is_flagged_with_its_name) {

@@ -132,6 +132,16 @@ TEST(LiftableLoad, OfACircuitWithoutASupplyHasNoFigure) {
   EXPECT_TRUE(find_liftable(fed, {}, ListedSettings::left_out).has_answer());
 }
 
+// The pressures balance: what is left of them is rounding, and the missing input is named.
+TEST(LiftableLoad, BehindAValveWithoutAnInputIsNoneAndNamesTheValve) {
+  const std::string file = SLEWRING_SOURCE_DIR "/tests/unit/analysis/lift_without_input.yaml";
+  scene::Scene scene = scene::load_file(file, {});
+  const LiftableLoad found = find_liftable(scene, {}, ListedSettings::left_out);
+  ASSERT_TRUE(found.has_answer());
+  EXPECT_EQ(found.limit().largest_force, 0);
+  EXPECT_EQ(limit_text(found), "0 kg of Load: Cylinder has no force, 33 bar in A: no input commands Lift");
+}
+
 TEST(LiftableLoad, ASceneWithoutCylindersHasNone) {
   scene::Scene scene = load("four_bar.yaml");
   EXPECT_FALSE(find_liftable(scene, {}, ListedSettings::named).has_answer());

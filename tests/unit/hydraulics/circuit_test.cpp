@@ -11,12 +11,14 @@
 
 #include "core/state_bytes.h"
 #include "hydraulics/circuit_integrator.h"
+#include "hydraulics/components/relief_valve.h"
 #include "hydraulics/components/sources.h"
 #include "hydraulics/curve.h"
 #include "hydraulics/oil.h"
 #include "hydraulics/smooth.h"
 #include "tests/properties/hydraulics/bench_circuit.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
+#include "tests/support/circuit_rig.h"
 
 namespace slew::hydraulics::test {
 namespace circuit_test {
@@ -736,6 +738,21 @@ TEST(Circuit, each_chamber_has_a_dead_volume_of_its_own) {
   }
   EXPECT_NEAR(content_of(def, "Vol_LiftCyl_A") - a, 3e-4, 1e-12);
   EXPECT_NEAR(content_of(def, "Vol_LiftCyl_B") - b, 7e-4, 1e-12);
+}
+
+// 100 bar above its 50 bar and the 10 bar that open it: as far open as at rest, not shut.
+TEST(Circuit, a_relief_valve_begins_at_the_opening_of_its_start_pressures) {
+  for (const auto& [above_bar, opening] : {std::pair{-5.0, 0.0}, {5.0, 0.5}, {100.0, 1.0}}) {
+    CircuitRig rig;
+    rig.def.start = StartState::table13;
+    add_tank(rig.def, "Line", (51 + above_bar) * kBar), add_tank(rig.def, "Tank", 1 * kBar);
+    ReliefValveDef& valve = add<ReliefValveDef>(rig.def, "Relief");
+    valve.port_1 = "Line", valve.port_2 = "Tank", valve.nominal_flow = 100 * kLitrePerMinute;
+    valve.setting_pressure = 50 * kBar, valve.opening_pressure_rise = 10 * kBar;
+    EXPECT_NEAR(rig.variable("Relief.opening"), opening, 1e-12) << above_bar;
+    rig.run(0.1);
+    EXPECT_NEAR(rig.variable("Relief.opening"), opening, 1e-12) << above_bar;
+  }
 }
 
 }  // namespace circuit_test

@@ -50,6 +50,21 @@ TEST(ValidationEngine, its_speed_droops_with_the_load) {
   }
 }
 
+// No pump loads it at the start: speed and fuel stay where they begin. Losses of 21 + 0.11 w of 360 Nm and more, a
+// small engine that its losses load to nine tenths, and one without losses.
+TEST(ValidationEngine, begins_at_rest_under_its_own_losses) {
+  for (const auto& [friction, viscous] : {std::pair{21.0, 0.11}, {300.0, 0.3}, {0.0, 0.0}, {2.0, 0.0}}) {
+    Rig rig(0);
+    rig.engine().friction_torque = friction, rig.engine().viscous_friction = viscous, rig.engine().droop = 0.07;
+    const double w = rig.variable("Engine.speed"), u = rig.variable("Engine.fuel");
+    EXPECT_NEAR(rig.variable("Engine.torque"), 0, 1e-9) << friction;
+    rig.run(2);
+    EXPECT_NEAR(rig.variable("Engine.speed"), w, 1e-9 * w) << friction;
+    EXPECT_NEAR(rig.variable("Engine.fuel"), u, 1e-9) << friction;
+    EXPECT_NEAR(w, kSpeed * (1 + 0.07 * (1 - u)), 2e-4 * w) << friction;
+  }
+}
+
 // The engine sees r T; its own losses count too. Pump 100 Nm at 0.9: 1.5 x 100/0.9 + 30 + 0.1 w.
 TEST(ValidationEngine, a_gear_multiplies_the_load_and_losses_add_to_it) {
   Rig rig(100);
