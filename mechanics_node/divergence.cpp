@@ -21,6 +21,8 @@ constexpr double kOpen = 1e-6;                  // m or rad: a sound joint stays
 constexpr const char* kRemedy =
     "the motion is not the mechanism's any more. Use a shorter session.step or mechanics.max_substep, or another "
     "mechanics.integrator or formulation";
+// before the name of a motion
+constexpr const char* kDriven = "; or keep the loop off a dead centre, past which it cannot follow the motion ";
 
 struct BentBody {
   std::string_view name;
@@ -55,6 +57,26 @@ FastBody fastest(const multibody::Model& model, const multibody::Workspace& ws, 
     if (found.name.empty() || speed > found.speed) found = {model.bodies[i].name, speed};
   }
   return found;
+}
+
+// True if the joint of this link lies in the loop that the cut joint closes.
+bool is_in_loop(const multibody::Model& model, const multibody::Cut& cut, int link) noexcept {
+  const auto is_above = [&](int end) {
+    while (end > 0 && end != link) end = model.links[at(end)].parent;
+    return end == link;
+  };
+  return is_above(cut.link1) != is_above(cut.link2);
+}
+
+// The first prescribed motion that drives a joint of a loop; empty: none.
+std::string_view motion_of_loop(const multibody::Model& model) noexcept {
+  for (const multibody::Drive& drive : model.drives) {
+    for (const multibody::Cut& cut : model.cuts) {
+      const bool drives_it = drive.link > 0 ? is_in_loop(model, cut, drive.link) : cut.joint == drive.joint;
+      if (drives_it) return drive.name;
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -131,8 +153,9 @@ bool DivergenceWatch::name_suspect(const multibody::Model& model, const multibod
   if (const multibody::JointGap gap = gauge_.measure(ws); gap.joint >= 0 && gap.position > kOpen) {
     const multibody::Joint& joint = model.joints[at(gap.joint)];
     const int body = joint.body2 > 0 ? joint.body2 : joint.body1;
-    write("{}: {}, and its joint '{}' is open by {:.2g} m or rad: {}", model.bodies[at(body)].name, kOften, joint.name,
-          gap.position, kRemedy);
+    const std::string_view motion = motion_of_loop(model);
+    write("{}: {}, and its joint '{}' is open by {:.2g} m or rad: {}{}{}", model.bodies[at(body)].name, kOften,
+          joint.name, gap.position, kRemedy, motion.empty() ? "" : kDriven, motion);
     return true;
   }
   const FastBody moving = fastest(model, ws, [](const multibody::LinkMotion& m) { return m.v; });
@@ -141,6 +164,15 @@ bool DivergenceWatch::name_suspect(const multibody::Model& model, const multibod
     return true;
   }
   return false;
+}
+
+void DivergenceWatch::name_lost_motion(const multibody::Model& model, std::string_view joint) noexcept {
+  const std::string_view motion = motion_of_loop(model);
+  if (motion.empty()) return;
+  write(
+      "{} is not finite; the last good state is kept in the recording; reduce session.step, or look at what happened "
+      "just before in a plot{}{}",
+      joint, kDriven, motion);
 }
 
 bool DivergenceWatch::ends_run(const multibody::Model& model, const multibody::State& state,

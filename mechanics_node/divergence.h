@@ -12,6 +12,8 @@
 //     moment.
 //   - The angle of a rotational force with a spring, an end damper or an actuator comes within one step of half a turn,
 //     unless revolute joints about its axis count its turns: there the angle jumps by a whole turn.
+// A drive may push its loop past a dead centre, where no pose closes it: beside an open joint, and a joint that is not
+// finite, the text then names a prescribed motion that drives a loop.
 // Not covered: motion that is finite, small and converged, and wrong.
 #pragma once
 
@@ -43,6 +45,8 @@ class DivergenceWatch {
   // ends; text() names the body or the force and the reason. Neither allocates.
   [[nodiscard]] bool ends_run(const multibody::Model& model, const multibody::State& state,
                               const multibody::Workspace& ws, double h, double H) noexcept;
+  // After a state that is not finite: if a prescribed motion drives a loop, the text names it beside the joint.
+  void name_lost_motion(const multibody::Model& model, std::string_view joint) noexcept;
   [[nodiscard]] std::string_view text() const noexcept { return {text_.data(), text_length_}; }
 
   // Adds nothing while all recent steps have converged: the hash of a sound run is that of its motion.

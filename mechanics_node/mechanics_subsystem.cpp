@@ -184,6 +184,7 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
   if (!multibody::is_finite(state())) {
     report.raise(StepFlag::non_finite);
     report.offender = first_not_finite(state());
+    divergence_.name_lost_motion(model(), offender_name(report.offender));
     return end_with(report, sample);
   }
   mechanism_.evaluate();

@@ -52,5 +52,20 @@ INSTANTIATE_TEST_SUITE_P(Formulations, PrescribedScene,
                          ::testing::Values("recursive", "lagrange", "augmented", "penalty"),
                          [](const auto& test) { return std::string(test.param); });
 
+// A crank of 1 m on a coupler of 0.5 m and a rocker of 0.6 m over 1 m cannot turn beyond 2 asin(1.1/2) = 66.7 degrees,
+// which its drive passes at 0.445 s.
+TEST(DrivenLoop, PastItsDeadCentreEndsWithTheNameOfTheMotion) {
+  for (const char* formulation : {"recursive", "lagrange", "augmented", "penalty"}) {
+    MechanicsAlone m("tests/validation/mechanics_node/driven_past_dead_centre.yaml",
+                     {std::string("mechanics.formulation=") + formulation});
+    m.run_to(0.44);
+    EXPECT_FALSE(m.report.has_failed()) << formulation;
+    m.run_to(0.6);
+    ASSERT_TRUE(m.report.has_failed()) << formulation;
+    const std::string text(m.subsystem.failure_text());
+    EXPECT_NE(text.find("past which it cannot follow the motion Turn"), std::string::npos) << formulation << text;
+  }
+}
+
 }  // namespace motion_scenes_test
 }  // namespace slew::testing
