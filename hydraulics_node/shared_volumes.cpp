@@ -2,22 +2,10 @@
 #include "hydraulics_node/shared_volumes.h"
 
 #include "core/index.h"
-#include "hydraulics/start_volumes.h"
+#include "hydraulics/pump_lines.h"
 #include "math/relaxing_spring.h"
 
 namespace slew::hydraulics_node {
-namespace {
-
-hydraulics::StateIndex volume_of(const hydraulics::Actuator& actuator, std::size_t side) noexcept {
-  return side == 0 ? actuator.port_a : actuator.port_b;
-}
-
-double signed_area(const hydraulics::Actuator& actuator, std::size_t side, const double* y) noexcept {
-  return actuator.setting_at(y) * (side == 0 ? actuator.area_a : -actuator.area_b);
-}
-
-}  // namespace
-
 SharedVolumes::SharedVolumes(const hydraulics::Circuit& circuit, const hydraulics::HydraulicsDef& def) {
   const auto actuators = circuit.actuators();
   const std::vector<int> groups = hydraulics::joined_by_passages(def);
@@ -25,8 +13,8 @@ SharedVolumes::SharedVolumes(const hydraulics::Circuit& circuit, const hydraulic
     for (std::size_t j = 0; j < actuators.size(); ++j) {
       for (const std::size_t side : {0u, 1u}) {
         for (const std::size_t other : {0u, 1u}) {
-          const hydraulics::StateIndex volume = volume_of(actuators[i], side);
-          const hydraulics::StateIndex others = volume_of(actuators[j], other);
+          const hydraulics::StateIndex volume = actuators[i].volume(side);
+          const hydraulics::StateIndex others = actuators[j].volume(other);
           if (i == j || circuit.is_fixed(volume)) continue;
           if (volume == others) pairs_.push_back({{i, side}, {j, other}});
           is_joined_ |= groups[at(volume)] == groups[at(others)];
@@ -57,10 +45,10 @@ void SharedVolumes::write(std::span<const hydraulics::ActuatorSprings> springs,
   }
   if (response != nullptr) return;
   for (const auto& [own, other] : pairs_) {
-    const double area = signed_area(circuit.actuators()[own.port], own.side, y);
+    const double area = circuit.actuators()[own.port].signed_area(own.side, y);
     if (area == 0) continue;
     K_cross[own.port * m + other.port] +=
-        change_at_end(own.port, own.side) * signed_area(circuit.actuators()[other.port], other.side, y) / area;
+        change_at_end(own.port, own.side) * circuit.actuators()[other.port].signed_area(other.side, y) / area;
   }
 }
 
@@ -69,8 +57,8 @@ double SharedVolumes::displacement_of_others(std::size_t port, std::size_t side,
   double sum = 0;
   for (const auto& [own, other] : pairs_) {
     if (own.port != port || own.side != side) continue;
-    const double area = signed_area(circuit.actuators()[port], side, y);
-    if (area != 0) sum += signed_area(circuit.actuators()[other.port], other.side, y) / area * s[other.port];
+    const double area = circuit.actuators()[port].signed_area(side, y);
+    if (area != 0) sum += circuit.actuators()[other.port].signed_area(other.side, y) / area * s[other.port];
   }
   return sum;
 }

@@ -80,6 +80,11 @@ struct Actuator {
   Brake brake = {};
   Stages stages = {};
 
+  // Volume of chamber A (0) or B (1), and its area at y, negative at B.
+  [[nodiscard]] StateIndex volume(std::size_t side) const noexcept { return side == 0 ? port_a : port_b; }
+  [[nodiscard]] double signed_area(std::size_t side, const double* y) const noexcept {
+    return setting_at(y) * (side == 0 ? area_a : -area_b);
+  }
   // e: share of the areas that acts at y.
   [[nodiscard]] bool has_share() const noexcept { return setting.state >= 0 || stages.area != nullptr; }
   [[nodiscard]] double setting_at(const double* y) const noexcept {

@@ -48,6 +48,8 @@ struct ComponentDef {
   [[nodiscard]] virtual std::optional<ActuatorDef> actuator() const { return std::nullopt; }
   // Shaft of a component that drives pumps; none of the others.
   [[nodiscard]] virtual std::optional<ShaftDef> shaft() const { return std::nullopt; }
+  // True if it may raise the pressure of a volume above those of the others that it joins.
+  [[nodiscard]] virtual bool raises_pressure() const { return actuator().has_value(); }
   // True if an input may name the component; its type has a control signal then.
   [[nodiscard]] virtual bool takes_signal() const;
   // Adds what connects or relieves volumes whatever the control signals are (pump_lines.h), and pumps.

@@ -19,13 +19,6 @@ namespace {
 constexpr double kPascalPerBar = 1e5;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Components that raise a pressure above those of the volumes they join.
-bool feeds(const ComponentDef& component) {
-  constexpr std::string_view kFeeding[] = {"pump", "ls_pump", "flow_source", "pressure_source", "gear_flow_divider"};
-  return component.actuator().has_value() ||
-         std::find(std::begin(kFeeding), std::end(kFeeding), component.type_name()) != std::end(kFeeding);
-}
-
 struct PressureLimit {
   double pressure = 0;     // Pa absolute
   std::string_view valve;  // that sets it; empty: none
@@ -38,7 +31,7 @@ PressureLimit fed_limit(const HydraulicsDef& def, std::string_view volume, const
   for (const auto& component : def.components) {
     const std::vector<std::string_view> names = volumes_of(*component);
     if (std::find(names.begin(), names.end(), volume) == names.end()) continue;
-    if (feeds(*component)) return {kInfinity, {}};
+    if (component->raises_pressure()) return {kInfinity, {}};
     for (const std::string_view name : names) {
       const PressureLimit& other = limits.at(name);
       if (name != volume && other.pressure > highest.pressure) highest = other;
@@ -83,7 +76,7 @@ Group group_of(const HydraulicsDef& def, std::string_view volume, const std::set
         return group.volumes.contains(name) && !fixed.contains(name);
       });
       if (!is_at) continue;
-      group.is_fed = group.is_fed || feeds(*component);
+      group.is_fed = group.is_fed || component->raises_pressure();
       group.volumes.insert(names.begin(), names.end());
     }
   }

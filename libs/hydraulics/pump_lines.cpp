@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstddef>
+#include <map>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "hydraulics/oil.h"
 
@@ -81,6 +85,35 @@ void find_unrelieved_pumps(const HydraulicsDef& def, Problems& warnings) {
          fmt::format("a relief_valve from the line to a tank, set below {:g} bar", OilCompressibility::kHighest / kBar),
          ""});
   }
+}
+
+std::vector<std::pair<std::string, std::string>> open_passages(const PumpLines& lines) {
+  std::vector<std::pair<std::string, std::string>> passages = lines.open_at_rest;
+  for (const PumpLines::Connection& way : lines.open) {
+    if (!way.is_one_way && way.pilot.empty() && way.flow > 0) passages.emplace_back(way.a, way.b);
+  }
+  for (const PumpLines::Divider& divider : lines.dividers) {
+    passages.emplace_back(divider.common, divider.branch_2);
+    passages.emplace_back(divider.common, divider.branch_3);
+  }
+  return passages;
+}
+
+std::vector<int> joined_by_passages(const HydraulicsDef& def) {
+  std::map<std::string, std::size_t> index;
+  std::vector<int> group;
+  for (std::size_t i = 0; i < def.volumes.size(); ++i) {
+    index.emplace(def.volumes[i].name, i);
+    group.push_back(def.volumes[i].fixed ? -1 : static_cast<int>(i));
+  }
+  for (const auto& [a, b] : open_passages(lines_of(def))) {
+    const int kept = group[index.at(a)], other = group[index.at(b)];
+    if (kept < 0 || other < 0) continue;
+    for (int& of_volume : group) {
+      if (of_volume == other) of_volume = kept;
+    }
+  }
+  return group;
 }
 
 }  // namespace slew::hydraulics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Warns about pumps whose line has no relief.
+// Which volumes are joined whatever the signals are, and warnings about pumps whose line has no relief.
 //
 // A pump's line is its outlet and every volume connected to it at any control signal: through orifices, bleeds, laminar
 // restrictions, lines, filters, flow dividers, compensated orifices, four-way valves without gain, from the inlets of
@@ -63,6 +63,14 @@ struct PumpLines {
 
 // Pre-condition: a def whose references are valid.
 [[nodiscard]] PumpLines lines_of(const HydraulicsDef& def);
+
+// Pairs of volumes between which oil passes both ways at rest: open connections without a pilot, hose-burst valves,
+// flow dividers.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> open_passages(const PumpLines& lines);
+
+// By volume: a number that it shares with all volumes that open passages join it to; -1: a fixed volume. Pre-condition:
+// a validated def.
+[[nodiscard]] std::vector<int> joined_by_passages(const HydraulicsDef& def);
 
 // One warning for each such pump. Pre-condition: validate() found no error so far.
 void find_unrelieved_pumps(const HydraulicsDef& def, Problems& warnings);

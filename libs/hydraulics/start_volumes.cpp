@@ -26,18 +26,6 @@ std::map<std::string, std::string> volumes_of_actuators(const HydraulicsDef& def
   return found;
 }
 
-std::vector<std::pair<std::string, std::string>> passages_of(const PumpLines& lines) {
-  std::vector<std::pair<std::string, std::string>> passages = lines.open_at_rest;
-  for (const PumpLines::Connection& way : lines.open) {
-    if (!way.is_one_way && way.pilot.empty() && way.flow > 0) passages.emplace_back(way.a, way.b);
-  }
-  for (const PumpLines::Divider& divider : lines.dividers) {
-    passages.emplace_back(divider.common, divider.branch_2);
-    passages.emplace_back(divider.common, divider.branch_3);
-  }
-  return passages;
-}
-
 }  // namespace
 
 std::vector<int> joined_to_actuators(const HydraulicsDef& def) {
@@ -50,7 +38,7 @@ std::vector<int> joined_to_actuators(const HydraulicsDef& def) {
     nearest[index.at(volume)] = static_cast<int>(index.at(volume));
   for (const std::string& volume : lines.held) nearest[index.at(volume)] = kUnsettled;
   for (const std::string& volume : lines.supply) nearest[index.at(volume)] = kUnsettled;
-  const auto passages = passages_of(lines);
+  const auto passages = open_passages(lines);
   // first what has no rest, over all that it joins, then each actuator's pressure, passage by passage
   for (bool grows = true; grows;) {
     grows = false;
@@ -78,23 +66,6 @@ std::vector<int> joined_to_actuators(const HydraulicsDef& def) {
     if (nearest[i] == static_cast<int>(i) || is_stated || nearest[i] < 0) nearest[i] = kNone;
   }
   return nearest;
-}
-
-std::vector<int> joined_by_passages(const HydraulicsDef& def) {
-  std::map<std::string, std::size_t> index;
-  std::vector<int> group;
-  for (std::size_t i = 0; i < def.volumes.size(); ++i) {
-    index.emplace(def.volumes[i].name, i);
-    group.push_back(def.volumes[i].fixed ? -1 : static_cast<int>(i));
-  }
-  for (const auto& [a, b] : passages_of(lines_of(def))) {
-    const int kept = group[index.at(a)], other = group[index.at(b)];
-    if (kept < 0 || other < 0) continue;
-    for (int& of_volume : group) {
-      if (of_volume == other) of_volume = kept;
-    }
-  }
-  return group;
 }
 
 void find_replaced_pressures(const HydraulicsDef& def, Problems& warnings) {

@@ -20,10 +20,6 @@ namespace slew::hydraulics {
 // By volume: index of the actuator's volume whose start pressure it takes, -1: none. Pre-condition: a validated def.
 [[nodiscard]] std::vector<int> joined_to_actuators(const HydraulicsDef& def);
 
-// By volume: a number that it shares with all volumes that open passages join it to; -1: a fixed volume. Pre-condition:
-// a validated def.
-[[nodiscard]] std::vector<int> joined_by_passages(const HydraulicsDef& def);
-
 // A warning for each initial_pressure that an equilibrium start replaces: of a volume with an actuator or at a pump's
 // outlet, where it is neither the default nor what is taken in its place. Pre-condition: validate() found no error.
 void find_replaced_pressures(const HydraulicsDef& def, Problems& warnings);

@@ -40,14 +40,6 @@ Alone alone(double x) noexcept {
   return {(1 - kGamma) * k_1 + kGamma * k_2, 2 * kGamma * (1 - kGamma) * k_1 + kGamma * kGamma * k_2};
 }
 
-std::size_t volume_of(const Actuator& actuator, std::size_t side) noexcept {
-  return at(side == 0 ? actuator.port_a : actuator.port_b);
-}
-
-double signed_area(const Actuator& actuator, std::size_t side, const double* y) noexcept {
-  return actuator.setting_at(y) * (side == 0 ? actuator.area_a : -actuator.area_b);
-}
-
 }  // namespace
 
 StepResponse::StepResponse(const Circuit& circuit)
@@ -69,7 +61,7 @@ StepResponse::StepResponse(const Circuit& circuit)
   }
   for (const Actuator& actuator : circuit.actuators()) {
     for (const std::size_t side : {0u, 1u}) {
-      Chamber chamber{volume_of(actuator, side), {}};
+      Chamber chamber{at(actuator.volume(side)), {}};
       for (const auto& [i, k] : ways_) {
         if (i == chamber.volume && pattern.has(k, i)) chamber.neighbours.push_back(k);
       }
@@ -130,8 +122,8 @@ bool StepResponse::take_part(const double* y, std::span<const double> outflow, s
   for (std::size_t j = 0; j < actuators.size(); ++j) {
     std::fill(b_.begin(), b_.end(), 0.0);
     for (const std::size_t side : {0u, 1u}) {
-      const std::size_t c = volume_of(actuators[j], side);
-      if (is_held_[c] == 0 && springs[j][side].K > 0) b_[c] -= signed_area(actuators[j], side, y) / C[c];
+      const std::size_t c = at(actuators[j].volume(side));
+      if (is_held_[c] == 0 && springs[j][side].K > 0) b_[c] -= actuators[j].signed_area(side, y) / C[c];
     }
     respond(by_actuator_[j]);
   }
@@ -140,9 +132,9 @@ bool StepResponse::take_part(const double* y, std::span<const double> outflow, s
   for (std::size_t j = 0; j < actuators.size(); ++j) {
     for (const std::size_t side : {0u, 1u}) {
       math::RelaxingSpring& spring = springs[j][side];
-      const std::size_t c = volume_of(actuators[j], side);
+      const std::size_t c = at(actuators[j].volume(side));
       if (is_held_[c] != 0 || !(spring.K > 0)) continue;
-      const double s = signed_area(actuators[j], side, y);
+      const double s = actuators[j].signed_area(side, y);
       const Alone numeric = alone(spring.lambda * H);
       math::SpringResponse response = math::response_of(spring, H);
       response.end -= s * by_actuator_[j].end[c] + spring.K * numeric.end;
@@ -155,7 +147,7 @@ bool StepResponse::take_part(const double* y, std::span<const double> outflow, s
 }
 
 double StepResponse::share_of(std::size_t actuator, std::size_t side, std::size_t other) const noexcept {
-  const std::size_t c = volume_of(circuit_.actuators()[actuator], side);
+  const std::size_t c = at(circuit_.actuators()[actuator].volume(side));
   const double own = by_actuator_[actuator].end[c];
   return own != 0 ? by_actuator_[other].end[c] / own : 0;
 }

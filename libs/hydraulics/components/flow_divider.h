@@ -51,6 +51,7 @@ struct GearFlowDividerDef final : ComponentDef {
   double leak_pressure = 100e5;        // Pa ... at this difference
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "gear_flow_divider"; }
+  [[nodiscard]] bool raises_pressure() const override { return true; }
   [[nodiscard]] void* address() noexcept override { return this; }
   void add_lines(PumpLines& lines) const override;
 };

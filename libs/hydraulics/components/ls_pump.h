@@ -39,6 +39,7 @@ struct LsPumpDef final : ComponentDef {
   double leak_pressure = 100e5;        // Pa ... at this difference
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "ls_pump"; }
+  [[nodiscard]] bool raises_pressure() const override { return true; }
   [[nodiscard]] void* address() noexcept override { return this; }
   void add_lines(PumpLines& lines) const override;
 };

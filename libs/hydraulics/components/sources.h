@@ -21,6 +21,7 @@ struct FlowSourceDef final : ComponentDef {
   double flow_per_signal = 0;  // m3/s per unit of the control signal
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "flow_source"; }
+  [[nodiscard]] bool raises_pressure() const override { return true; }
   [[nodiscard]] void* address() noexcept override { return this; }
   void add_lines(PumpLines& lines) const override;
 };
@@ -33,6 +34,7 @@ struct PressureSourceDef final : ComponentDef {
   double nominal_pressure_drop = 1e5;  // Pa ... at this difference
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "pressure_source"; }
+  [[nodiscard]] bool raises_pressure() const override { return true; }
   [[nodiscard]] void* address() noexcept override { return this; }
   void add_lines(PumpLines& lines) const override;
 };

@@ -27,7 +27,7 @@ void add_stiffness(const Model& model, const Workspace& ws, ChangeWeights weight
 // Stiffness of a link's turn about its origin by a force F at s from it.
 void add_pull(int link, math::Vec3 s, math::Vec3 F, double weight, LinkMatrix& matrix) noexcept;
 
-// Calls couple(link1, link2) for the links of every element; for every coupled pair, contacts included.
+// Calls couple(link1, link2) for the links of every element.
 template <typename Couple>
 void for_each_element_coupling(const Model& model, Couple&& couple) {
   for (const LineElement& line : model.lines) couple(line.link1, line.link2);
@@ -36,6 +36,7 @@ void for_each_element_coupling(const Model& model, Couple&& couple) {
     for (const auto& element : elements_of(row, model.elements)) row.for_each_coupling(element, couple);
   });
 }
+// The same, and for those of every pair of shapes that may touch.
 template <typename Couple>
 void for_each_coupling(const Model& model, Couple&& couple) {
   for_each_element_coupling(model, couple);
