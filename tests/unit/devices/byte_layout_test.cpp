@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/byte_layout.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
