@@ -4,10 +4,14 @@
 // The page has the text that it edits; here nothing is kept between two requests but the file. A request is answered on
 // a thread of its own and of low priority, since reading a scene takes its time and the session must not wait:
 //
-//   GET  /scene.json   {file, text, tag, settings, kinds, elements, problems, ...} of the file (scene/scene_outline.h)
-//   POST /scene.json   {text, edit}: the changed text with its elements and problems; nothing is written
-//   PUT  /scene.yaml   the text into the file. If-Match names the state that it replaces. Refused: a text with problems
-//   POST /restart      the session begins again with the file, whose state If-Match names
+//   GET  /scene.json   {file, text, tag, settings, kinds, elements, points, problems, warnings} of the file
+//                      (scene/scene_outline.h); settings are those over the file
+//   POST /scene.json   {text, edit}: {text, elements, problems, refusal, notes} of the changed text, refusal empty when
+//                      it is done; nothing is written. edit: {set, value} with a path such as "Bag.mass",
+//                      {add, section, type}, {copy, to}, {rename, to}, {remove}, or none
+//   PUT  /scene.yaml   the text into the file: 204. If-Match names the state that it replaces: 412, 428. 422 with the
+//                      problems of a text that does not load
+//   POST /restart      the session begins again with the file, whose state If-Match names: 202
 //
 // Only this one file is written, as a whole, and never while it has changed since the page has read it.
 #pragma once
