@@ -164,6 +164,8 @@ class Circuit {
   [[nodiscard]] bool may_cavitate(std::size_t volume) const noexcept { return vapour_.begins_below[volume] > 0; }
   [[nodiscard]] OilMeasure oil_measure(std::size_t volume, double u) const noexcept;
   [[nodiscard]] double state_of_oil(std::size_t volume, double w) const noexcept;
+  // (8) of vapour.h: these volumes, and how many.
+  [[nodiscard]] std::size_t soft_volumes(const double* y, std::span<std::size_t> volumes) const noexcept;
   // The first volume whose room without oil is larger than the volume itself, -1: none.
   [[nodiscard]] int first_overdrawn(const double* y) const noexcept;
   [[nodiscard]] std::span<const double> vapour_capacities() const noexcept { return vapour_.capacity; }
@@ -346,6 +348,8 @@ class Circuit {
     double at_reference = 0;           // m3/Pa, C_r(p_r) of (7)
   };
   void list_rigid_contents();
+  [[nodiscard]] double soft_below(std::size_t volume) const noexcept;  // Pa, limit of (8); -infinity: none
+  [[nodiscard]] bool has_line(std::size_t volume) const noexcept;
   // int_pf^p C_r dp [m3] with its derivatives; pre-condition: p >= floor
   [[nodiscard]] OilMeasure rigid_oil(std::size_t volume, double p) const noexcept;
   void move_through_floor(std::size_t volume, double dV, double share, double* y) noexcept;
@@ -385,6 +389,7 @@ class Circuit {
   std::vector<Piece> pieces_;  // pieces, by volume
   std::vector<VolumeContent> volumes_;
   std::vector<RigidContent> rigid_;         // by volume
+  std::vector<double> soft_below_;          // Pa, one per volume
   std::vector<std::size_t> with_chambers_;  // volumes that pistons change
   std::vector<LineChamber> lines_;          // two by actuator
   int beyond_waves_ = -1;

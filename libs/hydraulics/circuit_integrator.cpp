@@ -327,6 +327,10 @@ double CircuitIntegrator::state_of_measure(std::size_t state, double w) const no
   return circuit_.state_of_oil(state, w);
 }
 
+std::size_t CircuitIntegrator::soft_states(const double* y, std::span<std::size_t> states) const noexcept {
+  return circuit_.soft_volumes(y, states);
+}
+
 // (1); the slope at the end of a sub-step is taken when the next one starts.
 void CircuitIntegrator::accepted(double h, const double* y_before, const double* f_before, double* y) noexcept {
   close_quadrature(y_before, f_before);

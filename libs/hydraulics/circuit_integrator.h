@@ -136,6 +136,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   [[nodiscard]] bool has_measure(std::size_t state) const noexcept override;
   [[nodiscard]] Measure measure(std::size_t state, double y) const noexcept override;
   [[nodiscard]] double state_of_measure(std::size_t state, double w) const noexcept override;
+  [[nodiscard]] std::size_t soft_states(const double* y, std::span<std::size_t> states) const noexcept override;
   void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept override;
   struct PressureForce {
     double F = 0, rate = 0;  // N, N/s

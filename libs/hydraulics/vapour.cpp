@@ -18,6 +18,8 @@ constexpr int kMostParts = 64;
 constexpr double kFallingFlow = 2;       // (4) of vapour.h: mean flow of a sub-step over that at its end
 constexpr double kAtFloor = 1e-3;        // share of the floor: rounding of a state that ends there
 constexpr double kOilReference = 100e5;  // Pa, p_r of (7) of vapour.h: oil with little air
+constexpr double kSoftness = 2;          // (8) of vapour.h
+constexpr double kSoftWithin = 1e-3;     // share of a pressure: width of the bracket about the limit of (8)
 constexpr int kMeasureIterations = 30;   // quadratic from below; 5 to 8 are used
 constexpr double kSettledOil = 1e-15;    // share of a pressure: rounding
 constexpr double kFull = 1 + 1e-6;       // (5) of vapour.h, with its rounding
@@ -107,7 +109,33 @@ void Circuit::list_rigid_contents() {
     }
     rigid_.push_back(rigid.volume > 0 ? rigid : RigidContent{1, 0, 0});
     rigid_.back().at_reference = rigid_oil(i, kOilReference).slope;
+    soft_below_.push_back(soft_below(i));
   }
+}
+
+double Circuit::soft_below(std::size_t volume) const noexcept {
+  const auto softness = [&](double p) { return rigid_oil(volume, p).slope / rigid_[volume].at_reference; };
+  if (softness(floor_) <= kSoftness) return -std::numeric_limits<double>::infinity();
+  double soft = floor_, stiff = kOilReference;
+  while (stiff - soft > kSoftWithin * stiff) {
+    const double p = 0.5 * (soft + stiff);
+    (softness(p) > kSoftness ? soft : stiff) = p;
+  }
+  return soft;
+}
+
+std::size_t Circuit::soft_volumes(const double* y, std::span<std::size_t> volumes) const noexcept {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < soft_below_.size(); ++i) {
+    if (y[i] < soft_below_[i] && may_cavitate(i) && !has_line(i)) volumes[count++] = i;
+  }
+  return count;
+}
+
+bool Circuit::has_line(std::size_t volume) const noexcept {
+  return std::any_of(lines_.begin(), lines_.end(), [volume](const LineChamber& line) {
+    return line.is_line && line.volume == static_cast<int>(volume);
+  });
 }
 
 OilMeasure Circuit::rigid_oil(std::size_t volume, double p) const noexcept {

@@ -18,10 +18,12 @@
 // 2 allows for a flow that falls during the sub-step. An Euler sub-step takes h sum Q = C(u_1) (u_1 - u_0) of oil where
 // the content changes by int C du:
 //   abs(C(u_1) - C(u_0)) abs(u_1 - u_0) / 2 <= share C(u_1) (scale + p)                                       (6)
-// cvode and implicit_euler advance the measure of a volume's oil in place of u (math/stiff_system.h):
+// Methods advance the measure of a volume's oil in place of u (math/stiff_system.h):
 //   w = int_pf^u C_r dp/C_r(p_r) [Pa],   C_r = sum V_k (kappa_oil + 1/B_k) of the rigid contents and hoses (7)
 // continued with its slope at the floor below it; kappa_oil alone without such contents. Where no piston moves, w' is
-// the flow over a constant: the oil is kept to rounding through the floor, and an error counts as oil. p_r = 100 bar.
+// the flow over a constant: the oil is kept to rounding through the floor. p_r = 100 bar. cvode and implicit_euler
+// advance w everywhere; rodas3, whose sub-step begins at u, where
+//   w'(u) > 2                                                                                        (8)
 // Not covered: dissolved air, inertia of collapsing bubbles.
 #pragma once
 

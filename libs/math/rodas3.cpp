@@ -51,8 +51,41 @@ Rodas3::Rodas3(const SparsityPattern& pattern, std::size_t jacobian_stride, Stif
       k3_(size_),
       k4_(size_),
       stage_(size_),
-      new_(size_) {
+      new_(size_),
+      stride_(jacobian_stride),
+      soft_states_(size_),
+      states_(size_),
+      soft_J_(size_ * jacobian_stride) {
   SLEW_CHECK(options_.scale.size() == size_ && options_.relative.size() == size_);
+  soft_.reserve(size_);
+}
+
+// Takes the soft states at y; J in the variables of (5).
+const double* Rodas3::find_soft(const StiffSystem& system, const double* y, const double* J) noexcept {
+  soft_.clear();
+  const std::size_t count = system.soft_states(y, soft_states_);
+  if (count == 0) return J;
+  std::copy(J, J + size_ * stride_, soft_J_.begin());
+  for (const std::size_t i : std::span(soft_states_).first(count)) {
+    const StiffSystem::Measure w = system.measure(i, y[i]);
+    soft_J_[i * stride_ + i] += w.bend / w.slope * f_[i];
+    soft_.push_back({i, y[i], w.value, w.slope, y[i], y[i]});
+  }
+  return soft_J_.data();
+}
+
+// (5) solved for y
+const double* Rodas3::to_states(const StiffSystem& system, const double* v) noexcept {
+  if (soft_.empty()) return v;
+  std::copy(v, v + size_, states_.begin());
+  for (const Soft& soft : soft_) {
+    states_[soft.state] = system.state_of_measure(soft.state, soft.w + soft.slope * (v[soft.state] - soft.y));
+  }
+  return states_.data();
+}
+
+void Rodas3::to_soft_rates(const StiffSystem& system, const double* y, double* f) const noexcept {
+  for (const Soft& soft : soft_) f[soft.state] *= system.measure(soft.state, y[soft.state]).slope / soft.slope;
 }
 
 // Stages (2) and the new state (4) into new_; returns the error measure, infinite when it is not a number.
@@ -66,12 +99,18 @@ double Rodas3::try_step(StiffSystem& system, const double* y, double h) noexcept
   matrix_.solve(k2_);
 
   for (std::size_t i = 0; i < n; ++i) stage_[i] = y[i] + 2 * k1_[i];
-  system.derivative(stage_.data(), k3_.data());
+  const double* at = to_states(system, stage_.data());
+  for (Soft& soft : soft_) soft.stage_3 = at[soft.state];
+  system.derivative(at, k3_.data());
+  to_soft_rates(system, at, k3_.data());
   for (std::size_t i = 0; i < n; ++i) k3_[i] += M[i] * (c * (kC31 * k1_[i] + kC32 * k2_[i]));
   matrix_.solve(k3_);
 
   for (std::size_t i = 0; i < n; ++i) stage_[i] += k3_[i];
-  system.derivative(stage_.data(), k4_.data());
+  at = to_states(system, stage_.data());
+  for (Soft& soft : soft_) soft.stage_4 = at[soft.state];
+  system.derivative(at, k4_.data());
+  to_soft_rates(system, at, k4_.data());
   for (std::size_t i = 0; i < n; ++i) {
     k4_[i] += M[i] * (c * (kC41 * k1_[i] + kC42 * k2_[i] + kC43 * k3_[i]));
   }
@@ -90,6 +129,10 @@ double Rodas3::try_step(StiffSystem& system, const double* y, double h) noexcept
       worst_ = static_cast<std::int32_t>(i);
     }
   }
+  if (!soft_.empty()) {
+    at = to_states(system, new_.data());
+    for (const Soft& soft : soft_) new_[soft.state] = at[soft.state];
+  }
   return is_number ? error : kInfinity;
 }
 
@@ -99,7 +142,10 @@ double Rodas3::integral(const StateFunction& g, std::size_t state, double h, con
                         const double*) const noexcept {
   const auto [g_1, slope] = g.at(before[state]);
   const double k1 = slope * k1_[state], k2 = slope * k2_[state], k3 = slope * k3_[state], k4 = slope * k4_[state];
-  const double y3 = before[state] + 2 * k1_[state], y4 = y3 + k3_[state], weight = h * kGamma;
+  double y3 = before[state] + 2 * k1_[state], y4 = y3 + k3_[state];
+  const auto soft = std::find_if(soft_.begin(), soft_.end(), [state](const Soft& one) { return one.state == state; });
+  if (soft != soft_.end()) y3 = soft->stage_3, y4 = soft->stage_4;
+  const double weight = h * kGamma;
   const double q1 = weight * (g_1 + k1);
   const double q2 = weight * (g_1 + k2) + kGamma * kC21 * q1;
   const double q3 = weight * (g.at(y3).value + k3) + kGamma * (kC31 * q1 + kC32 * q2);
@@ -171,7 +217,7 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
     // two equal steps rather than a long and a short one
     const bool reaches_end = h >= rest * (1 - kStretch);
     double used = reaches_end ? rest : std::min(h, std::max(0.5 * rest, options_.minimum_step));
-    if (J == nullptr) J = system.linearise(y.data(), f_.data());
+    if (J == nullptr) J = find_soft(system, y.data(), system.linearise(y.data(), f_.data()));
     const double bend = system.time_to_bend(y.data(), f_.data(), J);
     const bool ends_at_bend = bend < used && bend > options_.minimum_step && !report.is_over_budget;
     if (ends_at_bend) used = bend;

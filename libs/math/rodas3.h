@@ -14,6 +14,11 @@
 // what was left, then in ten steps whose error is below kGrossShare. Without such a step, or after four budgets, the
 // interval ends unfinished (is_impossible).
 //
+// A state that is soft at the beginning of a step (StiffSystem::soft_states()) is advanced in its measure w, in the
+// form
+//   v = y_0 + (w(y) - w(y_0))/w'(y_0),   v' = f w'(y)/w'(y_0)                                                (5)
+// whose error and slopes at the beginning are those of y, but for w''/w' f on the diagonal of J.
+//
 // Sources: K. Gustafsson 1994, ACM Trans. Math. Softw. 20, 496 (rejections); A. Sandu et al. 1997, Atmos. Environ. 31,
 // 3459 (RODAS3); form (1) as in Hairer and Wanner 1996, IV.7. M = I unless set_mass() makes rows algebraic: the method
 // is stiffly accurate, so they need no further treatment. A step ends where the system expects a bend
@@ -47,6 +52,15 @@ class Rodas3 final : public StiffIntegrator {
   void set_mass(std::span<const double> mass) noexcept override { matrix_.set_mass(mass); }
 
  private:
+  // A state in its measure, (5), at the beginning of the step and at the stages.
+  struct Soft {
+    std::size_t state;
+    double y, w, slope;
+    double stage_3, stage_4;  // y at (2)
+  };
+  [[nodiscard]] const double* find_soft(const StiffSystem& system, const double* y, const double* J) noexcept;
+  [[nodiscard]] const double* to_states(const StiffSystem& system, const double* v) noexcept;
+  void to_soft_rates(const StiffSystem& system, const double* y, double* f) const noexcept;
   [[nodiscard]] std::int32_t first_non_finite() const noexcept;
   [[nodiscard]] double allowed_error(std::uint32_t tries) const noexcept;
   // Largest errors of the last step from y, 1 = tolerance.
@@ -64,6 +78,10 @@ class Rodas3 final : public StiffIntegrator {
   std::int32_t worst_ = -1;  // worst state of the last step tried
   double step_size_ = 0;
   std::vector<double> f_, k1_, k2_, k3_, k4_, stage_, new_;
+  std::size_t stride_;
+  std::vector<Soft> soft_;  // reserved for all states
+  std::vector<std::size_t> soft_states_;
+  std::vector<double> states_, soft_J_;  // y of a stage; J in the variables of (5)
 };
 
 }  // namespace slew::math

@@ -63,6 +63,11 @@ class StiffSystem {
   [[nodiscard]] virtual bool has_measure(std::size_t /*state*/) const noexcept { return false; }
   [[nodiscard]] virtual Measure measure(std::size_t /*state*/, double y) const noexcept { return {y, 1, 0}; }
   [[nodiscard]] virtual double state_of_measure(std::size_t /*state*/, double w) const noexcept { return w; }
+  // States whose storage bends so strongly at y that an adaptive method advances their measures: their indices in
+  // increasing order, and how many; room for all states.
+  [[nodiscard]] virtual std::size_t soft_states(const double* /*y*/, std::span<std::size_t> /*states*/) const noexcept {
+    return 0;
+  }
   // A sub-step from y_before (derivative f_before) to y was accepted; may move y back into its bounds.
   virtual void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept = 0;
 };

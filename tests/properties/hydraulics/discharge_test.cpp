@@ -260,13 +260,14 @@ Pulled pull(Solver solver, double tolerance, bool has_hose, double H) {
   return run;
 }
 
-void expect_kept(Solver solver) {
+// most: share of the 40 bar, over the tolerance
+void expect_kept(Solver solver, double most) {
   for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
     for (const bool has_hose : {false, true}) {
       SCOPED_TRACE(std::to_string(std::log10(tolerance)) + (has_hose ? ", hose" : ""));
       const Pulled run = pull(solver, tolerance, has_hose, 5e-3);
       EXPECT_LT(run.lowest, 0.054 * kBar);
-      EXPECT_NEAR(run.pressure / (40 * kBar), 1, 1e-5);
+      EXPECT_NEAR(run.pressure / (40 * kBar), 1, std::max(1e-5, most * tolerance));
       EXPECT_EQ(run.flags & ~static_cast<std::uint32_t>(StepFlag::cavitating), 0U);
     }
   }
@@ -275,8 +276,9 @@ void expect_kept(Solver solver) {
 TEST(Discharge, oil_that_is_drawn_out_and_put_back_is_kept) {
   for (const Solver solver : {Solver::implicit_euler, Solver::cvode}) {
     SCOPED_TRACE(kSolverChoices[static_cast<std::size_t>(solver)]);
-    expect_kept(solver);
+    expect_kept(solver, 0);
   }
+  expect_kept(Solver::rodas3, 10);
 }
 
 // of rigid contents, hoses and both oil laws, from tension to beyond the law
