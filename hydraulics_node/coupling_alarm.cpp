@@ -4,13 +4,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace slew::hydraulics_node {
+namespace {
+
+// By port: the force of the pressure below which errors count as errors of zero.
+std::vector<double> least_forces(const scene::Scene& scene) {
+  std::vector<double> forces;
+  for (const auto& component : scene.hydraulics.components) {
+    const std::optional<hydraulics::ActuatorDef> actuator = component->actuator();
+    if (actuator) forces.push_back(scene.hydraulics.pressure_scale * std::max(actuator->area_a, actuator->area_b));
+  }
+  return forces;
+}
+
+}  // namespace
 
 CouplingAlarm::CouplingAlarm(const scene::Scene& scene)
     : scene_(scene),
       ends_session_(scene.session.coupling_alarm == scene::CouplingAlarm::stop),
-      indicator_(scene.ports.size(), {scene.session.step_duration().ns * scene.session.exchange_every}) {}
+      indicator_(scene.ports.size(), {scene.session.step_duration().ns * scene.session.exchange_every},
+                 least_forces(scene)) {}
 
 void CouplingAlarm::reset() noexcept {
   indicator_.reset();

@@ -24,8 +24,8 @@ constexpr double kLeastForce = 1;
 
 // (5), own
 template <typename Bucket>
-double scale_of(const Bucket& sum) {
-  const double force = std::max(sum.force, kLeastForce);
+double scale_of(const Bucket& sum, double least_force = kLeastForce) {
+  const double force = std::max(sum.force, least_force);
   return std::max(sum.work, sum.stiffness > 0 ? force * force / (2 * sum.stiffness) : 0.0);
 }
 
@@ -47,19 +47,22 @@ Lamp lamp_of(const PortDefects& defects) noexcept {
   return defects.eta < kGreenBelow ? Lamp::green : Lamp::amber;
 }
 
-Indicator::Indicator(std::size_t ports, SimDuration communication_step)
+Indicator::Indicator(std::size_t ports, SimDuration communication_step, std::vector<double> least_force)
     : ports_(ports),
       H_(communication_step.seconds()),
       steps_per_bucket_(
           steps_per_bucket(kIndicatorWindow.ns / static_cast<std::int64_t>(kBuckets), communication_step)),
       alarm_after_steps_(std::max<std::int64_t>(1, kNetAlarmAfter.ns / communication_step.ns)),
+      least_force_(std::move(least_force)),
       window_(ports),
       others_(ports),
       largest_(ports),
       diverging_buckets_(ports, 0),
       kinetic_(ports, 0),
       steps_below_alarm_(ports, 0),
-      defects_(ports) {}
+      defects_(ports) {
+  least_force_.resize(ports, kLeastForce);
+}
 
 void Indicator::reset() noexcept {
   for (auto& buckets : window_) buckets.fill(Bucket{});
@@ -87,8 +90,8 @@ void Indicator::start_bucket() noexcept {
 }
 
 // (7), of one full bucket
-bool Indicator::diverges_in(const Bucket& bucket) noexcept {
-  return bucket.stiffness > 0 && bucket.residual > kDivergesAbove * scale_of(bucket);
+bool Indicator::diverges_in(const Bucket& bucket, std::size_t port) const noexcept {
+  return bucket.stiffness > 0 && bucket.residual > kDivergesAbove * scale_of(bucket, least_force_[port]);
 }
 
 void Indicator::add_others(std::size_t port) noexcept {
@@ -99,7 +102,7 @@ void Indicator::add_others(std::size_t port) noexcept {
   for (std::size_t i = 0; i < kBuckets; ++i) {
     if (i == current_) continue;
     sum.add(window_[port][i]);
-    if (diverges_in(window_[port][i])) ++diverging;
+    if (diverges_in(window_[port][i], port)) ++diverging;
     double next = window_[port][i].residual;
     for (double& kept : largest) {
       if (next > kept) std::swap(next, kept);
@@ -208,7 +211,7 @@ double Indicator::own_residual(std::size_t port) const noexcept {
 
 bool Indicator::diverges(std::size_t port) const noexcept {
   const Bucket sum = window_sum(port);
-  return sum.residual > kDivergesAtOnce * std::max(scale_of(sum), kinetic_[port]) ||
+  return sum.residual > kDivergesAtOnce * std::max(scale_of(sum, least_force_[port]), kinetic_[port]) ||
          diverging_buckets_[port] >= kDivergingBuckets;
 }
 

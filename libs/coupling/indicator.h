@@ -24,7 +24,8 @@
 //   sum |dE*| > 0.1 max(sum |W_mech|, F^2 / (2 K))                                                  (7)
 // within half of the window's buckets or more, each with its own work and its own largest |F|: a swing that grows
 // within the window does not hide the buckets before it; and at once when sum |dE*| > 4 own, more than any jump of a
-// sound run leaves, if forces can move the port at all (W > 0).
+// sound run leaves, if forces can move the port at all (W > 0). Both take the port's least force for a smaller |F|:
+// what the partners disagree on at a port that hardly pushes is an error of a motion that others make.
 #pragma once
 
 #include <array>
@@ -73,7 +74,8 @@ struct PortDefects {
 // Follows all ports of a session. It never feeds back into the physics, so it is no part of a state hash.
 class Indicator {
  public:
-  Indicator(std::size_t ports, SimDuration communication_step);
+  // least_force: by port [N], below which (7) does not judge; empty: 1 N. Allocates.
+  Indicator(std::size_t ports, SimDuration communication_step, std::vector<double> least_force = {});
 
   // Both samples of the same step n >= 0; stiffness: of the oil columns [N/m], also of ports whose sample has none
   // because their spring is not inside the step (level tlm). No allocation.
@@ -112,7 +114,7 @@ class Indicator {
 
   template <typename Self, typename Bytes>
   static void visit(Self& self, Bytes& bytes);
-  [[nodiscard]] static bool diverges_in(const Bucket& bucket) noexcept;
+  [[nodiscard]] bool diverges_in(const Bucket& bucket, std::size_t port) const noexcept;
   void start_bucket() noexcept;
   void add_others(std::size_t port) noexcept;
   [[nodiscard]] Bucket window_sum(std::size_t port) const noexcept;
@@ -125,6 +127,7 @@ class Indicator {
   std::int64_t steps_in_bucket_ = 0;
   std::size_t current_ = 0;
   std::int64_t alarm_after_steps_;
+  std::vector<double> least_force_;                    // N, by port
   std::vector<std::array<Bucket, kBuckets>> window_;   // by port
   std::vector<Bucket> others_;                         // by port, sums of the window without the current bucket
   std::vector<std::array<double, kLeftOut>> largest_;  // by port, residuals of others_, falling
