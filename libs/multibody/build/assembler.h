@@ -12,6 +12,7 @@
 
 #include "core/index.h"
 #include "multibody/build/assembly.h"
+#include "multibody/build/singular_start.h"
 #include "multibody/constraints/constraint.h"
 #include "multibody/constraints/loops.h"
 #include "multibody/flexible/deflection.h"
@@ -200,7 +201,7 @@ class Assembler {
       right[first_cut_speed + k] = speed.speed - row.rate;
     }
     math::Semidefinite factor(static_cast<int>(rows));
-    factor.factorize(products(residual, rate, rows), {}, kDependentAtStart);
+    factor.factorize(products(residual, rate, rows), vanishing(rows), kDependentAtStart);
     for (std::size_t k = 0; k < cuts; ++k) right[k] = -ws_.loops.rows[k].rate;
     factor.solve(right);
     std::fill(ws_.residual.begin(), ws_.residual.end(), 0.0);
@@ -212,6 +213,11 @@ class Assembler {
     for (const std::size_t j : given)
       state_.u[j] = std::fabs(state_.u[j] - wanted[j]) < 1e-12 ? wanted[j] : state_.u[j];
     return lost_speeds(wanted, given);
+  }
+
+  [[nodiscard]] std::vector<AssemblyReport::Singular> singular_rows() {
+    renew(state_);
+    return find_singular_rows(model_, kDependentAtStart, ws_);
   }
 
  private:
@@ -304,6 +310,15 @@ class Assembler {
         ws_.residual[j] += loops.residual[k * speeds + j] * loops.multipliers[k];
       }
     }
+  }
+
+  // Scales below which rows of loops are zero by rounding, as kDependent of their mobility elsewhere; of other rows 0.
+  [[nodiscard]] std::vector<double> vanishing(std::size_t rows) const {
+    std::vector<double> scales(rows);
+    for (std::size_t k = 0; k < model_.cut_reference.size(); ++k) {
+      scales[k] = model_.cut_reference[k] * (kDependent / kDependentAtStart);
+    }
+    return scales;
   }
 
   // residuals times rates of all rows, lower triangle

@@ -180,6 +180,7 @@ AssemblyReport assemble(Model& model) {
   Assembler assembler(model);
   assembler.close();
   report.speeds = assembler.settle_speeds();
+  report.singular = assembler.singular_rows();
   report.open = assembler.open_rows();
   model.start_q = assembler.state().q;
   model.start_u = assembler.state().u;

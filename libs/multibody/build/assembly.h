@@ -25,11 +25,19 @@ struct AssemblyReport {
     std::string joint;
     double wanted = 0, found = 0;  // rad/s or m/s
   };
+  // A row that depends on others at the start alone: the loop is in a singular position.
+  struct Singular {
+    std::string joint;        // or gear, that closes the loop
+    std::string others;       // names of the loop's other joints
+    bool is_at_rest = false;  // no joint of the loop moves
+    bool goes_on = true;      // false: the loop cannot go on with the start's speeds
+  };
   std::vector<Row> open;        // rows that the start violates by more than kFrameTolerance
   std::vector<Row> held_twice;  // rows that prescribed motions and loops already imply
   std::vector<Row> locking;     // gears whose ratio leaves no motion to either joint; `what` names joint 1
   std::vector<Speed> speeds;    // speeds of the scene that the loops do not allow
-  bool is_settled = true;       // false: flexible bodies find no rest under the start's load
+  std::vector<Singular> singular;
+  bool is_settled = true;  // false: flexible bodies find no rest under the start's load
 };
 
 // Removes rows of a cut joint that the tree and the cuts before it imply: planar loops in space, doubled hinges. A row

@@ -54,6 +54,7 @@ void rest_in_loops(const MechanicsDef& def, Model& model, AssemblyReport& report
   model.rests_in_loops = true;
   Assembler assembler(model);
   report.speeds = assembler.settle_speeds();
+  report.singular = assembler.singular_rows();
   model.start_u = assembler.state().u;
 }
 

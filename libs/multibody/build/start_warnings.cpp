@@ -231,7 +231,8 @@ void find_overshoots(const MechanicsDef& mechanics, Problems& warnings) {
 }
 
 void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
-  const Model model = build_model(mechanics);
+  AssemblyReport report;
+  const Model model = build_model(mechanics, {}, report);
   Workspace ws(model);
   State state = start_state(model);
   for_each_mode(model, [&](std::size_t q, std::size_t) { state.q[q] = 0; });
@@ -254,6 +255,14 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
   if (!model.has_closing_rows()) find_start_deflections(model, warnings);
   find_moved_modes(mechanics, model, warnings);
   find_start_bends(model, warnings);
+  for (const AssemblyReport::Singular& row : report.singular) {
+    if (!row.is_at_rest) continue;
+    warnings.push_back({row.joint,
+                        fmt::format("the loop that it closes with {} starts at rest in a singular position: it can go "
+                                    "on in more than one way, and rounding selects",
+                                    row.others),
+                        "a start that is 1e-3 rad or more off this position, on the side to which it shall go", ""});
+  }
   const Description description = describe(model);
   for (const CutDescription& cut : description.cuts) {
     for (const std::string& row : cut.redundant) {

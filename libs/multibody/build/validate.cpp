@@ -420,6 +420,17 @@ class Validator {
                       speed.found),
           "speeds that fit each other: those that are not given follow from the others");
     }
+    // speeds that do not fit are refused above
+    if (!report.speeds.empty() || !report.open.empty()) return;
+    for (const AssemblyReport::Singular& row : report.singular) {
+      if (row.goes_on) continue;
+      add(row.joint,
+          fmt::format("the loop that it closes with {} starts in a singular position, from which it can go on in more "
+                      "than one way, and the start speeds fit none of them",
+                      row.others),
+          "start speeds of one more of its joints, which fit the way it shall go, or a start that is 1e-3 rad or more "
+          "off this position");
+    }
   }
 
   // an end damper that lies where the angle has jumped by a whole turn is never touched

@@ -136,6 +136,7 @@ void take_over(const WeldedStart& welded, Model& model, AssemblyReport& report) 
     put_speeds(link, ws.motion[at(link.parent)], ws.motion[i], model.start_u);
   }
   report.speeds = welded.report.speeds;
+  report.singular = welded.report.singular;
   if (!welded.report.open.empty()) report.open = welded.report.open;
 }
 

@@ -44,6 +44,29 @@ inline MechanicsDef four_bars(int n) {
   return def;
 }
 
+// Parallelogram with cranks of 0.3 m, coupler and base of 1 m, base at `base` to x, cranks at `crank` to the base
+// [rad]. The pins at Ground have speeds where these are given; weight acts along -y.
+inline MechanicsDef parallelogram(double base, double crank, double first_speed, double second_speed) {
+  const auto along = [](double angle, double length) {
+    return Triple{length * std::cos(angle), length * std::sin(angle), 0};
+  };
+  const double cranks = base + crank;
+  const Triple inertia = {0.01, 0.01, 0.01}, end = {0.3, 0, 0};
+  MechanicsDef def;
+  def.bodies = {{.name = "A", .orientation = {cranks, 0, 0}, .mass = 1, .center_of_mass = {0.15, 0, 0}},
+                {.name = "B", .position = along(cranks, 0.3), .orientation = {base, 0, 0}, .mass = 2},
+                {.name = "C", .position = along(base, 1), .orientation = {cranks, 0, 0}, .mass = 1}};
+  def.bodies[1].center_of_mass = {0.5, 0, 0};
+  def.bodies[2].center_of_mass = {0.15, 0, 0};
+  def.bodies[0].inertia = def.bodies[2].inertia = inertia;
+  def.bodies[1].inertia = {0.01, 0.2, 0.2};
+  def.joints = {{.name = "J1", .body2 = "A", .initial_velocity = first_speed},
+                {.name = "J2", .body1 = "A", .point1 = end, .body2 = "B"},
+                {.name = "J3", .point1 = along(base, 1), .body2 = "C", .initial_velocity = second_speed},
+                {.name = "J4", .body1 = "B", .point1 = {1, 0, 0}, .body2 = "C", .point2 = end}};
+  return def;
+}
+
 inline MechanicsDef slider_crank() {
   MechanicsDef def;
   def.gravity = {0, 0, -9.81};

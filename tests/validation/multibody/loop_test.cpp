@@ -5,6 +5,7 @@
 // A03: Bari IVP test set; angles within 1e-4 at a fixed step of 1e-5 s, loops within 1e-9 m.
 // A08: Haug, IFToMM; slider within 2e-4 m, crank within 1e-2 rad at 5 s.
 // Figures: docs/validation/A02_four_bars.md, A03_squeezer.md, A08_slider_crank.md.
+#include "multibody/build/validate.h"
 #include "tests/support/nightly.h"
 #include "tests/validation/multibody/csv_table.h"
 #include "tests/validation/multibody/every_formulation.h"
@@ -176,6 +177,83 @@ TEST_P(SliderCrank, InSpaceFollowsTheReference) {
   expect_figure("A08", setting(step), {"constraint [m]", open, 1e-8});
 }
 
+class FlatStart : public testing::EveryFormulation {};
+
+std::string problems_of(const MechanicsDef& def) {
+  Problems problems;
+  validate(def, problems);
+  return testing::text_of(problems);
+}
+
+// From a flat position a parallelogram goes on as one, or crossed: with the speeds (w3 - w1) (r (w3 - w1) - (w3 + w1))
+// = 0, r = 0.3.
+constexpr double kCrossed = -1.3 / 0.7;
+
+TEST_P(FlatStart, WithOneSpeedIsRefusedAsSingular) {
+  for (const double base : {0.0, 0.3, M_PI / 4}) {
+    for (const double second : {kNotGiven, 8.01, -8.0, 0.0}) {
+      MechanicsDef def = testing::parallelogram(base, 0, 8, second);
+      def.formulation = GetParam();
+      EXPECT_NE(
+          problems_of(def).find("J4: the loop that it closes with 'J1', 'J2', 'J3' starts in a singular position"),
+          std::string::npos)
+          << base << ", " << second << ": " << problems_of(def);
+    }
+  }
+}
+
+TEST_P(FlatStart, WithBothSpeedsFollowsThem) {
+  for (const double base : {0.0, 0.3, M_PI / 4}) {
+    EXPECT_EQ(problems_of(testing::parallelogram(base, 0, 8, 8 * kCrossed)), "") << base;
+    // one coordinate: J theta'' = g S cos(base + theta)
+    const double J = 2 * (0.01 + 0.15 * 0.15) + 2 * 0.09, S = 2 * 0.15 + 2 * 0.3;
+    Formulated bars = start(testing::parallelogram(base, 0, 8, 8));
+    const auto slope = [&](double theta) { return bars.model.gravity[1] * S / J * std::cos(base + theta); };
+    double theta = 0, rate = 8;
+    constexpr int kParts = 4000;
+    for (int i = 0; i < kParts; ++i) {
+      const double h = 1.0 / kParts, r1 = rate, a1 = slope(theta), r2 = rate + h / 2 * a1,
+                   a2 = slope(theta + h / 2 * r1), r3 = rate + h / 2 * a2, a3 = slope(theta + h / 2 * r2),
+                   r4 = rate + h * a3, a4 = slope(theta + h * r3);
+      theta += h / 6 * (r1 + 2 * r2 + 2 * r3 + r4);
+      rate += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+    }
+    bars.run(1, 1e-3);
+    EXPECT_NEAR(bars.value("J1.position"), base + theta, 1e-3) << base;
+    EXPECT_NEAR(bars.value("J3.velocity"), rate, 1e-2) << base;
+  }
+}
+
+// The remedy of the refusal.
+TEST(FlatStarts, OffTheFlatPositionOneSpeedIsEnough) {
+  for (const double base : {0.0, 0.3, M_PI / 4}) {
+    for (const double crank : {1e-3, -1e-3, 1e-4}) {
+      Formulated bars(testing::parallelogram(base, crank, 8, kNotGiven));
+      EXPECT_NEAR(bars.value("J3.velocity"), 8, 1e-6) << base << ", " << crank;
+    }
+  }
+}
+
+TEST(FlatStarts, AtRestAreWarnedOf) {
+  const auto warnings_of = [](double crank) {
+    Problems warnings;
+    find_start_changes(testing::parallelogram(0, crank, kNotGiven, kNotGiven), warnings);
+    return testing::text_of(warnings);
+  };
+  EXPECT_NE(warnings_of(0).find("starts at rest in a singular position"), std::string::npos) << warnings_of(0);
+  EXPECT_EQ(warnings_of(1e-3).find("singular"), std::string::npos) << warnings_of(1e-3);
+}
+
+// A motion that drives one crank of it selects no way either.
+TEST(FlatStarts, ThatAMotionDrivesAreRefused) {
+  for (const double second : {kNotGiven, 8.0}) {
+    MechanicsDef def = testing::parallelogram(0, 0, kNotGiven, second);
+    def.motions.push_back({.name = "Drive", .shape = MotionShape::speed, .joint = "J1", .speed = 8});
+    EXPECT_EQ(problems_of(def).find("singular") == std::string::npos, is_given(second)) << problems_of(def);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(In, FlatStart, testing::kEveryFormulation, testing::kFormulationName);
 INSTANTIATE_TEST_SUITE_P(In, FourBars, testing::kEveryFormulation, testing::kFormulationName);
 INSTANTIATE_TEST_SUITE_P(In, Squeezer, testing::kEveryFormulation, testing::kFormulationName);
 INSTANTIATE_TEST_SUITE_P(In, SliderCrank, testing::kEveryFormulation, testing::kFormulationName);
