@@ -52,6 +52,14 @@ class Expander {
     return found == bodies.end() ? nullptr : &*found;
   }
 
+  // True at the root and at other clamped nodes: no mode moves the node in the body's frame.
+  [[nodiscard]] static bool is_clamped(const ModalNode& node) {
+    const auto is_zero = [](const Vec3& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; };
+    return !node.shift.empty() && std::all_of(node.shift.begin(), node.shift.end(), is_zero) &&
+           std::all_of(node.turn.begin(), node.turn.end(), is_zero) &&
+           std::all_of(node.shortening.begin(), node.shortening.end(), is_zero);
+  }
+
   // the body of a node, created if new
   std::string use(const FlexibleBodyDef& flexible, std::size_t index) {
     const ModalNode& node = flexible.modes->nodes[index];
@@ -59,7 +67,7 @@ class Expander {
     if (!used_.insert(name).second) return name;
     nodes_.push_back({.name = name, .relative_to = flexible.body, .position = node.position.array()});
     holds_.push_back({.name = name,
-                      .type = JointType::node,
+                      .type = is_clamped(node) ? JointType::fixed : JointType::node,
                       .body1 = flexible.body,
                       .point1 = node.position.array(),
                       .body2 = name});
@@ -172,7 +180,7 @@ class Expander {
       const ModalBody& modes = *flexible.modes;
       if (body == flexible.body) {
         const std::size_t index = nearest(modes, Vec3(point));
-        if (static_cast<int>(index) == modes.root) return;
+        if (static_cast<int>(index) == modes.root || is_clamped(modes.nodes[index])) return;
         body = use(flexible, index);
         point = (Vec3(point) - modes.nodes[index].position).array();
         return;

@@ -16,8 +16,9 @@ namespace slew::multibody {
 
 // The same mechanics with, for every node of a flexible body at which something is attached, a massless body and a
 // joint of the type `node` that holds it; references to the flexible body at a point then refer to the nearest node,
-// and references by name to the named node. Attachments at the root stay with the body. Flexible bodies have the mass
-// and the inertia of their modes' source.
+// and references by name to the named node. Attachments at the root and at other clamped nodes stay with the body, and
+// where they are named the massless body is fixed to it. Flexible bodies have the mass and the inertia of their modes'
+// source.
 // Segmented bodies become rigid ones, their root lumps, and their other lumps are bodies, free of Ground where no joint
 // of the scene holds them; references to such a body at a point then refer to the nearest lump, and used nodes are
 // massless bodies fixed to the lump that holds them. Beams are added by add_segments(). Allocates.

@@ -79,6 +79,40 @@ TEST_P(FlexibleStarts, StandStill) {
   EXPECT_NEAR(boom.value("Boom.deflection.y"), before, 1e-7 * std::fabs(before));
 }
 
+// The root by its node's name, and a clamped node beside it by its place: the same mechanism, without a loop.
+TEST_P(FlexibleStarts, OfABodyHeldAtAClampedNodeIsThatOfItsFrame) {
+  MechanicsDef named = level_boom(500, 2e11, lowest(2)), beside = named;
+  const ModalBody& modes = *named.flexible_bodies[0].modes;
+  const auto root = static_cast<std::size_t>(modes.root);
+  named.joints[0].body2 = "Boom.Node" + std::to_string(modes.nodes[root].id);
+  named.joints[0].point1 = modes.nodes[root].position.array();
+  ModalBody wider = modes;
+  ModalNode& second = wider.nodes[root == 0 ? 1 : root - 1];
+  for (auto* by_mode : {&second.shift, &second.turn, &second.shortening})
+    by_mode->assign(by_mode->size(), math::Vec3());
+  beside.joints[0].point1 = beside.joints[0].point2 = second.position.array();
+  beside.flexible_bodies[0].modes = std::make_shared<ModalBody>(wider);
+  const auto after = [](const MechanicsDef& def) {
+    Formulated boom = start(def);
+    EXPECT_FALSE(boom.model.has_closing_rows());
+    const double sagged = boom.value("Boom.deflection.y");
+    boom.run(0.05, 2.5e-4);
+    return std::pair(sagged, boom.value("Boom.deflection.y"));
+  };
+  for (const bool is_let_go : {false, true}) {
+    MechanicsDef whole = level_boom(500, 2e11, lowest(2));
+    for (MechanicsDef* def : {&whole, &named, &beside}) {
+      if (is_let_go) def->flexible_bodies[0].start.assign(modes.modes(), 0.0);
+    }
+    const auto right = after(whole);
+    for (const MechanicsDef* def : {&named, &beside}) {
+      const auto found = after(*def);
+      EXPECT_NEAR(found.first, right.first, 1e-9) << is_let_go;
+      EXPECT_NEAR(found.second, right.second, 1e-9) << is_let_go;
+    }
+  }
+}
+
 // A prop under the load, from much softer to much stiffer than the boom: the sag without it over 1 + K c.
 TEST_P(FlexibleStarts, RestOnASpring) {
   const auto sag_under = [](double load) {
