@@ -62,7 +62,7 @@ TEST(StandardErrors, ASignalWithoutFreedomTakesTheVarianceOfAll) {
 
 // One value, signals of errors 1 and 0.05 that it changes by 1 and 0.3: 95 % of 4000 intervals hold it, 0.35 % is the
 // deviation of that share. With one variance for both signals 74 % do.
-TEST(StandardErrors, IntervalsHoldTheTruthAsOftenAsTheySay) {
+TEST(StandardErrors, NineteenOfTwentyIntervalsHoldTheTruth) {
   constexpr std::size_t kDraws = 4000, kFew = 12, kMany = 30;
   std::mt19937_64 generator(5);
   const auto uniform = [&] { return (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53; };
