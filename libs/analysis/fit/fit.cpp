@@ -9,6 +9,7 @@
 
 #include "analysis/fit/measured_data.h"
 #include "analysis/fit/signal_run.h"
+#include "analysis/fit/standard_errors.h"
 #include "analysis/parameter_sweep/measure.h"
 #include "analysis/parameter_sweep/variable_values.h"
 #include "analysis/parameter_sweep/variation.h"
@@ -26,6 +27,7 @@ namespace {
 using Points = std::vector<std::vector<double>>;
 
 constexpr double kInner = 0.38196601;  // part of a range where no whole number or short decimal is met by chance
+constexpr double kRounding = 1e-12;    // SI, and relative: below it a signal differs from the measured one by rounding
 constexpr double kAtBound = 1e-6;      // distance from a bound, as a part of the range
 // the same bound as kMostCorrelation, for the variance inflation 1 / (1 - R^2)
 constexpr double kMostInflation = 1 / (1 - kMostCorrelation * kMostCorrelation);
@@ -76,7 +78,9 @@ class Fitter {
     // a signal that hardly changes does not outweigh the others by an offset that no value can mend
     for (FittedSignal& signal : fit_.signals) {
       const double scale = std::max(statistics_of(signal.measured).deviation, signal.rms(signal.before));
-      if (scale > 0) signal.scale = scale;
+      double largest = 1;
+      for (const double value : signal.measured) largest = std::max(largest, std::fabs(value));
+      if (scale > kRounding * largest) signal.scale = scale;
     }
     fit_.search = minimise_squares(start_, before.front().values.size(), options_.most_iterations,
                                    [this](std::span<const std::vector<double>> points) { return residuals(points); });
@@ -271,12 +275,16 @@ class Fitter {
 
   void judge() {
     const std::size_t n = free_.size();
-    const std::vector<double>& C = fit_.search.covariance;
-    std::size_t m = 0;
-    for (const FittedSignal& signal : fit_.signals) m += signal.measured.size();
+    const LeastSquares& search = fit_.search;
+    StandardErrors errors;
+    if (!search.normal_inverse.empty()) {
+      std::vector<std::size_t> samples;
+      for (const FittedSignal& signal : fit_.signals) samples.push_back(signal.measured.size());
+      errors = standard_errors(search.normal_inverse, search.jacobian, search.residuals, samples);
+    }
     for (std::size_t k = 0; k < n; ++k) {
       const FreeValue& free = free_[k];
-      const double u = fit_.search.u[k];
+      const double u = search.u[k];
       FittedValue value{.path = free.variation.path,
                         .unit = free.variation.unit,
                         .low = free.in_unit(0),
@@ -285,20 +293,30 @@ class Fitter {
                         .after = free.in_unit(u)};
       value.is_at_bound = u < kAtBound || u > 1 - kAtBound;
       value.setting = value.path + "=" + free.variation.value_at(u);
-      if (!C.empty() && is_separated(k)) {
-        const double half =
-            student_quantile(static_cast<double>(m - n)) * std::sqrt(C[k * n + k]) * std::fabs(value.high - value.low);
+      if (!errors.covariance.empty() && is_separated(k)) {
+        const double range = std::fabs(value.high - value.low);
+        const double half = student_quantile(errors.freedom[k]) * std::sqrt(errors.covariance[k * n + k]) * range;
         value.interval = Interval{value.after - half, value.after + half};
-        value.is_beyond_range = half > std::fabs(value.high - value.low);
+        value.is_beyond_range = 2 * half > range;
       }
       fit_.values.push_back(std::move(value));
     }
     find_undetermined();
+    // those of N where J leaves a direction open or the residuals have no errors
+    const bool has_errors = fit_.undetermined.empty() && has_variances(errors.covariance, n);
+    const std::vector<double>& C = has_errors ? errors.covariance : search.normal_inverse;
     for (std::size_t i = 0; i < n && !C.empty(); ++i) {
       for (std::size_t j = 0; j < n; ++j) {
         fit_.correlations.push_back(C[i * n + j] / std::sqrt(C[i * n + i] * C[j * n + j]));
       }
     }
+  }
+
+  [[nodiscard]] static bool has_variances(const std::vector<double>& C, std::size_t n) {
+    for (std::size_t k = 0; k < n; ++k) {
+      if (C.empty() || !(C[k * n + k] > 0)) return false;
+    }
+    return true;
   }
 
   [[nodiscard]] bool is_separated(std::size_t k) const {
@@ -308,7 +326,7 @@ class Fitter {
   void find_undetermined() {
     const std::size_t n = free_.size();
     const LeastSquares& search = fit_.search;
-    std::vector<bool> is_open(n, !search.covariance.empty());
+    std::vector<bool> is_open(n, !search.normal_inverse.empty());
     while (true) {
       // the least separated value, and those that make up for its change
       std::size_t first = n;
@@ -322,7 +340,7 @@ class Fitter {
     }
   }
 
-  // The change of the others for a change of value `first` that changes the signals least: C_j,first / C_first,first.
+  // The change of the others for a change of value `first` that changes the signals least: N_j,first / N_first,first.
   [[nodiscard]] Undetermined combination_of(std::size_t first) const {
     const std::size_t n = free_.size();
     const LeastSquares& search = fit_.search;
@@ -334,7 +352,7 @@ class Fitter {
     const std::size_t others = search.effects[first] > 0 ? n : 1;
     for (std::size_t step = 0; step < others; ++step) {
       const std::size_t k = (first + step) % n;
-      const double share = search.covariance[k * n + first] / search.covariance[first * n + first];
+      const double share = search.normal_inverse[k * n + first] / search.normal_inverse[first * n + first];
       if (std::fabs(share) * search.effects[k] < kLeastPart * search.effects[first]) continue;
       const double change = share * du * range(k), after = fit_.values[k].after;
       all.parts.push_back({k, after != 0 ? change / std::fabs(after) : change, after != 0});

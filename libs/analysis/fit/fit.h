@@ -5,11 +5,13 @@
 // Least squares (least_squares.h) over runs of the scene, each a process of its own (sweep/sweep.h). Residual of signal
 // k at its instant t_i:  r = (x_k(t_i) - m_ki) / s_k  with the simulated x_k, linear between steps, the measured m_ki,
 // and s_k, the standard deviation of the measured signal over time, or the RMS of its difference from the first run
-// where that is larger (an offset that no value can mend): every sample of every signal has the same weight.
+// where that is larger (an offset that no value can mend): every sample of every signal has the same weight. s_k is 1
+// in SI where both are rounding.
 //
-// 95 % interval of value j with m residuals and n values: t sqrt(C_jj), t: 0.975 quantile of Student's distribution
-// with m - n degrees of freedom. It holds for independent normal errors of the samples, a scene that is right but for
-// the free values, and a minimum within the bounds. Errors that follow each other, or a wrong model, make it too small.
+// 95 % interval of value j: t sqrt(C_jj), with C from the residuals of each signal (standard_errors.h) and t, the 0.975
+// quantile of Student's distribution with its degrees of freedom. It holds for independent normal errors of the
+// samples, of one size within a signal, a scene that is right but for the free values, and a minimum within the bounds.
+// Errors that follow each other, or a wrong model, make it too small.
 //
 // Values that the data cannot separate have no interval: column k of the Jacobian J is, up to kMostCorrelation, a
 // combination of the others' columns, so that values may change together and change no signal. The measure is the
@@ -51,7 +53,7 @@ struct FittedValue {
   double after = 0;
   std::optional<Interval> interval{};  // 95 %; none: the data do not determine it alone
   bool is_at_bound = false;
-  bool is_beyond_range = false;  // the interval reaches farther to each side than the bounds are apart
+  bool is_beyond_range = false;  // the interval is wider than the bounds are apart
   std::string setting{};         // "Boom.mass=612.3 kg"
 };
 
@@ -83,7 +85,7 @@ struct Fit {
   std::vector<Undetermined> undetermined;
   // The search converged and the data determine every value.
   [[nodiscard]] bool is_determined() const {
-    return search.has_converged && !search.covariance.empty() && undetermined.empty() &&
+    return search.has_converged && !search.normal_inverse.empty() && undetermined.empty() &&
            std::none_of(values.begin(), values.end(), [](const FittedValue& value) { return value.is_beyond_range; });
   }
 };

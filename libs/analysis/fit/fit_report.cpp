@@ -48,7 +48,7 @@ std::string combination_text(const Undetermined& combination, const Fit& fit) {
 }
 
 std::string undetermined_text(const Fit& fit) {
-  if (fit.undetermined.empty() && !fit.search.covariance.empty()) return "";
+  if (fit.undetermined.empty() && !fit.search.normal_inverse.empty()) return "";
   std::string text = "\nThe data do not determine the values";
   if (fit.undetermined.empty()) text += ": a change of some of them together changes no signal";
   text += ".\n";

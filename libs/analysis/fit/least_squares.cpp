@@ -69,7 +69,9 @@ LeastSquares minimise_squares(std::vector<double> start, std::size_t residuals, 
   const std::size_t n = start.size();
   LeastSquares result;
   result.u = std::move(start);
-  result.covariance.resize(n * n);
+  result.normal_inverse.resize(n * n);
+  result.jacobian.resize(residuals * n);
+  result.residuals.resize(residuals);
   result.effects.resize(n);
   Callback callback{.residuals_at = residuals_at, .unknowns = n, .residuals = residuals};
   SquaresProblem problem{.unknowns = n,
@@ -79,8 +81,10 @@ LeastSquares minimise_squares(std::vector<double> start, std::size_t residuals, 
                          .context = &callback,
                          .residuals_at = call_back,
                          .u = result.u.data(),
-                         .covariance = result.covariance.data(),
-                         .column_lengths = result.effects.data()};
+                         .covariance = result.normal_inverse.data(),
+                         .column_lengths = result.effects.data(),
+                         .jacobian = result.jacobian.data(),
+                         .residuals_at_u = result.residuals.data()};
   minimise(problem);
   if (callback.fault) std::rethrow_exception(callback.fault);
   result.has_converged = problem.has_converged;
@@ -90,14 +94,12 @@ LeastSquares minimise_squares(std::vector<double> start, std::size_t residuals, 
   result.squares_before = problem.squares_before;
   result.squares_after = problem.squares_after;
   if (!problem.has_covariance || residuals <= n) {
-    result.covariance.clear();
+    for (std::vector<double>* one : {&result.normal_inverse, &result.jacobian, &result.residuals}) one->clear();
     return result;
   }
   for (std::size_t k = 0; k < n; ++k) {
-    result.inflations.push_back(result.effects[k] * result.effects[k] * result.covariance[k * n + k]);
+    result.inflations.push_back(result.effects[k] * result.effects[k] * result.normal_inverse[k * n + k]);
   }
-  const double variance = result.squares_after / static_cast<double>(residuals - n);
-  for (double& value : result.covariance) value *= variance;
   return result;
 }
 

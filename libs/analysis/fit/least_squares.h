@@ -3,10 +3,10 @@
 // Solver, ceres-solver.org), trust region by Levenberg and Marquardt, projected into the bounds.
 //
 // Unknowns u are in [0, 1]. The Jacobian is that of central differences, of one-sided ones at a bound, with a step that
-// exceeds the integrators' error; all points of a Jacobian are computed at once. Covariance of u at the minimum with m
-// residuals r and n unknowns:  C = (r' r / (m - n)) (J' J)^-1; where J' J is singular, large in its direction.
-// Ceres is in a library of its own, which this program loads for a fit alone: Debian's Ceres comes with SuiteSparse
-// under the GPL, LAPACK and others, and is built for other instructions. Only plain doubles cross its border.
+// exceeds the integrators' error; all points of a Jacobian are computed at once. N = (J' J)^-1 at the minimum is large
+// in the direction of what J does not determine; with it standard_errors.h has the covariance of u. Ceres is in a
+// library of its own, which this program loads for a fit alone: Debian's Ceres comes with SuiteSparse under the GPL,
+// LAPACK and others, and is built for other instructions. Only plain doubles cross its border.
 #pragma once
 
 #include <functional>
@@ -32,10 +32,11 @@ struct LeastSquares {
   std::vector<double> u{};  // best point
   int iterations = 0;
   double squares_before = 0, squares_after = 0;  // r' r
-  std::vector<double> covariance{};              // n x n, of u; empty: there is no Jacobian at u, or m <= n
+  std::vector<double> normal_inverse{};          // N, n x n; empty: there is no Jacobian at u, or m <= n
+  std::vector<double> jacobian{}, residuals{};   // J, m x n by rows, and r at u; empty without N
   // |J_k|: change of the residuals with u_k, by unknown. 0: the unknown changes no residual.
   std::vector<double> effects{};
-  // |J_k|^2 (J' J)^-1_kk, by unknown; empty without covariance. 1 / (1 - R^2) with R, the correlation of column k of J
+  // |J_k|^2 (J' J)^-1_kk, by unknown; empty without N. 1 / (1 - R^2) with R, the correlation of column k of J
   // with the nearest combination of the others: by how much the others make the variance of u_k larger.
   std::vector<double> inflations{};
 };

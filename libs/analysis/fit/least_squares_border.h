@@ -25,6 +25,8 @@ struct SquaresProblem {
   double* covariance = nullptr;  // n x n, of u for residuals of variance 1
   bool has_covariance = false;
   double* column_lengths = nullptr;  // n, of the Jacobian at u
+  double* jacobian = nullptr;        // m x n, by rows, at u
+  double* residuals_at_u = nullptr;  // m
   char reason[256] = {};
 };
 

@@ -68,6 +68,12 @@ class DataReader {
           {"there is no column '" + name + "'", fmt::format("a header such as '{}'", kHeader), closest(name, known)});
       return false;
     }
+    const auto second =
+        std::find_if(at + 1, head.end(), [&](const scene::ColumnHead& one) { return one.name == name; });
+    if (second != head.end()) {
+      report_.add(second->mark, "", {"'" + name + "' is there twice", "one column for a name", ""});
+      return false;
+    }
     column.index = static_cast<std::size_t>(at - head.begin());
     if (at->unit.empty()) return true;
     const scene::Unit* unit = units_.find(at->unit);

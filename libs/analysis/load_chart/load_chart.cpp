@@ -36,13 +36,21 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
   throw Failure(ExitCode::bad_input, fmt::format("{}; nothing was computed; {}", what, remedy));
 }
 
+// By line.
+struct TippingPose {
+  std::vector<TippingMoments> moments{};
+  std::vector<double> sides{};  // signs
+};
+
 class ChartMaker {
  public:
   explicit ChartMaker(const LoadChartOptions& options)
       : options_(options), base_(std::make_unique<scene::Scene>(scene::load_file(options.scene, options.overrides))) {
     read_coordinates();
     check_machine();
-    for (const std::string& line : options.lines) lines_.push_back(read_tipping_line(line));
+    for (const std::string& line : options.lines) {
+      lines_.push_back(read_tipping_line(line, Vec3(base_->mechanics.gravity)));
+    }
     read_structure();
     chart_.scene = base_->name;
     chart_.from = options.from.empty() ? std::string(multibody::kGroundName) : options.from;
@@ -56,7 +64,12 @@ class ChartMaker {
     }
     for (const Settings& row : rows) {
       if (!progress("poses", static_cast<double>(chart_.poses.size()) / static_cast<double>(rows.size()))) break;
+      tipping_.emplace_back();
       chart_.poses.push_back(pose_of(row));
+    }
+    if (!lines_.empty()) find_sides();
+    for (std::size_t i = 0; i < chart_.poses.size(); ++i) {
+      if (chart_.poses[i].has_load()) choose(tipping_[i], chart_.poses[i]);
     }
     const auto has_load = [](const ChartPose& pose) { return pose.has_load(); };
     if (!chart_.poses.empty() && std::none_of(chart_.poses.begin(), chart_.poses.end(), has_load)) {
@@ -89,6 +102,10 @@ class ChartMaker {
         const std::string meant(closest(variation.path, names));
         refuse_chart(fmt::format("--over {}: the scene has no joint '{}'", text, variation.path),
                      meant.empty() ? "name a joint with one coordinate" : "did you mean '" + meant + "'?");
+      }
+      if (!chart_.coordinates.empty() && chart_.coordinates.front().joint == variation.path) {
+        refuse_chart(fmt::format("--over is given twice for {}", variation.path),
+                     "give all its positions in one, or another joint");
       }
       chart_.coordinates.push_back({variation.path, variation.unit});
       variation.path = "start." + variation.path;
@@ -197,9 +214,8 @@ class ChartMaker {
     if (!pose.refusal.empty()) return;
     if (has_tipping_) {
       multibody::observe(model, state, ws);
-      pose.loads.back() = smallest_tipping_load(model, ws, payload);
+      add_tipping(model, ws, payload);
     }
-    choose(pose);
   }
 
   void find_place(const multibody::Model& model, const multibody::Workspace& ws, int payload, ChartPose& pose) const {
@@ -236,17 +252,40 @@ class ChartMaker {
   }
 
   // (3)
-  double smallest_tipping_load(const multibody::Model& model, const multibody::Workspace& ws, int payload) const {
-    const std::vector<Weight> weights = weights_without(model, ws, payload);
+  void add_tipping(const multibody::Model& model, const multibody::Workspace& ws, int payload) {
+    TippingPose& tipping = tipping_.back();
+    weights_ = weights_without(model, ws, payload);
     const Vec3 center(multibody::body_pose(model, ws, payload).center_of_mass);
-    double least = kNever;
-    for (const TippingLine& line : lines_.empty() ? lines_of_tyres(model, ws) : lines_) {
-      least = std::min(least, tipping_load(line, weights, center, model.gravity));
+    const std::vector<TippingLine> lines = lines_.empty() ? lines_of_tyres(model, ws) : lines_;
+    for (const TippingLine& line : lines) {
+      tipping.moments.push_back(tipping_moments(line, weights_, center, model.gravity));
+      tipping.sides.push_back(line.side);
     }
-    return least;
   }
 
-  void choose(ChartPose& pose) {
+  // of the lines that were given
+  void find_sides() {
+    for (std::size_t line = 0; line < lines_.size(); ++line) {
+      std::vector<TippingMoments> moments;
+      for (const TippingPose& pose : tipping_) {
+        if (!pose.moments.empty()) moments.push_back(pose.moments[line]);
+      }
+      if (moments.empty()) return;
+      const SideChoice choice = choose_side(lines_, line, weights_, moments, Vec3(base_->mechanics.gravity));
+      if (lines_.size() == 1 || !choice.is_sure) {
+        chart_.notes.push_back(fmt::format("tipping line '{}': {}", options_.lines[line], choice.text));
+      }
+      for (TippingPose& pose : tipping_) {
+        if (!pose.moments.empty()) pose.sides[line] = lines_[line].side;
+      }
+    }
+  }
+
+  void choose(const TippingPose& tipping, ChartPose& pose) {
+    for (std::size_t line = 0; line < tipping.moments.size(); ++line) {
+      pose.tips_alone = pose.tips_alone || tipping.moments[line].rest * tipping.sides[line] <= 0;
+      pose.loads.back() = std::min(pose.loads.back(), tipping_load(tipping.moments[line], tipping.sides[line]));
+    }
     pose.limiting =
         static_cast<std::size_t>(std::min_element(pose.loads.begin(), pose.loads.end()) - pose.loads.begin());
     pose.load = std::max(0.0, pose.loads[pose.limiting]);
@@ -257,8 +296,10 @@ class ChartMaker {
   const LoadChartOptions& options_;
   std::unique_ptr<scene::Scene> base_;
   std::vector<Variation> variations_;
-  std::vector<TippingLine> lines_;
-  std::vector<double> allowed_;  // N, by port; infinite: none is given
+  std::vector<TippingLine> lines_;    // of --tipping-line
+  std::vector<TippingPose> tipping_;  // by pose; empty where there is no load
+  std::vector<Weight> weights_;       // at the last pose; those fixed to Ground are the same at all
+  std::vector<double> allowed_;       // N, by port; infinite: none is given
   bool has_tipping_ = false, is_steady_ = true;
   std::optional<LargestForces> largest_;
   std::set<std::size_t> unsteady_;  // ports whose pressure still rose

@@ -55,6 +55,7 @@ struct ChartPose {
   std::vector<double> loads{};        // kg, by limit; infinite: it does not limit here
   std::size_t limiting = 0;           // the smallest of them
   double load = 0;                    // kg, at least 0
+  bool tips_alone = false;            // the machine tips without payload
 
   [[nodiscard]] bool has_load() const noexcept { return refusal.empty(); }
 };
@@ -66,6 +67,7 @@ struct LoadChart {
   std::vector<ChartLimit> limits;
   std::vector<ChartPose> poses;       // the last coordinate changes fastest
   std::vector<std::string> warnings;  // sentences
+  std::vector<std::string> notes;     // sentences: what was taken where the options leave it open
 };
 
 // progress: what is done and its share; false ends the work, and the poses so far are kept. Throws Failure and

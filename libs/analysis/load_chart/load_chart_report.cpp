@@ -47,7 +47,9 @@ ReportTable table_of(const LoadChart& chart) {
     row.emplace_back(fmt::format("{:.3f} m", pose.reach), Json(pose.reach));
     row.emplace_back(fmt::format("{:.3f} m", pose.height), Json(pose.height));
     row.emplace_back(kilograms(pose.load), Json(pose.load));
-    row.emplace_back(chart.limits[pose.limiting].name);
+    const ChartLimit& limit = chart.limits[pose.limiting];
+    const bool tips_alone = pose.tips_alone && limit.kind == LimitKind::tipping;
+    row.emplace_back(tips_alone ? limit.name + ": tips without load" : limit.name);
     for (const double load : pose.loads) row.emplace_back("", number_or_null(load));
     table.add(std::move(row));
   }
@@ -100,6 +102,7 @@ void add_marks(const LoadChart& chart, plotting::Chart& picture) {
 
 std::string report_text(const LoadChart& chart, std::size_t width) {
   std::string text = fmt::format("{}\n\n{}", heading_of(chart), table_of(chart).text("  ", width));
+  for (const std::string& note : chart.notes) text += "\nnote: " + note + '\n';
   for (const std::string& warning : chart.warnings) text += "\nwarning: " + warning + '\n';
   return text;
 }
@@ -109,13 +112,15 @@ std::string report_csv(const LoadChart& chart) {
 }
 
 Json report_json(const LoadChart& chart) {
-  Json coordinates = Json::array(), warnings = Json::array();
+  Json coordinates = Json::array(), notes = Json::array(), warnings = Json::array();
   for (const ChartCoordinate& one : chart.coordinates) {
     coordinates.push_back({{"joint", one.joint}, {"unit", one.unit}});
   }
+  for (const std::string& note : chart.notes) notes.push_back(note);
   for (const std::string& warning : chart.warnings) warnings.push_back(warning);
-  return {{"scene", chart.scene},       {"payload", chart.payload},        {"mass", chart.mass},  {"from", chart.from},
-          {"coordinates", coordinates}, {"poses", table_of(chart).json()}, {"warnings", warnings}};
+  return {{"scene", chart.scene}, {"payload", chart.payload},   {"mass", chart.mass},
+          {"from", chart.from},   {"coordinates", coordinates}, {"poses", table_of(chart).json()},
+          {"notes", notes},       {"warnings", warnings}};
 }
 
 std::string report_svg(const LoadChart& chart) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 #include "core/failure.h"
@@ -18,6 +19,11 @@ namespace slew::analysis {
 using math::Vec3;
 
 namespace {
+
+// level distance from a line below which a point has no side
+constexpr double kOnLine = 1e-6;  // m
+// level part of a direction below which it is that of gravity
+constexpr double kLeastLevel = 1e-6;
 
 [[noreturn]] void refuse_line(const std::string& text) {
   throw Failure(ExitCode::bad_input,
@@ -73,20 +79,53 @@ std::vector<LevelPoint> hull_of(std::vector<LevelPoint> points) {
   return hull;
 }
 
-double moment(const TippingLine& line, Vec3 c, Vec3 force) noexcept {
-  const Vec3 along = line.Q - line.P;
-  return dot(along, cross(c - line.P, force)) / norm(along);
+// Centre of mass of the parts that are fixed to Ground; none without mass.
+std::optional<Vec3> fixed_center(std::span<const Weight> weights) {
+  double mass = 0;
+  Vec3 moment;
+  for (const Weight& weight : weights) {
+    if (!weight.is_fixed) continue;
+    mass += weight.mass;
+    moment += weight.c * weight.mass;
+  }
+  if (!(mass > 0)) return std::nullopt;
+  return moment * (1 / mass);
+}
+
+// Sign of the side on which all points of the other lines lie; 0: they lie on both, or on the line.
+double side_of_others(const std::vector<TippingLine>& lines, std::size_t line, Vec3 gravity) {
+  bool is_left = false, is_right = false;
+  for (const TippingLine& other : lines) {
+    for (const Vec3& point : {other.P, other.Q}) {
+      const double side = side_of(lines[line], point, gravity);
+      is_left = is_left || side > kOnLine * norm(gravity);
+      is_right = is_right || side < -kOnLine * norm(gravity);
+    }
+  }
+  return is_left == is_right ? 0 : is_left ? 1 : -1;
 }
 
 }  // namespace
 
-TippingLine read_tipping_line(const std::string& text) {
+double side_of(const TippingLine& line, Vec3 point, Vec3 gravity) noexcept {
+  const Vec3 along = line.Q - line.P;
+  return dot(along, cross(point - line.P, gravity)) / norm(along);
+}
+
+TippingLine read_tipping_line(const std::string& text, Vec3 gravity) {
   const std::size_t comma = text.find(',');
   if (comma == std::string::npos) refuse_line(text);
   TippingLine line;
   line.P = read_point(text.substr(0, comma), text);
   line.Q = read_point(text.substr(comma + 1), text);
-  if (!(norm(line.Q - line.P) > 0)) refuse_line(text);
+  const Vec3 along = line.Q - line.P;
+  if (!(norm(along) > 0)) refuse_line(text);
+  if (norm(cross(along, gravity)) < kLeastLevel * norm(along) * norm(gravity)) {
+    throw Failure(ExitCode::bad_input, fmt::format("--tipping-line: '{}' is vertical, and no weight has a moment about "
+                                                   "it; nothing was computed; give two points that lie beside each "
+                                                   "other, such as '1.4 0 -1.2, 1.4 0 1.2'",
+                                                   text));
+  }
   return line;
 }
 
@@ -103,7 +142,8 @@ std::vector<TippingLine> lines_of_tyres(const multibody::Model& model, const mul
   const std::vector<LevelPoint> corners = hull_of(std::move(places));
   std::vector<TippingLine> lines;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    lines.push_back({corners[i].p, corners[(i + 1) % corners.size()].p, middle, true});
+    lines.push_back({corners[i].p, corners[(i + 1) % corners.size()].p});
+    lines.back().side = side_of(lines.back(), middle, model.gravity);
   }
   return lines;
 }
@@ -115,7 +155,7 @@ std::vector<Weight> weights_without(const multibody::Model& model, const multibo
     if (static_cast<int>(i) == own) continue;
     const multibody::LumpedMass& part = model.lumped[i];
     const multibody::LinkMotion& link = ws.motion[at(part.link)];
-    weights.push_back({link.p + link.R * part.c_L, part.mass});
+    weights.push_back({link.p + link.R * part.c_L, part.mass, part.link == 0});
   }
   // cylinder and piston on their line
   for (const multibody::CoupledMass& mass : model.coupled) {
@@ -126,14 +166,49 @@ std::vector<Weight> weights_without(const multibody::Model& model, const multibo
   return weights;
 }
 
-double tipping_load(const TippingLine& line, std::span<const Weight> weights, Vec3 payload, Vec3 gravity) noexcept {
-  double rest = 0;
-  for (const Weight& weight : weights) rest += moment(line, weight.c, gravity * weight.mass);
-  const double of_payload = moment(line, payload, gravity);
-  const double side = line.has_side ? moment(line, line.inside, gravity) : rest;
-  if (rest * side <= 0) return 0;
-  if (of_payload * side >= 0) return std::numeric_limits<double>::infinity();
-  return -rest / of_payload;
+TippingMoments tipping_moments(const TippingLine& line, std::span<const Weight> weights, Vec3 payload,
+                               Vec3 gravity) noexcept {
+  TippingMoments moments{.payload = side_of(line, payload, gravity)};
+  for (const Weight& weight : weights) moments.rest += weight.mass * side_of(line, weight.c, gravity);
+  return moments;
+}
+
+double tipping_load(const TippingMoments& moments, double side) noexcept {
+  if (moments.rest * side <= 0) return 0;
+  if (moments.payload * side >= 0) return std::numeric_limits<double>::infinity();
+  return -moments.rest / moments.payload;
+}
+
+SideChoice choose_side(std::vector<TippingLine>& lines, std::size_t line, std::span<const Weight> weights,
+                       std::span<const TippingMoments> moments, Vec3 gravity) {
+  double& side = lines[line].side;
+  if (const std::optional<Vec3> center = fixed_center(weights)) {
+    side = side_of(lines[line], *center, gravity);
+    if (std::fabs(side) > kOnLine * norm(gravity)) {
+      return {.text =
+                  fmt::format("the machine stands on the side of its parts that are fixed to Ground (centre of mass "
+                              "at {:.4g} {:.4g} {:.4g} m)",
+                              center->x(), center->y(), center->z())};
+    }
+  }
+  side = side_of_others(lines, line, gravity);
+  if (side != 0) return {.text = "the machine stands on the side of the other lines"};
+  constexpr const char* kRemedy = "fix its carrier to Ground, with its mass, where it stands on the other one";
+  const auto count = [&](auto is_it) { return std::count_if(moments.begin(), moments.end(), is_it); };
+  const auto beyond = count([](const TippingMoments& one) { return one.payload > 0; });
+  const auto before = count([](const TippingMoments& one) { return one.payload < 0; });
+  if ((beyond == 0) != (before == 0)) {
+    side = beyond > 0 ? -1 : 1;
+    return {.text = fmt::format("the machine is taken to stand on the side where the payload is not; {}", kRemedy),
+            .is_sure = false};
+  }
+  const auto left = count([](const TippingMoments& one) { return one.rest > 0; });
+  const auto right = count([](const TippingMoments& one) { return one.rest < 0; });
+  side = left >= right ? 1 : -1;
+  return {.text = fmt::format("the machine is taken to stand on the side on which it holds at most positions ({} of "
+                              "{}); {}",
+                              std::max(left, right), moments.size(), kRemedy),
+          .is_sure = false};
 }
 
 }  // namespace slew::analysis

@@ -282,7 +282,7 @@ std::optional<double> MeasuredRun::value() const {
     case MeasureKind::rms:
       return length > 0 ? std::sqrt(integral_ / length) : std::fabs(last_x_);
     case MeasureKind::at:
-      return at_.value_or(last_x_);  // a run of no whole number of steps ends before its duration
+      return at_;
     case MeasureKind::duration_above:
       return integral_;
     case MeasureKind::final:

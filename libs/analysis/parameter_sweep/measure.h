@@ -55,7 +55,9 @@ class MeasuredRun {
 
   // t [s] increases. values: of the variables.
   void add(double t, std::span<const double> values);
-  // SI. None: no finite value at some sample, or no samples.
+  // at() of a time beyond the last sample: a run of no whole number of steps may end before its duration.
+  [[nodiscard]] bool needs_more() const noexcept { return measure_->kind == MeasureKind::at && is_begun_ && !at_; }
+  // SI. None: no finite value at some sample, no samples, or none yet at the time of at().
   [[nodiscard]] std::optional<double> value() const;
   // Time of the first sample without a finite value [s].
   [[nodiscard]] const std::optional<double>& undefined_at() const noexcept { return undefined_at_; }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -29,7 +30,7 @@ class MeasuredScene {
 
   RowOutcome run() {
     RowOutcome outcome;
-    const StepIndex steps = duration_of_seconds(scene_.session.duration).ns / scene_.session.step_duration().ns;
+    const StepIndex steps = scene_.session.steps();
     look();
     while (outcome.steps < steps) {
       played_.advance();
@@ -37,6 +38,8 @@ class MeasuredScene {
       if (count_report(outcome)) return outcome;
       look();
     }
+    const StateHashes hashes = played_.state_hashes();
+    if (!finish_last_interval(outcome)) return outcome;
     for (std::size_t i = 0; i < runs_.size(); ++i) {
       outcome.values.push_back(runs_[i].value());
       if (outcome.values.back() || !outcome.message.empty()) continue;
@@ -44,7 +47,6 @@ class MeasuredScene {
       outcome.message = fmt::format("{} has no finite value at {:.6g} s; its row has no result", measures_[i].text,
                                     runs_[i].undefined_at().value_or(0));
     }
-    const StateHashes hashes = played_.state_hashes();
     StateHash both;
     both.add(hashes.mechanics);
     both.add(hashes.hydraulics);
@@ -53,6 +55,18 @@ class MeasuredScene {
   }
 
  private:
+  // A step beyond the end for at() of a time between the end and the duration. False if it failed.
+  bool finish_last_interval(RowOutcome& outcome) {
+    if (std::none_of(runs_.begin(), runs_.end(), [](const MeasuredRun& run) { return run.needs_more(); })) return true;
+    played_.advance();
+    if (count_report(outcome)) return false;
+    const std::span<const double> values = values_.read();
+    for (MeasuredRun& run : runs_) {
+      if (run.needs_more()) run.add(played_.time().seconds(), values);
+    }
+    return true;
+  }
+
   // True if the step failed.
   bool count_report(RowOutcome& outcome) const {
     if (!values_.has_converged()) ++outcome.not_converged;

@@ -130,6 +130,47 @@ TEST_F(Fit, AnOffsetThatNoValueMendsDoesNotEndTheSearch) {
   EXPECT_NEAR(found["signals"][1]["rms"][1].get<double>(), 5e-3, 1e-6);
 }
 
+// Errors of 1 mm in x, and y and z, which no value changes, measured without error (z is simulated as 7e-17 m, which
+// has no weight): the same interval as of x alone.
+TEST_F(Fit, ExactSignalsDoNotNarrowTheIntervalOfAnother) {
+  std::ifstream in(work_.path() / "measured.csv");
+  std::ofstream out(work_.path() / "three.csv");
+  std::string line;
+  for (int row = 0; std::getline(in, line); ++row) out << line << (row == 0 ? ",y [m],z [m]" : ",0,0") << '\n';
+  out.close();
+  const auto width = [this](const std::vector<std::string>& maps) {
+    std::vector<std::string> arguments = {
+        "fit",    "rail.yaml",      "--data", "three.csv", "--quiet", "--set", "Rail.viscous_friction=8Ns/m",
+        "--free", "a=1m/s2..5m/s2", "-o",     "out",       "--anew"};
+    for (const std::string& map : maps) arguments.insert(arguments.end(), {"--map", map});
+    const CommandResult command = run("slewring", arguments, work_.path());
+    EXPECT_EQ(command.code, 0) << command.err << command.out;
+    EXPECT_NEAR(result("out")["values"][0]["after"].get<double>(), kA, 2e-3);
+    const Json interval = result("out")["values"][0]["interval"];
+    return interval[1].get<double>() - interval[0].get<double>();
+  };
+  const double alone = width({"way=Block.position.x"});
+  EXPECT_NEAR(width({"way=Block.position.x", "y=Block.position.y", "z=Block.position.z"}), alone, 1e-3 * alone);
+}
+
+// The interval of a reaches about 0.3 mm/s2 to each side.
+TEST_F(Fit, AnIntervalWiderThanItsBoundsIsNotDetermined) {
+  const std::vector<std::string> map = {"--map", "way=Block.position.x", "--set", "Rail.viscous_friction=8Ns/m"};
+  const auto half_of = [&](const std::string& low, const std::string& high, int code) {
+    std::vector<std::string> arguments = map;
+    arguments.insert(arguments.end(), {"--set", "a=" + low, "--free", "a=" + low + ".." + high, "-o", "out", "--anew"});
+    const CommandResult command = fit(arguments);
+    EXPECT_EQ(command.code, code) << command.err << command.out;
+    const Json value = result("out")["values"][0];
+    EXPECT_EQ(value["is_beyond_range"], code == 1);
+    return 0.5 * (value["interval"][1].get<double>() - value["interval"][0].get<double>());
+  };
+  const auto at = [](double a) { return std::to_string(a) + "m/s2"; };
+  const double half = half_of("1m/s2", "5m/s2", 0);
+  half_of(at(kA - 0.75 * half), at(kA + 0.75 * half), 1);
+  half_of(at(kA - 1.5 * half), at(kA + 1.5 * half), 0);
+}
+
 TEST_F(Fit, StopsAtABoundAndReportsIt) {
   const CommandResult command = fit({"--map", "way=Block.position.x", "--set", "Rail.viscous_friction=8Ns/m", "--free",
                                      "a=1m/s2..2.2m/s2", "-o", "out"});
@@ -240,6 +281,12 @@ TEST_F(Fit, RefusesBeforeAnyRun) {
   EXPECT_NE(
       refusal({"--map", map, "--free", "recording.every=1..8"}).find("refuses the value 'recording.every=3.67376"),
       std::string::npos);
+  std::ofstream(work_.path() / "twice.csv") << "time [s],way [m],way [m]\n0,0,1\n1,1,2\n";
+  const CommandResult twice = run(
+      "slewring", {"fit", "rail.yaml", "--data", "twice.csv", "--map", map, "--free", free, "-o", "none", "--quiet"},
+      work_.path());
+  EXPECT_EQ(twice.code, 2) << twice.out;
+  EXPECT_NE(twice.err.find("twice.csv:1:18: 'way' is there twice"), std::string::npos) << twice.err;
   EXPECT_NE(refusal({"--map", map, "--free", "a=1m/s2..5m/s2:3"}).find("no count"), std::string::npos);
   EXPECT_NE(refusal({"--map", map, "--free", free, "--free", "a=1m/s2..4m/s2"}).find("--free a is given twice"),
             std::string::npos);

@@ -179,6 +179,10 @@ TEST(LoadChart, BadInputIsRefusedBeforeTheWork) {
   refuses(bad, "flexible or segmented bodies");
   bad = good, bad.lines = {"0 0 0, 0 0 0"};
   refuses(bad, "two points of Ground");
+  bad.lines = {"1 0 1, 1 5 1"};
+  refuses(bad, "'1 0 1, 1 5 1' is vertical");
+  bad = good, bad.over = {"Boom_Foot=0deg,1deg", "Boom_Foot=5deg,6deg"};
+  refuses(bad, "--over is given twice for Boom_Foot");
   bad = good, bad.structure = {"Lft=1kN"};
   refuses(bad, "no cylinder 'Lft'");
   bad = good, bad.structure = {"Lift=-1kN"};
@@ -205,20 +209,71 @@ TEST(LoadChart, TyresGiveTheTippingLines) {
       EXPECT_NEAR(std::fabs(corner.z()), 0.8, 1e-9);
     }
     around += math::norm(line.Q - line.P);
-    EXPECT_TRUE(line.has_side);
-    EXPECT_NEAR(math::norm(math::Vec3(line.inside.x(), 0, line.inside.z())), 0, 1e-9);
+    EXPECT_GT(line.side * side_of(line, {0, 0, 0}, model.gravity), 0) << "the machine stands between its tyres";
   }
   EXPECT_NEAR(around, 2 * (2 + 1.6), 1e-9);
 }
 
 TEST(LoadChart, TheTippingLoadIsTheBalanceOfMoments) {
-  const TippingLine front{{1, 0, -0.8}, {1, 0, 0.8}, {0, 0, 0}, true};
-  const std::vector<Weight> weights = {{{0, 1, 0}, 480}};
   const math::Vec3 gravity(0, -kGravity, 0);
-  EXPECT_NEAR(tipping_load(front, weights, {2.5, 1, 0}, gravity), 480 * 1.0 / 1.5, 1e-9);
-  EXPECT_TRUE(std::isinf(tipping_load(front, weights, {0.5, 1, 0}, gravity)));
-  EXPECT_EQ(tipping_load(front, std::vector<Weight>{{{1.2, 1, 0}, 480}}, {2.5, 1, 0}, gravity), 0)
-      << "tips without payload";
+  TippingLine front{{1, 0, -0.8}, {1, 0, 0.8}};
+  front.side = side_of(front, {0, 0, 0}, gravity);
+  const auto load_of = [&](const Weight& weight, math::Vec3 payload) {
+    return tipping_load(tipping_moments(front, std::vector<Weight>{weight}, payload, gravity), front.side);
+  };
+  EXPECT_NEAR(load_of({{0, 1, 0}, 480}, {2.5, 1, 0}), 480 * 1.0 / 1.5, 1e-9);
+  EXPECT_TRUE(std::isinf(load_of({{0, 1, 0}, 480}, {0.5, 1, 0})));
+  EXPECT_EQ(load_of({{1.2, 1, 0}, 480}, {2.5, 1, 0}), 0) << "tips without payload";
+}
+
+// The carrier's 1.2 t at x = -0.5 m about a line at -0.2 m: at low booms the own weight already tips the crane forward.
+TEST(LoadChart, AMachineThatTipsWithoutLoadHasNone) {
+  for (const char* over : {"Boom_Foot=5deg..55deg:6", "Boom_Foot=5deg..15deg:2"}) {
+    const LoadChart chart = chart_of(
+        {.scene = kTwoBars, .overrides = {"start.Jib_Pin=-35 deg"}, .over = {over}, .lines = {"-0.2 0 1, -0.2 0 -1"}});
+    int tipped = 0;
+    for (std::size_t i = 0; i < chart.poses.size(); ++i) {
+      const ChartPose& pose = chart.poses[i];
+      ASSERT_TRUE(pose.has_load()) << pose.refusal;
+      const double wanted = two_bars((5 + 10 * static_cast<double>(i)) * kDegree, -35 * kDegree, 0, -0.2).tipping;
+      EXPECT_EQ(pose.tips_alone, wanted < 0) << pose.settings[0];
+      EXPECT_NEAR(pose.loads.back(), std::max(0.0, wanted), 1e-5 * std::fabs(wanted)) << pose.settings[0];
+      if (pose.tips_alone) EXPECT_EQ(pose.load, 0) << pose.settings[0];
+      tipped += pose.tips_alone ? 1 : 0;
+    }
+    EXPECT_GE(tipped, 2) << over;
+    EXPECT_NE(report_csv(chart).find(",0,tipping: tips without load,"), std::string::npos) << report_csv(chart);
+    ASSERT_EQ(chart.notes.size(), 1u);
+    EXPECT_NE(chart.notes[0].find("on the side of its parts that are fixed to Ground (centre of mass at -0.5 0 0 m)"),
+              std::string::npos)
+        << chart.notes[0];
+    EXPECT_NE(report_text(chart).find("note: tipping line '-0.2 0 1, -0.2 0 -1'"), std::string::npos);
+  }
+}
+
+TEST(LoadChart, TheMachineStandsOnOneSideOfALine) {
+  const math::Vec3 gravity(0, -kGravity, 0);
+  const TippingLine front{{1, 0, -1}, {1, 0, 1}}, rear{{-1, 0, 1}, {-1, 0, -1}};
+  const double behind_front = side_of(front, {0, 0, 0}, gravity);
+  const auto side = [&](std::vector<TippingLine> lines, const std::vector<Weight>& weights,
+                        const std::vector<math::Vec3>& payloads, const char* because) {
+    std::vector<TippingMoments> moments;
+    for (const math::Vec3& payload : payloads) {
+      moments.push_back(tipping_moments(lines[0], weights, payload, gravity));
+    }
+    const std::string text = choose_side(lines, 0, weights, moments, gravity).text;
+    EXPECT_NE(text.find(because), std::string::npos) << text;
+    return lines[0].side * behind_front;
+  };
+  const std::vector<Weight> ahead = {{{1.5, 0, 0}, 100}}, back = {{{0.5, 0, 0}, 100}};
+  const std::vector<Weight> on_carrier = {{{0, 0, 0}, 100, true}, {{3, 0, 0}, 900}};
+  EXPECT_GT(side({front}, on_carrier, {{4, 0, 0}}, "fixed to Ground"), 0);
+  EXPECT_GT(side({front}, on_carrier, {{-4, 0, 0}}, "fixed to Ground"), 0);
+  EXPECT_GT(side({front, rear}, ahead, {{4, 0, 0}}, "other lines"), 0);
+  EXPECT_GT(side({front}, ahead, {{4, 0, 0}, {2, 0, 0}}, "where the payload is not"), 0);
+  EXPECT_GT(side({front}, back, {{4, 0, 0}, {2, 0, 0}}, "where the payload is not"), 0);
+  EXPECT_GT(side({front}, back, {{4, 0, 0}, {-4, 0, 0}}, "at most positions (2 of 2)"), 0);
+  EXPECT_LT(side({front}, ahead, {{4, 0, 0}, {-4, 0, 0}}, "at most positions (2 of 2)"), 0);
 }
 
 TEST(LoadChart, ReportsHaveEveryPose) {

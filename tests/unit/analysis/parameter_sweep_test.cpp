@@ -6,12 +6,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/parameter_sweep/measure.h"
+#include "analysis/parameter_sweep/row_run.h"
 #include "analysis/parameter_sweep/statistics.h"
 #include "analysis/parameter_sweep/variation.h"
 #include "core/failure.h"
@@ -161,6 +165,42 @@ TEST_F(MeasureTest, IsExactForALineWhateverItsSamples) {
   EXPECT_DOUBLE_EQ(*over("at(Bag.position.x, 0 s)", line, 3), 1);
   EXPECT_DOUBLE_EQ(*over("at(Bag.position.x, 2 s)", line, 3), -3);
   EXPECT_DOUBLE_EQ(*over("final(max(Bag.position.x, ref) / (1 m))", line, 3), 0.25);
+}
+
+TEST_F(MeasureTest, HasNoValueYetBeforeTheTimeOfAt) {
+  const Measure at_end = measure("at(Bag.position.x, 2 s)");
+  MeasuredRun run(at_end);
+  run.add(1.5, std::vector<double>{1, 0});
+  run.add(1.9, std::vector<double>{3, 0});
+  EXPECT_TRUE(run.needs_more());
+  EXPECT_EQ(run.value(), std::nullopt);
+  run.add(2.3, std::vector<double>{7, 0});
+  EXPECT_FALSE(run.needs_more());
+  EXPECT_DOUBLE_EQ(*run.value(), 4);
+}
+
+// A block at constant acceleration: at() has the closed form's value at 0.1 s with steps that do not divide it.
+TEST(SweepRow, OfAnyStepHasTheStepsOfARunAndTheValueAtItsTime) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "row_of_any_step.yaml";
+  std::ofstream(file) << R"(
+bodies:
+  Block: {mass: 10 kg, inertia: [0.1, 0.1, 0.1]}
+joints:
+  Rail: {type: prismatic, orientation1: [0, 90 deg, 0], body2: Block, orientation2: [0, 90 deg, 0]}
+mechanics: {gravity: [2, 0, 0]}
+session: {duration: 0.1 s}
+)";
+  const SweepJob job{.scene = {.file = file.string()},
+                     .measures = {"at(Rail.velocity, 0.1 s)", "final(Rail.velocity)"}};
+  const std::pair<const char*, int> steps[] = {{"1 ms", 100}, {"3 ms", 33}, {"6 ms", 17}, {"7 ms", 14}};
+  for (const auto& [step, count] : steps) {
+    const RowOutcome row = run_row(job, {std::string("session.step=") + step});
+    ASSERT_EQ(row.code, ExitCode::ok) << row.message;
+    EXPECT_EQ(row.steps, count) << step;
+    ASSERT_EQ(row.values.size(), 2u);
+    EXPECT_NEAR(*row.values[0], 0.2, 1e-12) << step;
+    EXPECT_NEAR(*row.values[1], 2e-3 * std::stod(step) * count, 1e-12) << step;
+  }
 }
 
 TEST_F(MeasureTest, HasTheUnitOfItsExpression) {

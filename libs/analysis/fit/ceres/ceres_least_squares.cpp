@@ -60,11 +60,10 @@ class SimulatedResiduals final : public ceres::CostFunction {
 bool find_covariance(const SimulatedResiduals& cost, SquaresProblem& squares) {
   constexpr double kLeast = 1e-10;
   const auto n = static_cast<Eigen::Index>(squares.unknowns), m = static_cast<Eigen::Index>(squares.residuals);
-  Eigen::VectorXd residuals(m);
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> J(m, n);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Map<RowMajor> J(squares.jacobian, m, n);
   const double* u = squares.u;
-  double* jacobian = J.data();
-  if (!cost.Evaluate(&u, residuals.data(), &jacobian)) return false;
+  if (!cost.Evaluate(&u, squares.residuals_at_u, &squares.jacobian)) return false;
   Eigen::Map<Eigen::VectorXd> lengths(squares.column_lengths, n);
   lengths = J.colwise().norm();
   const Eigen::VectorXd S = lengths.unaryExpr([](double length) { return length > 0 ? 1 / length : 1.0; });
