@@ -222,6 +222,8 @@ class SceneReader {
       }
       if (errors.empty()) {
         multibody::find_unlikely_inertia(scene_.mechanics, warnings);
+        multibody::find_axes_beside_hinges(scene_.mechanics, warnings);
+        multibody::find_points_between_nodes(scene_.mechanics, warnings);
         multibody::find_start_changes(scene_.mechanics, warnings);
         multibody::find_unlikely_contacts(scene_.mechanics, warnings);
         multibody::find_overshoots(scene_.mechanics, warnings);
