@@ -110,6 +110,7 @@ ExitCode check(const CheckOptions& options) {
     check_payload(scene);
     std::vector<std::string> warnings = scene.warnings;
     for (std::string& warning : session::unrecorded_plots(scene)) warnings.push_back(std::move(warning));
+    for (std::string& warning : session::unmet_patterns(scene, session)) warnings.push_back(std::move(warning));
     for (std::string& warning : analysis::start_warnings(scene, session)) warnings.push_back(std::move(warning));
     const double bytes = session::recorded_bytes(scene, session::recorded_numbers(scene, session));
     if (options.is_json) {

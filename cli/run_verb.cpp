@@ -167,6 +167,8 @@ ExitCode run_session(session::RunOptions options, const io_node::SessionScene& s
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
   for (const std::string& warning : session::unrecorded_plots(scene))
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
+  for (const std::string& warning : session::unmet_patterns(scene))
+    std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
   for (const std::string& warning : analysis::start_warnings(scene))
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
   if (options.session.session.empty()) options.session.session = node::session_name_of(scene.name);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,9 @@ constexpr double kConvexTolerance = 1e-6;
 constexpr double kAreaTolerance = 1e-12;
 // share of the volume that may count twice: a tenth of the accuracy at which a mass is known
 constexpr double kMostDoubled = 1e-3;
+
+// share of the size cubed below which a closed part has no volume: a sheet of two sides
+constexpr double kVolumeTolerance = 1e-9;
 
 constexpr const char* kTurning = "triangles that all turn counter-clockwise seen from outside";
 
@@ -187,6 +191,37 @@ std::vector<Part> parts_of(const MeshDef& mesh) {
   }
   return parts;
 }
+
+}  // namespace
+
+std::optional<MeshFault> find_touched_fault(const MeshDef& mesh) {
+  if (auto fault = find_surface_fault(mesh)) return fault;
+  Edges edges;
+  if (auto fault = collect_edges(mesh, edges)) return fault;
+  Parts sets(mesh);
+  std::set<std::uint32_t> open;
+  for (const auto& [edge, triangle] : edges) {
+    if (!edges.contains({edge.second, edge.first})) open.insert(sets.of(edge.first));
+  }
+  const std::vector<Part> parts = parts_of(mesh);
+  for (const Part& part : parts) {
+    const double size = norm(part.extent.high - part.extent.low);
+    if (!(part.volume6 < -kVolumeTolerance * size * size * size)) continue;
+    if (open.contains(sets.of(mesh.triangles[part.triangle][0]))) continue;
+    const bool is_hole = std::any_of(parts.begin(), parts.end(), [&](const Part& other) {
+      return &other != &part && holds(other.extent, part.extent) && !holds(part.extent, other.extent);
+    });
+    if (is_hole) continue;
+    return MeshFault{
+        parts.size() == 1 ? "it is inside out" : fmt::format("its part with triangle {} is inside out", part.triangle),
+        fmt::format("{}: flip them in the program that made the file. A room that is touched from within "
+                    "is an open surface, or has walls with a thickness",
+                    kTurning)};
+  }
+  return std::nullopt;
+}
+
+namespace {
 
 // solids that share more than kMostDoubled of the volume
 std::optional<MeshFault> find_overlap_fault(const MeshDef& mesh) {

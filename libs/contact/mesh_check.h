@@ -27,6 +27,10 @@ struct MeshFault {
 // An oriented surface, open or closed: finite vertices, triangles with an area, all turning the same way.
 [[nodiscard]] std::optional<MeshFault> find_surface_fault(const MeshDef& mesh);
 
+// A surface that bodies touch from its outer side: in addition, no closed part is inside out, unless it lies within
+// another.
+[[nodiscard]] std::optional<MeshFault> find_touched_fault(const MeshDef& mesh);
+
 // A surface that encloses a volume: every edge has one triangle on either side, and normals point outwards.
 [[nodiscard]] std::optional<MeshFault> find_closed_fault(const MeshDef& mesh);
 

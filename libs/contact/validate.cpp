@@ -87,7 +87,7 @@ class Validator {
         check_surface(shape, "mesh", find_convex_fault(shape.mesh));
         break;
       case ShapeType::triangle_mesh:
-        check_surface(shape, "mesh", find_surface_fault(shape.mesh));
+        check_surface(shape, "mesh", find_touched_fault(shape.mesh));
         break;
       case ShapeType::height_field:
         check_surface(shape, "height_field", find_field_fault(shape.height_field));

@@ -51,6 +51,7 @@ struct InstrumentDef {
   Triple acceleration_offset{};  // imu: m/s2
   Triple rate_offset{};          // imu: rad/s
   SamplingParameters sampling{};
+  std::string place{};  // of its variable in the scene's files, "crane.yaml:12:5"; empty: not known
 };
 
 struct InstrumentTypeRow {

@@ -47,9 +47,10 @@ std::size_t find_variable(std::span<const ElementVariable> variables, const std:
   for (const ElementVariable& variable : variables) names.push_back(variable.name);
   const std::string meant = closest(name, names);
   throw Failure(ExitCode::bad_input,
-                fmt::format("sensors: {}: there is no variable '{}' in the node that computes its element; `slewring "
+                fmt::format("{}: {}: there is no variable '{}' in the node that computes its element; `slewring "
                             "variables SCENE` lists all{}",
-                            def.name, name, meant.empty() ? "" : "; did you mean '" + meant + "'?"));
+                            def.place.empty() ? "sensors" : def.place, def.name, name,
+                            meant.empty() ? "" : "; did you mean '" + meant + "'?"));
 }
 
 math::Vec3 in_axes_of(const math::Mat3& R, math::Vec3 a_W) noexcept {

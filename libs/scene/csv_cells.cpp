@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/suggestion.h"
 #include "scene/number.h"
 #include "scene/scene.h"
 
@@ -32,6 +33,116 @@ char separator_of(std::string_view line) {
 
 std::string separator_name(char separator) {
   return separator == '\t' ? "a tab" : fmt::format("'{}'", separator);
+}
+
+// ---- units in a header
+
+// text in brackets, at [open, close]
+struct Bracketed {
+  std::size_t open = 0;
+  std::size_t close = 0;
+  std::string_view content;
+};
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+// The outer pairs of these brackets.
+std::vector<Bracketed> bracketed_in(std::string_view text, char opening, char closing) {
+  std::vector<Bracketed> found;
+  std::size_t depth = 0, open = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == opening && depth++ == 0) open = i;
+    if (text[i] != closing || depth == 0 || --depth > 0) continue;
+    found.push_back({open, i, trimmed(text.substr(open + 1, i - open - 1))});
+  }
+  return found;
+}
+
+// Units of a number of anything have no place in a column: 'p (A)' is a name.
+bool is_unit(std::string_view text, UnitSystem& units) {
+  const Unit* const unit = units.find(text);
+  return text == "-" || (unit != nullptr && !unit->has_other_base);
+}
+
+bool are_of_one_dimension(std::string_view a, std::string_view b, UnitSystem& units) {
+  const Unit* const first = units.find(a);
+  const Unit* const second = units.find(b);
+  return first != nullptr && second != nullptr && first->exponent == second->exponent;
+}
+
+// Text behind a unit that would change the numbers, or belong to the unit: "/1000", "x1000", "^2", "2".
+bool is_calculation(std::string_view text) {
+  text = trimmed(text);
+  if (text.empty()) return false;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (is_digit(text.front()) || std::string_view("/*^+=%").find(text.front()) != std::string_view::npos) return true;
+  for (const std::string_view sign : {"-", "x", "X", ".", "\xC3\x97", "\xC2\xB7", "\xE2\x8B\x85"}) {
+    if (!text.starts_with(sign)) continue;
+    const std::string_view rest = trimmed(text.substr(sign.size()));
+    if (!rest.empty() && is_digit(rest.front())) return true;
+  }
+  return false;
+}
+
+// "a name and one unit in brackets, such as 'force [kN]'"
+std::string expected_header(std::string_view name) {
+  return fmt::format("a name and one unit in brackets behind it, such as '{} [UNIT]', or the name alone for SI",
+                     name.empty() ? "force" : name);
+}
+
+void split_unit(ColumnHead& column, UnitSystem& units) {
+  const std::string_view text = column.text;
+  const std::vector<Bracketed> square = bracketed_in(text, '[', ']');
+  std::vector<Bracketed> found = square;
+  std::string_view empty;
+  for (const Bracketed& round : bracketed_in(text, '(', ')')) {
+    if (round.content.empty() && square.empty()) empty = "()";
+    if (!is_unit(round.content, units)) continue;
+    // 'p (P) [bar]': the round brackets are part of the name
+    const bool counts = square.empty() || are_of_one_dimension(round.content, square.front().content, units);
+    if (counts) found.push_back(round);
+  }
+  if (found.empty() && empty.empty()) return;
+  const std::size_t begin = found.empty() ? text.find(empty) : std::min(found.front().open, found.back().open);
+  std::string_view name = trimmed(text.substr(0, begin));
+  // Q/(l/min)
+  if (name.ends_with('/')) name = trimmed(name.substr(0, name.size() - 1));
+  column.name = name;
+  const auto fault = [&](std::string_view what) {
+    column.problem = {fmt::format("the header '{}' {}", text, what), expected_header(name), ""};
+  };
+  if (found.size() > 1) return fault("has two parts in brackets");
+  if (found.empty() || found.front().content.empty()) return fault("has no unit in its brackets");
+  if (is_calculation(text.substr(found.front().close + 1))) return fault("goes on with a calculation behind the unit");
+  column.unit = found.front().content;
+}
+
+constexpr std::string_view kMarks = " ./:,_{}()<>|";
+
+std::string_view without_marks(std::string_view text) {
+  while (!text.empty() && kMarks.find(text.back()) != std::string_view::npos) text.remove_suffix(1);
+  return text;
+}
+
+// The unit at the end of a header without brackets: "kN" of "f kN", "f/kN", "f {kN}"; empty: none.
+std::string_view loose_unit_in(std::string_view header, Dimension dimension, UnitSystem& units) {
+  const std::string_view text = without_marks(header);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_word = i == 0 || kMarks.find(text[i - 1]) != std::string_view::npos;
+    const std::string_view word = text.substr(i);
+    if (!is_word) continue;
+    const Unit* const unit = read_unit(word, dimension, units).unit;
+    if (unit == nullptr) continue;
+    const bool is_si = unit->scale == 1 && unit->offset == 0;
+    // a name may be a unit of SI, or end in one: 'm', 'force_N'
+    const bool is_name = i == 0 || text[i - 1] == '_' || is_plain_number(dimension);
+    if (!is_si || !is_name) return word;
+  }
+  return {};
 }
 
 }  // namespace
@@ -124,18 +235,35 @@ std::size_t CsvFile::read_quoted(std::size_t open, std::size_t end) {
 // ---- header and rows
 
 bool CsvFile::read_column_head(const Cell& cell) {
-  ColumnHead& column = head_.emplace_back(ColumnHead{std::string(cell.text), "", source_.mark_at(cell.byte)});
-  const std::size_t open = column.name.rfind('[');
-  if (open == std::string::npos) return true;
-  if (!column.name.ends_with(']')) {
-    if (column.name.find(']', open) != std::string::npos) return true;  // part of the name
+  ColumnHead& column = head_.emplace_back(
+      ColumnHead{std::string(cell.text), std::string(cell.text), "", source_.mark_at(cell.byte), {}});
+  const std::size_t open = cell.text.rfind('[');
+  if (open != std::string_view::npos && cell.text.find(']', open) == std::string_view::npos) {
     report_problem(cell, {"this '[' is not closed", "a name with its unit, such as 'force [kN]'", ""});
     return false;
   }
-  column.unit = column.name.substr(open + 1, column.name.size() - open - 2);
-  column.name.resize(open);
-  while (column.name.ends_with(' ')) column.name.pop_back();
+  split_unit(column, units_);
   return true;
+}
+
+std::optional<std::size_t> CsvFile::find_column(std::string_view name, std::string expected) {
+  std::optional<std::size_t> found;
+  std::vector<std::string_view> names;
+  for (const ColumnHead& column : head_) {
+    if (column.name == name && found) {
+      report_.add(column.mark, "",
+                  {fmt::format("'{}' and '{}' are both named '{}'", head_[*found].text, column.text, name),
+                   "one column for a name; text that tells them apart stands before the unit", ""});
+      return std::nullopt;
+    }
+    if (column.name == name) found = names.size();
+    names.push_back(column.name);
+  }
+  if (!found) {
+    report_.add(head_.front().mark, "",
+                {fmt::format("there is no column '{}'", name), std::move(expected), closest(name, names)});
+  }
+  return found;
 }
 
 bool CsvFile::read_head() {
@@ -225,10 +353,35 @@ std::optional<long double> CsvFile::number(const Cell& cell) {
 
 // ---- units of columns
 
+namespace {
+
+// False after a reported problem: a unit outside of brackets, or round brackets about something else.
+bool is_without_unit(const ColumnHead& head, Dimension dimension, UnitSystem& units, Report& report) {
+  const std::string_view loose = loose_unit_in(head.text, dimension, units);
+  const std::size_t round = is_plain_number(dimension) ? std::string::npos : head.text.find('(');
+  if (!loose.empty()) {
+    const std::string_view name = without_marks(std::string_view(head.text).substr(0, head.text.rfind(loose)));
+    report.add(head.mark, "",
+               {fmt::format("the unit '{}' in the header '{}' stands in no brackets", loose, head.text),
+                fmt::format("'{} [{}]', or another name", name.empty() ? "force" : name, loose), ""});
+  } else if (round != std::string::npos) {
+    report.add(head.mark, "",
+               {fmt::format("what stands in the brackets of the header '{}' is no unit", head.text),
+                expected_quantity(dimension) + "; a remark stands in no brackets", ""});
+  }
+  return loose.empty() && round == std::string::npos;
+}
+
+}  // namespace
+
 bool ColumnScale::take(const ColumnHead& head, Dimension dimension, UnitSystem& units, Report& report) {
+  if (!head.problem.what.empty()) {
+    report.add(head.mark, "", head.problem);
+    return false;
+  }
+  if (head.unit.empty()) return is_without_unit(head, dimension, units, report);
   // unit names by which exporting programs mark plain numbers
-  const bool is_one = is_plain_number(dimension) && (head.unit == "1" || head.unit == "-");
-  if (head.unit.empty() || is_one) return true;
+  if (is_plain_number(dimension) && (head.unit == "1" || head.unit == "-")) return true;
   UnitResult result = read_unit(head.unit, dimension, units);
   if (result.unit == nullptr) {
     report.add(head.mark, "", std::move(result.problem));

@@ -28,22 +28,27 @@ struct Cell {
   std::size_t byte = 0;
 };
 
-// Name and unit of a column: "deflection [mm]".
+// Name and unit of a column: "deflection [mm]", "deflection (mm) filtered". Text in round brackets that is no unit is
+// part of the name.
 struct ColumnHead {
-  std::string name;
+  std::string text;  // the header's whole cell
+  std::string name;  // what stands before the unit
   std::string unit;  // empty: no unit
   Mark mark;
+  ValueProblem problem;  // of the unit; empty: none. Matters where the column is taken.
 };
 
 class CsvFile {
  public:
-  // The texts must outlive the object. example: a header, for messages.
-  CsvFile(const SourceText& source, std::string_view example, Report& report)
-      : source_(source), example_(example), report_(report) {}
+  // The arguments must outlive the object. example: a header, for messages.
+  CsvFile(const SourceText& source, std::string_view example, UnitSystem& units, Report& report)
+      : source_(source), example_(example), units_(units), report_(report) {}
 
   // Reads the header. False after a reported problem.
   [[nodiscard]] bool read_head();
   [[nodiscard]] const std::vector<ColumnHead>& head() const noexcept { return head_; }
+  // The one column with this name. None after a reported problem.
+  [[nodiscard]] std::optional<std::size_t> find_column(std::string_view name, std::string expected);
 
   // The next line with as many cells as the header, valid until the next call. Null at the end of the file, after a
   // problem in the line, or after the limit of reported problems.
@@ -64,6 +69,7 @@ class CsvFile {
 
   const SourceText& source_;
   std::string_view example_;
+  UnitSystem& units_;
   Report& report_;
   std::size_t line_ = 0;  // number of the next line
   std::size_t rows_ = 0;
@@ -80,7 +86,7 @@ class CsvFile {
 // The values of one column in SI.
 class ColumnScale {
  public:
-  // False after a reported problem: no unit of this dimension.
+  // False after a reported problem: no unit of this dimension, or one outside of brackets.
   [[nodiscard]] bool take(const ColumnHead& head, Dimension dimension, UnitSystem& units, Report& report);
   [[nodiscard]] double in_si(long double number) const noexcept;
 

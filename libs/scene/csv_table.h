@@ -29,7 +29,7 @@ struct CsvColumn {
 class TimeTable {
  public:
   TimeTable(const SourceText& source, UnitSystem& units, Report& report)
-      : source_(source), units_(units), report_(report), file_(source, "time [s],Stick", report) {}
+      : source_(source), units_(units), report_(report), file_(source, "time [s],Stick", units, report) {}
 
   // Reads the header. False after a reported problem.
   [[nodiscard]] bool read_head();

@@ -71,7 +71,7 @@ void read_meshes(const LoadContext& load_context, multibody::MechanicsDef& mecha
     }
     if (!found.empty()) continue;
     const bool is_convex = shape.type == contact::ShapeType::convex_mesh;
-    if (const auto fault = is_convex ? contact::find_convex_fault(mesh) : contact::find_surface_fault(mesh)) {
+    if (const auto fault = is_convex ? contact::find_convex_fault(mesh) : contact::find_touched_fault(mesh)) {
       problems.push_back({shape.name + ".file", fault->what, fault->expected, ""});
     } else {
       put_mesh(mesh, shape);

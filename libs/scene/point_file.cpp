@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/suggestion.h"
 #include "scene/csv_cells.h"
 #include "scene/field_reader.h"
 
@@ -17,7 +16,7 @@ namespace {
 class PointFileReader {
  public:
   PointFileReader(const SourceText& source, const Field& field, UnitSystem& units, Report& report)
-      : field_(field), units_(units), report_(report), file_(source, "deflection [mm], force [kN]", report) {}
+      : field_(field), units_(units), report_(report), file_(source, "deflection [mm], force [kN]", units, report) {}
 
   std::optional<Table> read(const std::vector<std::string>& columns) {
     if (!file_.read_head() || !find_columns(columns)) return std::nullopt;
@@ -49,22 +48,11 @@ class PointFileReader {
       return false;
     }
     for (std::size_t i = 0; i < 2; ++i) {
-      if (!find_column(columns[i], column_[i])) return false;
+      const std::optional<std::size_t> found = file_.find_column(columns[i], "");
+      if (!found) return false;
+      column_[i] = *found;
     }
     return true;
-  }
-
-  bool find_column(const std::string& name, std::size_t& index) {
-    std::vector<std::string_view> names;
-    for (const ColumnHead& column : file_.head()) {
-      if (column.name == name) {
-        index = names.size();
-        return true;
-      }
-      names.push_back(column.name);
-    }
-    report_.add(file_.head().front().mark, "", {"no column '" + name + "'", "", closest(name, names)});
-    return false;
   }
 
   std::optional<double> value_of(const Cell& cell, std::size_t i) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/printable.h"
 #include "core/suggestion.h"
 #include "multibody/build/validate.h"
 #include "multibody/formulations/element_speeds.h"
@@ -222,6 +223,8 @@ class SceneReader {
       }
       if (errors.empty()) {
         multibody::find_unlikely_inertia(scene_.mechanics, warnings);
+        multibody::find_axes_beside_hinges(scene_.mechanics, warnings);
+        multibody::find_points_between_nodes(scene_.mechanics, warnings);
         multibody::find_start_changes(scene_.mechanics, warnings);
         multibody::find_unlikely_contacts(scene_.mechanics, warnings);
         multibody::find_overshoots(scene_.mechanics, warnings);
@@ -242,8 +245,13 @@ class SceneReader {
     elements_.read_section("sensors");
     resolve_references();
     if (report_.size() > problems) return;
-    for (const measurement::InstrumentDef& def : scene_.instruments) {
-      if (!def.variable.empty()) check_variables(def.name + ".variable", {def.variable});
+    for (measurement::InstrumentDef& def : scene_.instruments) {
+      if (def.variable.empty()) continue;
+      const std::string path = def.name + ".variable";
+      check_variables(path, {def.variable});
+      if (!load_context_.has_folder) continue;
+      const Diagnostic place = report_.at(places_.nearest(path, root_.mark), path, {});
+      def.place = fmt::format("{}:{}:{}", printable(place.file), place.line, place.column);
     }
     if (report_.size() > problems) return;
     check_problems([&](Problems& errors, Problems&) { check_instruments(scene_, errors); });

@@ -12,6 +12,7 @@
 #include "scene/names.h"
 #include "scene/sections.h"
 #include "session/recorded.h"
+#include "transport/roles.h"
 
 namespace slew::session {
 namespace {
@@ -60,6 +61,26 @@ std::vector<std::string> unrecorded_plots(const scene::Scene& scene) {
                                     plot.name, fmt::join(left_out, ", "), recorded_patterns_text(scene)));
   }
   return sentences;
+}
+
+std::vector<std::string> unmet_patterns(const scene::Scene& scene, const DirectSession& session) {
+  std::vector<std::string> names = always_recorded(scene), sentences;
+  for (const wire::Role role : transport::physics_roles()) {
+    if (session.subsystem(role) == nullptr) continue;
+    for (const ElementVariable& variable : session.subsystem(role)->variables()) names.push_back(variable.name);
+  }
+  for (const std::string& pattern : scene::unmatched(scene.recording.variables, names)) {
+    sentences.push_back("recording.variables: " + scene::no_variable_text(pattern, names));
+  }
+  return sentences;
+}
+
+std::vector<std::string> unmet_patterns(const scene::Scene& scene) {
+  const std::vector<std::string>& patterns = scene.recording.variables;
+  if (std::find(patterns.begin(), patterns.end(), "*") != patterns.end() && patterns.size() == 1) return {};
+  DirectSession session(scene);
+  if (!session.start().is_ok()) return {};
+  return unmet_patterns(scene, session);
 }
 
 std::string recorded_patterns_text(const scene::Scene& scene) {

@@ -11,6 +11,7 @@
 
 #include "recording/reader.h"
 #include "scene/scene.h"
+#include "session/direct_session.h"
 
 namespace slew::session {
 
@@ -19,6 +20,11 @@ namespace slew::session {
 
 // A sentence for every plot of which something will not be drawn for that reason.
 [[nodiscard]] std::vector<std::string> unrecorded_plots(const scene::Scene& scene);
+
+// A sentence for every pattern of recording.variables that no variable of the session fits: nothing is recorded for it.
+// Without a session one is made where the patterns need it; throws Failure for a model that cannot be built.
+[[nodiscard]] std::vector<std::string> unmet_patterns(const scene::Scene& scene, const DirectSession& session);
+[[nodiscard]] std::vector<std::string> unmet_patterns(const scene::Scene& scene);
 
 // "[Cyl_*, Bag.position.y]"
 [[nodiscard]] std::string recorded_patterns_text(const scene::Scene& scene);

@@ -80,7 +80,7 @@ void take_mesh(const Geometry& geometry, bool is_static, const Folders& folders,
   const auto dents = contact::find_convex_fault(shape.mesh);
   if (!dents) return;
   shape.refusal = dents->what;
-  if (!is_static || contact::find_surface_fault(shape.mesh)) return;
+  if (!is_static || contact::find_touched_fault(shape.mesh)) return;
   shape.def.type = ShapeType::triangle_mesh;
   shape.refusal.clear();
 }

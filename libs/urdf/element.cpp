@@ -91,8 +91,17 @@ Triple ElementValues::triple(const XMLElement& element, const char* attribute, s
   return values;
 }
 
+const XMLElement* ElementValues::only_child(const XMLElement& element, const char* tag) {
+  const XMLElement* const child = element.FirstChildElement(tag);
+  if (child == nullptr) return nullptr;
+  for (const auto* other = child->NextSiblingElement(tag); other != nullptr; other = other->NextSiblingElement(tag)) {
+    report_problem(*other, fmt::format("<{}> has a second <{}>", element.Name(), tag), "one");
+  }
+  return child;
+}
+
 Origin ElementValues::origin(const XMLElement& element) {
-  const XMLElement* origin = element.FirstChildElement("origin");
+  const XMLElement* origin = only_child(element, "origin");
   if (origin == nullptr) return {};
   constexpr std::string_view kKnown[] = {"xyz", "rpy"};
   note_other_attributes(*origin, kKnown);

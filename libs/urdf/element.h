@@ -46,6 +46,9 @@ class ElementValues {
   [[nodiscard]] double moment(const XMLElement& element, const char* attribute);
   [[nodiscard]] Triple triple(const XMLElement& element, const char* attribute, std::optional<Triple> missing);
 
+  // The child with this tag, or null; reports a problem of every further one: none of them would have an effect.
+  [[nodiscard]] const XMLElement* only_child(const XMLElement& element, const char* tag);
+
   // The element's <origin>, or none.
   [[nodiscard]] Origin origin(const XMLElement& element);
 

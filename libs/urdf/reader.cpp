@@ -158,8 +158,8 @@ class Reader {
 
   Inertial read_inertial(const XMLElement& element) {
     Inertial inertial{.origin = values_.origin(element), .line = element.GetLineNum()};
-    const XMLElement* mass = element.FirstChildElement("mass");
-    const XMLElement* tensor = element.FirstChildElement("inertia");
+    const XMLElement* mass = values_.only_child(element, "mass");
+    const XMLElement* tensor = values_.only_child(element, "inertia");
     if (mass == nullptr) {
       values_.report_problem(element, "<inertial> has no <mass>", "<mass value=\"...\"/>");
     } else {
@@ -180,12 +180,17 @@ class Reader {
   void read_shape(const XMLElement& element, Geometry::Use use, Link& link) {
     const std::size_t problems = report_.size();
     Geometry shape{.use = use, .origin = values_.origin(element), .file = {}, .line = element.GetLineNum()};
-    if (const XMLElement* material = element.FirstChildElement("material")) note_material(*material);
-    const XMLElement* geometry = element.FirstChildElement("geometry");
+    if (const XMLElement* material = values_.only_child(element, "material")) note_material(*material);
+    const XMLElement* geometry = values_.only_child(element, "geometry");
     const XMLElement* kind = geometry == nullptr ? nullptr : geometry->FirstChildElement();
     if (kind == nullptr) {
       values_.report_problem(element, fmt::format("<{}> has no geometry", element.Name()),
                              "<geometry> with a shape in it");
+      return;
+    }
+    if (const XMLElement* other = kind->NextSiblingElement()) {
+      values_.report_problem(*other, fmt::format("<geometry> has a second shape, <{}>", other->Name()),
+                             fmt::format("one; a <{}> for each shape", element.Name()));
       return;
     }
     const std::string_view tag = kind->Name();
@@ -257,7 +262,7 @@ class Reader {
   }
 
   void read_mimic(const XMLElement& element, Joint& joint) {
-    const XMLElement* mimic = element.FirstChildElement("mimic");
+    const XMLElement* mimic = values_.only_child(element, "mimic");
     if (mimic == nullptr) return;
     constexpr std::string_view kKnown[] = {"joint", "multiplier", "offset"};
     values_.note_other_attributes(*mimic, kKnown);
@@ -283,7 +288,7 @@ class Reader {
 
   // Index of the link that <parent> or <child> names; -1 after a reported problem.
   int read_end(const XMLElement& element, const char* tag) {
-    const XMLElement* end = element.FirstChildElement(tag);
+    const XMLElement* end = values_.only_child(element, tag);
     if (end == nullptr) {
       values_.report_problem(element, fmt::format("has no <{}>", tag), fmt::format("<{} link=\"...\"/>", tag));
       return -1;
@@ -297,7 +302,7 @@ class Reader {
   }
 
   void read_axis(const XMLElement& element, Joint& joint) {
-    const XMLElement* axis = element.FirstChildElement("axis");
+    const XMLElement* axis = values_.only_child(element, "axis");
     if (axis == nullptr || !has_axis(joint)) return;
     joint.axis = values_.triple(*axis, "xyz", Triple{1, 0, 0});
     const double size = std::hypot(joint.axis[0], joint.axis[1], joint.axis[2]);
@@ -307,7 +312,7 @@ class Reader {
   }
 
   void read_limit(const XMLElement& element, Joint& joint) {
-    const XMLElement* limit = element.FirstChildElement("limit");
+    const XMLElement* limit = values_.only_child(element, "limit");
     if (limit == nullptr) {
       if (has_limits(joint.kind)) values_.note(element, "has no <limit>: it moves without limits");
       return;
@@ -331,7 +336,7 @@ class Reader {
   }
 
   void read_dynamics(const XMLElement& element, Joint& joint) {
-    const XMLElement* dynamics = element.FirstChildElement("dynamics");
+    const XMLElement* dynamics = values_.only_child(element, "dynamics");
     if (dynamics == nullptr) return;
     constexpr std::string_view kKnown[] = {"damping", "friction"};
     values_.note_other_attributes(*dynamics, kKnown);

@@ -3,11 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 #include <string_view>
 
-#include "core/suggestion.h"
 #include "scene/csv_cells.h"
 #include "scene/diagnostic.h"
 #include "scene/scene.h"
@@ -21,7 +19,7 @@ constexpr std::string_view kHeader = "time [s],p_A [bar]";
 class DataReader {
  public:
   DataReader(const scene::SourceText& source, const std::vector<std::string>& names, scene::Report& report)
-      : report_(report), file_(source, kHeader, report), names_(names) {}
+      : report_(report), file_(source, kHeader, units_, report), names_(names) {}
 
   std::vector<MeasuredSignal> read() {
     if (!file_.read_head()) return {};
@@ -57,24 +55,21 @@ class DataReader {
   };
 
   bool find_column(const std::string& name, Column& column) {
-    const std::vector<scene::ColumnHead>& head = file_.head();
-    const auto at =
-        std::find_if(head.begin(), head.end(), [&](const scene::ColumnHead& one) { return one.name == name; });
-    if (at == head.end()) {
-      std::vector<std::string_view> known;
-      for (const scene::ColumnHead& one : head) known.push_back(one.name);
-      report_.add(
-          head.front().mark, "",
-          {"there is no column '" + name + "'", fmt::format("a header such as '{}'", kHeader), closest(name, known)});
+    const std::optional<std::size_t> found = file_.find_column(name, fmt::format("a header such as '{}'", kHeader));
+    if (!found) return false;
+    column.index = *found;
+    const scene::ColumnHead* const at = &file_.head()[*found];
+    if (!at->problem.what.empty()) {
+      report_.add(at->mark, "", at->problem);
       return false;
     }
-    const auto second =
-        std::find_if(at + 1, head.end(), [&](const scene::ColumnHead& one) { return one.name == name; });
+    const std::vector<scene::ColumnHead>& head = file_.head();
+    const auto second = std::find_if(head.begin() + static_cast<std::ptrdiff_t>(*found) + 1, head.end(),
+                                     [&](const scene::ColumnHead& one) { return one.name == name; });
     if (second != head.end()) {
       report_.add(second->mark, "", {"'" + name + "' is there twice", "one column for a name", ""});
       return false;
     }
-    column.index = static_cast<std::size_t>(at - head.begin());
     if (at->unit.empty()) return true;
     const scene::Unit* unit = units_.find(at->unit);
     if (unit == nullptr || unit->has_other_base) {
@@ -109,9 +104,9 @@ class DataReader {
   }
 
   scene::Report& report_;
+  scene::UnitSystem units_;
   scene::CsvFile file_;
   const std::vector<std::string>& names_;
-  scene::UnitSystem units_;
   Column time_;
   std::vector<Column> columns_;
   std::vector<MeasuredSignal> signals_;

@@ -305,4 +305,111 @@ void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings) {
   }
 }
 
+namespace {
+
+// angle between two axes, of either direction, below which they are one [rad]
+constexpr double kOneAxis = 1e-2;
+// way along a body with modes, as a share of its length, that a point may lie from its node
+constexpr double kAtNode = 1e-2;
+
+std::string in_scene(Vec3 v) {
+  const auto rounded = [](double x) { return std::fabs(x) < 5e-7 ? 0.0 : x; };
+  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", rounded(v[0]), rounded(v[1]), rounded(v[2]));
+}
+
+// the hinge between two bodies; null: none
+const JointDef* hinge_between(const MechanicsDef& mechanics, const std::string& a, const std::string& b) {
+  const auto found = std::find_if(mechanics.joints.begin(), mechanics.joints.end(), [&](const JointDef& joint) {
+    const bool is_hinge = joint.type == JointType::revolute || joint.type == JointType::cylindrical;
+    return is_hinge && ((joint.body1 == a && joint.body2 == b) || (joint.body1 == b && joint.body2 == a));
+  });
+  return found == mechanics.joints.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+void find_axes_beside_hinges(const MechanicsDef& mechanics, Problems& warnings) {
+  for (const RotationalForceDef& force : mechanics.rotational_forces) {
+    const JointDef* const hinge = hinge_between(mechanics, force.body1, force.body2);
+    if (hinge == nullptr) continue;
+    const bool is_first = hinge->body1 == force.body1;
+    const math::Mat3 own = math::rotation_xyz(is_first ? hinge->orientation1 : hinge->orientation2);
+    const math::Mat3 other = math::rotation_xyz(is_first ? hinge->orientation2 : hinge->orientation1);
+    const Vec3 across = cross(Vec3(force.f1), Vec3(force.g1)), axis = across * (1 / norm(across)), wanted = own.c[2];
+    if (norm(cross(axis, wanted)) < kOneAxis) continue;
+    warnings.push_back(
+        {force.name,
+         fmt::format("its axis f1 x g1 is {} in '{}', and its bodies turn against each other about {}, the axis of "
+                     "'{}': {}",
+                     in_scene(axis), force.body1, in_scene(wanted), hinge->name,
+                     std::fabs(dot(axis, wanted)) < kOneAxis ? "it carries no torque about that"
+                                                             : "its angle is not that of the joint"),
+         fmt::format("f1: {}, g1: {}, f2: {}, whose angle is that of the joint", in_scene(own.c[0]), in_scene(own.c[1]),
+                     in_scene(other.c[0])),
+         ""});
+  }
+}
+
+namespace {
+
+struct PlaceOnNodes {
+  std::int64_t node = 0;  // the nearest
+  double along = 0;       // m, from there towards another node
+  double length = 0;      // m, diagonal of the box around the nodes
+};
+
+PlaceOnNodes place_on(const ModalBody& modes, Vec3 point) {
+  const ModalNode* nearest = &modes.nodes.front();
+  Vec3 low = nearest->position, high = low;
+  for (const ModalNode& node : modes.nodes) {
+    if (norm(node.position - point) < norm(nearest->position - point)) nearest = &node;
+    for (int k = 0; k < 3; ++k) {
+      low.lanes[k] = std::min(low[k], node.position[k]);
+      high.lanes[k] = std::max(high[k], node.position[k]);
+    }
+  }
+  PlaceOnNodes place{nearest->id, 0, norm(high - low)};
+  for (const ModalNode& node : modes.nodes) {
+    const Vec3 way = node.position - nearest->position;
+    if (norm(way) > 0) place.along = std::max(place.along, dot(point - nearest->position, way) / norm(way));
+  }
+  return place;
+}
+
+}  // namespace
+
+// A point beside the nodes is an arm, and meant so: only the way towards another node counts.
+void find_points_between_nodes(const MechanicsDef& mechanics, Problems& warnings) {
+  const auto look = [&](const std::string& path, const std::string& body, const Triple& point) {
+    for (const FlexibleBodyDef& flexible : mechanics.flexible_bodies) {
+      if (flexible.body != body || flexible.modes->modes() == 0) continue;
+      const PlaceOnNodes place = place_on(*flexible.modes, Vec3(point));
+      if (!(place.along > kAtNode * place.length)) continue;
+      warnings.push_back(
+          {path,
+           fmt::format("the point lies {:.4g} m from the nearest node of '{}' towards another one, and "
+                       "the body bends as if it held on to that node, {}",
+                       place.along, body, place.node),
+           fmt::format("a node within {:.2g} m: move the point, or make the model with more nodes (line: "
+                       "{{..., nodes: N}}), one of them here",
+                       kAtNode * place.length),
+           ""});
+    }
+  };
+  for (const JointDef& joint : mechanics.joints) {
+    look(joint.name + ".point1", joint.body1, joint.point1), look(joint.name + ".point2", joint.body2, joint.point2);
+  }
+  for (const TranslationalForceDef& force : mechanics.translational_forces) {
+    look(force.name + ".point1", force.body1, force.point1), look(force.name + ".point2", force.body2, force.point2);
+  }
+  MechanicsDef copy = mechanics;  // a row visits points that it may change
+  for_each_force_type(copy, [&](auto row, const auto& /*type*/, auto& defs) {
+    for (auto& def : defs) {
+      row.visit_points(def, [&](const std::string& body, const Triple* point) {
+        if (point != nullptr) look(def.name, body, *point);
+      });
+    }
+  });
+}
+
 }  // namespace slew::multibody

@@ -31,6 +31,15 @@ void find_start_deflections(const Model& model, Problems& warnings);
 // units. Pre-condition: validate() found nothing.
 void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings);
 
+// Appends a warning for every rotational force whose axis is not that of the hinge (revolute or cylindrical joint)
+// between its two bodies: a turn of the hinge changes its angle in part, or not at all. Pre-condition: validate() found
+// nothing.
+void find_axes_beside_hinges(const MechanicsDef& mechanics, Problems& warnings);
+
+// Appends a warning for every joint and force that acts on a body with modes between two nodes: it rides on the nearest
+// one, and the body bends as if it acted there. Pre-condition: validate() found nothing.
+void find_points_between_nodes(const MechanicsDef& mechanics, Problems& warnings);
+
 // Appends an error for every pair whose impact is too fast for the shortest part of a sub-step [s] of the scene's own
 // rule, each body taken as free and hit in its centre of mass, where an impact would make energy. An implicit rule
 // loses the rebound instead, and the parts of rk4 and `augmented` may be too long for it: the second function appends a

@@ -140,6 +140,35 @@ TEST(ContactDefValidation, NamesWhatIsWrongWithAConvexMesh) {
   refused(mesh, "no area");
 }
 
+TEST(ContactDefValidation, RefusesATriangleMeshThatIsInsideOut) {
+  const auto turn = [](MeshDef& mesh) {
+    for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);
+  };
+  const auto add = [](MeshDef mesh, const MeshDef& other, double shift) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Triple& v : other.vertices) mesh.vertices.push_back({v[0] + shift, v[1], v[2]});
+    for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    return mesh;
+  };
+  const MeshDef block = box_mesh(1, 2, 3).mesh;
+  MeshDef inverted = block, room = box_mesh(0.5, 1, 1).mesh, sheet = block;
+  turn(inverted);
+  turn(room);
+  sheet.triangles.pop_back();
+  EXPECT_FALSE(find_touched_fault(block));
+  EXPECT_FALSE(find_touched_fault(sheet));
+  turn(sheet);
+  EXPECT_FALSE(find_touched_fault(sheet));  // an open sheet has no inside
+  EXPECT_FALSE(find_touched_fault(add(block, block, 5)));
+  EXPECT_FALSE(find_touched_fault(add(block, room, 0)));  // a hollow block
+  ShapeDef shape = box_mesh(1, 2, 3);
+  shape.type = ShapeType::triangle_mesh;
+  shape.mesh = inverted;
+  expect_problem(two_shapes(shape, box(1, 1, 1)), "A.mesh", "it is inside out");
+  shape.mesh = add(block, inverted, 5);
+  expect_problem(two_shapes(shape, box(1, 1, 1)), "A.mesh", "its part with triangle 12 is inside out");
+}
+
 TEST(FindContacts, ComeInTheOrderOfThePairsWithTheShapesInTheirPlaces) {
   ContactDef def;
   def.frames = {{"Ground", true}, {"First", false}, {"Second", false}};

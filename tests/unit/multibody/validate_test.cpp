@@ -204,6 +204,73 @@ TEST(Validate, WarnsOfTheInertiaPrintedForTheJibBoom) {
   EXPECT_NE(warnings[0].what.find("the radius of gyration is 13 m"), std::string::npos) << warnings[0].what;
 }
 
+TEST(RotationalForce, BesideTheAxisOfItsHingeIsNamedWithBothAxesAndDirectionsThatFit) {
+  const auto warnings_of = [](const RotationalForceDef& force, Triple orientation1 = {}, Triple orientation2 = {}) {
+    MechanicsDef def = sound();
+    def.joints[0].orientation1 = orientation1;
+    def.joints[0].orientation2 = orientation2;
+    def.rotational_forces = {force};
+    Problems warnings;
+    find_axes_beside_hinges(def, warnings);
+    return warnings;
+  };
+  RotationalForceDef spring = {.name = "Spring", .body1 = "Ground", .body2 = "Arm"};
+  const Problems idle = warnings_of(spring);
+  ASSERT_EQ(idle.size(), 1u);
+  EXPECT_EQ(idle[0].path, "Spring");
+  EXPECT_EQ(
+      idle[0].what,
+      "its axis f1 x g1 is [0, 1, 0] in 'Ground', and its bodies turn against each other about [0, 0, 1], the axis "
+      "of 'Hinge': it carries no torque about that");
+  EXPECT_EQ(idle[0].expected, "f1: [1, 0, 0], g1: [0, 1, 0], f2: [1, 0, 0], whose angle is that of the joint");
+  spring.f1 = {1, 0, 0}, spring.g1 = {0, 1, 0}, spring.f2 = {1, 0, 0};
+  EXPECT_TRUE(warnings_of(spring).empty());
+  // half a right angle beside it
+  const Problems aslant = warnings_of(spring, {0.7853981633974483, 0, 0});
+  ASSERT_EQ(aslant.size(), 1u);
+  EXPECT_NE(aslant[0].what.find("about [0, -0.707107, 0.707107]"), std::string::npos) << aslant[0].what;
+  EXPECT_NE(aslant[0].what.find("its angle is not that of the joint"), std::string::npos);
+  // about the same axis against its direction, and with the bodies in the other order
+  spring.f1 = {0, 1, 0}, spring.g1 = {1, 0, 0};
+  EXPECT_TRUE(warnings_of(spring).empty());
+  std::swap(spring.body1, spring.body2);
+  EXPECT_TRUE(warnings_of(spring).empty());
+  EXPECT_EQ(warnings_of(spring, {}, {1.5707963267948966, 0, 0}).size(), 1u);
+  // between bodies without a hinge: the damper across the ball
+  EXPECT_TRUE(warnings_of(sound().rotational_forces[0]).empty());
+}
+
+TEST(PointOnABodyWithModes, BetweenTwoNodesIsNamedWithItsDistance) {
+  auto modes = std::make_shared<ModalBody>();
+  modes->C.resize(1);
+  for (int i = 0; i < 4; ++i) modes->nodes.push_back({.id = i + 1, .position = math::Vec3(i, 0, 0)});
+  const auto warnings_of = [&](Triple point, const std::string& body = "Arm") {
+    MechanicsDef def = sound();
+    def.joints.pop_back();
+    def.translational_forces.clear();
+    def.flexible_bodies = {{.body = "Arm", .modes = modes}};
+    def.point_forces = {{.name = "Load", .body = body, .point = point}};
+    Problems warnings;
+    find_points_between_nodes(def, warnings);
+    return warnings;
+  };
+  const Problems found = warnings_of({1.4, 0, 0});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].path, "Load");
+  EXPECT_NE(found[0].what.find("the point lies 0.4 m from the nearest node of 'Arm' towards another one, and the body "
+                               "bends as if it held on to that node, 2"),
+            std::string::npos)
+      << found[0].what;
+  EXPECT_NE(found[0].expected.find("a node within 0.03 m"), std::string::npos) << found[0].expected;
+  EXPECT_EQ(warnings_of({1.6, -0.2, 0}).size(), 1u);
+  EXPECT_TRUE(warnings_of({1.02, 0, 0}).empty());   // below 1 % of 3 m
+  EXPECT_TRUE(warnings_of({2, 0.5, 0.3}).empty());  // a lug beside a node
+  EXPECT_TRUE(warnings_of({3.5, 0, 0}).empty());    // an arm that goes on from the end
+  EXPECT_TRUE(warnings_of({1.4, 0, 0}, "Ground").empty());
+  modes->C.clear();  // all modes left out
+  EXPECT_TRUE(warnings_of({1.4, 0, 0}).empty());
+}
+
 // rk4 looks at a table at the ends and the middle of a sub-step only
 TEST(ShortPulse, IsNamedWithTheSubStepThatSuits) {
   MechanicsDef def = sound();

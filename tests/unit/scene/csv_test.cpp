@@ -209,6 +209,83 @@ TEST_F(Csv, AForceTableTakesTwoNamedColumnsInTheirUnits) {
   EXPECT_EQ(load_text(scene.expanded_text, "scene").expanded_text, scene.expanded_text);
 }
 
+// 10 N at 0.5 s, however the header states its unit
+TEST_F(Csv, AUnitInBracketsCountsWhereverItStands) {
+  const Table in_newton = {{0, 0}, {0.5, 10}};
+  for (const char* header : {"t [s],f [kN]", "t (s),f (kN)", "t [s],f [kN] filtered", "t [s] of the rig,f (kN) left",
+                             "t (s),f( kN )", "t [ s ],f/(kN)", "t,f (left) [kN]", "t,[kN] f", "t,(kN)"}) {
+    folder_.write("t.csv", std::string(header) + "\n0,0\n0.5,0.01\n");
+    const Scene scene = load_file(table_scene("t.csv"));
+    EXPECT_EQ(scene.mechanics.point_forces.front().force_table, in_newton) << header;
+  }
+  EXPECT_EQ(stick("time (ms), Stick (%) of the cab\n0, 0\n500, 100\n2e3, -25\n"), kRamp);
+}
+
+TEST_F(Csv, TheNameOfAColumnIsWhatStandsBeforeItsUnit) {
+  const Table in_newton = {{0, 0}, {0.5, 10}};
+  const std::pair<const char*, const char*> cases[] = {{"f [kN] filtered", "f"},
+                                                       {"f left (kN) filtered", "f left"},
+                                                       {"f (left) [kN]", "f (left)"},
+                                                       {"f (P) [kN]", "f (P)"},
+                                                       {"f/(kN)", "f"},
+                                                       {"\"f, left [kN]\"", "'f, left'"}};
+  for (const auto& [header, name] : cases) {
+    folder_.write("t.csv", std::string("n [],t [s],") + header + "\n1,0,0\n2,0.5,0.01\n");
+    const Scene scene = load_file(table_scene(std::string("{file: t.csv, columns: [t, ") + name + "]}"));
+    EXPECT_EQ(scene.mechanics.point_forces.front().force_table, in_newton) << header;
+  }
+  // names without a unit are of SI
+  for (const char* header : {"t,f", "s,N", "t,force_N", "t,f filtered", "time_of_s,n_A"}) {
+    folder_.write("t.csv", std::string(header) + "\n0,0\n0.5,10\n");
+    EXPECT_EQ(load_file(table_scene("t.csv")).mechanics.point_forces.front().force_table, in_newton) << header;
+  }
+}
+
+TEST_F(Csv, AUnitThatDoesNotCountIsRefused) {
+  const auto refusal_of = [&](const char* header) {
+    return refusal_of_table(std::string("t [s],") + header + "\n0,0\n0.5,0.01\n");
+  };
+  const std::string expected =
+      "; expected a name and one unit in brackets behind it, such as 'f [UNIT]', or the name alone for SI";
+  EXPECT_EQ(refusal_of("f []"), "t.csv:1:7: the header 'f []' has no unit in its brackets" + expected);
+  EXPECT_EQ(refusal_of("f ()"), "t.csv:1:7: the header 'f ()' has no unit in its brackets" + expected);
+  for (const char* header : {"f [N] [kN]", "f (N) [kN]", "f (N) (kN)"}) {
+    EXPECT_EQ(refusal_of(header),
+              std::string("t.csv:1:7: the header '") + header + "' has two parts in brackets" + expected);
+  }
+  for (const char* header : {"f [N]/1000", "f [N] * 9.81", "f (N) x 1000", "f [N] - 5", "f [N]^2", "f [kN]2"}) {
+    EXPECT_EQ(refusal_of(header), std::string("t.csv:1:7: the header '") + header +
+                                      "' goes on with a calculation behind the unit" + expected);
+  }
+  for (const char* header : {"f kN", "f/kN", "f {kN}", "f <kN>", "f in kN:", "f_kN"}) {
+    const std::string refused = refusal_of(header);
+    EXPECT_NE(refused.find(std::string("t.csv:1:7: the unit 'kN' in the header '") + header +
+                           "' stands in no brackets; expected 'f"),
+              std::string::npos)
+        << refused;
+  }
+  EXPECT_NE(refusal_of("kN").find("the unit 'kN' in the header 'kN'"), std::string::npos);
+  EXPECT_NE(refusal_of("f N").find("the unit 'N' in the header 'f N'"), std::string::npos);
+  EXPECT_EQ(
+      refusal_of("f (kn)"),
+      "t.csv:1:7: what stands in the brackets of the header 'f (kn)' is no unit; expected a force such as '1 kN', "
+      "or a bare number in N; a remark stands in no brackets");
+  EXPECT_NE(refusal_of("f (mm)").find("'mm' is a length"), std::string::npos);
+  EXPECT_NE(refusal("time (s),Stick %\n0,0\n1,1\n").find("no input 'Stick %'"), std::string::npos);
+}
+
+TEST_F(Csv, TwoColumnsOfOneNameAreNoChoice) {
+  folder_.write("t.csv", "t [s],f [kN] raw,f [kN] filtered\n0,0,0\n1,1,1\n");
+  try {
+    (void)load_file(table_scene("{file: t.csv, columns: [t, f]}"));
+    ADD_FAILURE() << "accepted";
+  } catch (const LoadError& error) {
+    EXPECT_NE(std::string(error.what()).find("'f [kN] raw' and 'f [kN] filtered' are both named 'f'"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(Csv, AFileElsewhereIsNotRead) {
   const std::string elsewhere =
       "t.csv' lies outside of the scene's folder and was not read; expected a file in that "

@@ -98,6 +98,33 @@ TEST(UrdfReader, RefusesIncompleteParts) {
             "r.urdf:3: link 'a': <origin xyz> is '1 2'; expected three finite numbers");
 }
 
+// none of two would be the one that is meant
+TEST(UrdfReader, RefusesASecondElementOfAKindThatCountsOnce) {
+  const std::string one = "<origin/>\n<axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\"/><dynamics/>";
+  EXPECT_EQ(problems_of(robot(joint("type=\"revolute\"", one))), "");
+  const auto refusal = [](const char* tag) {
+    return "r.urdf:5: joint 'j': <joint> has a second <" + std::string(tag) + ">; expected one";
+  };
+  for (const auto& [tag, second] :
+       {std::pair("origin", "<origin xyz=\"1 0 0\"/>"), std::pair("axis", "<axis xyz=\"1 0 0\"/>"),
+        std::pair("limit", "<limit lower=\"-2\" upper=\"2\"/>"), std::pair("dynamics", "<dynamics damping=\"1\"/>"),
+        std::pair("parent", "<parent link=\"base\"/>"), std::pair("child", "<child link=\"a\"/>")}) {
+    EXPECT_EQ(problems_of(robot(joint("type=\"revolute\"", one + second))), refusal(tag));
+  }
+  const auto of_link = [](const std::string& children) {
+    return problems_of("<robot name=\"x\">\n<link name=\"l\">\n" + children + "</link></robot>");
+  };
+  EXPECT_EQ(
+      of_link("<inertial>\n<mass value=\"1\"/><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial>"),
+      "r.urdf:4: link 'l': <inertial> has a second <mass>; expected one");
+  EXPECT_EQ(
+      of_link("<inertial>\n<mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/><inertia ixx=\"2\" iyy=\"2\" "
+              "izz=\"2\"/></inertial>"),
+      "r.urdf:4: link 'l': <inertial> has a second <inertia>; expected one");
+  EXPECT_EQ(of_link("<collision><geometry><sphere radius=\"1\"/>\n<box size=\"1 1 1\"/></geometry></collision>"),
+            "r.urdf:4: link 'l': <geometry> has a second shape, <box>; expected one; a <collision> for each shape");
+}
+
 TEST(UrdfReader, RefusesJointsThatAreNone) {
   const std::string limit = "<limit lower=\"-1\" upper=\"1\"/>";
   EXPECT_EQ(problems_of(robot(joint("type=\"revolute\"", limit))), "");
