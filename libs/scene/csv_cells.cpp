@@ -253,7 +253,7 @@ std::optional<std::size_t> CsvFile::find_column(std::string_view name, std::stri
     if (column.name == name && found) {
       report_.add(column.mark, "",
                   {fmt::format("'{}' and '{}' are both named '{}'", head_[*found].text, column.text, name),
-                   "one column for a name; text that tells them apart stands before the unit", ""});
+                   "one column for a name; words that differ stand before the unit", ""});
       return std::nullopt;
     }
     if (column.name == name) found = names.size();
