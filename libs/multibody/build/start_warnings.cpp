@@ -310,7 +310,7 @@ namespace {
 // angle between two axes, of either direction, below which they are one [rad]
 constexpr double kOneAxis = 1e-2;
 // way along a body with modes, as a share of its length, that a point may lie from its node
-constexpr double kAtNode = 1e-2;
+constexpr double kAtNode = 5e-2;
 
 std::string in_scene(Vec3 v) {
   const auto rounded = [](double x) { return std::fabs(x) < 5e-7 ? 0.0 : x; };
