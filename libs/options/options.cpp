@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -30,6 +31,16 @@ CLI::Validator finite_between(double least, double most) {
     return is_inside ? std::string() : fmt::format("'{}' is no number {}", text, range);
   };
   return {problem, range, "number range"};
+}
+
+// Names no upper bound: that of double has 309 digits.
+CLI::Validator finite_from_zero() {
+  const auto problem = [](const std::string& text) {
+    double number = 0;
+    const bool is_inside = CLI::detail::lexical_cast(text, number) && number >= 0 && std::isfinite(number);
+    return is_inside ? std::string() : fmt::format("'{}' is no number from 0", text);
+  };
+  return {problem, "from 0", "number range"};
 }
 
 // The command that was being parsed; `name` gets its words.
@@ -240,7 +251,7 @@ Option& Option::between(double least, double most) {
 }
 
 Option& Option::not_negative() {
-  option_->check(CLI::NonNegativeNumber);
+  option_->check(finite_from_zero());
   return *this;
 }
 

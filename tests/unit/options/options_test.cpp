@@ -33,6 +33,7 @@ class Numbers : public ::testing::Test {
     program_.option("--count", count_, "a count").between(1, 9);
     program_.option("--seed", seed_, "a seed");
     program_.option("--number", number_, "a number");
+    program_.option("--lines", lines_, "a number").not_negative();
     program_.option("--all", all_, "a list").comma_separated().one_value_each();
   }
   Program program_{"test", "a test"};
@@ -40,6 +41,7 @@ class Numbers : public ::testing::Test {
   int count_ = 3;
   std::uint64_t seed_ = 1;
   std::int64_t number_ = 1;
+  int lines_ = 1;
   std::vector<std::string> all_;
 };
 
@@ -64,6 +66,13 @@ TEST_F(Numbers, AnIntegerHasItsBounds) {
   EXPECT_EQ(problem_of(program_, {"--count", "9"}), "");
   EXPECT_EQ(count_, 9);
   for (const char* text : {"0", "10", "2.5", "nan"}) EXPECT_NE(problem_of(program_, {"--count", text}), "") << text;
+}
+
+TEST_F(Numbers, BelowZeroAreRefusedWithAReadableBound) {
+  EXPECT_EQ(problem_of(program_, {"--lines", "0"}), "");
+  EXPECT_EQ(problem_of(program_, {"--lines=-1"}),
+            "--lines: '-1' is no number from 0; nothing was done; see 'test --help'");
+  EXPECT_NE(problem_of(program_, {"--lines=nan"}), "");
 }
 
 TEST_F(Numbers, AWholeNumberThatDoesNotFitIsRefused) {
