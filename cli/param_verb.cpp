@@ -197,6 +197,11 @@ std::int64_t spread_ns(const std::string& text) {
 }
 
 ExitCode set(const ParamOptions& options) {
+  if (options.words.size() > 1 && options.words[0].find('=') != std::string::npos) {
+    throw Failure(ExitCode::bad_input, fmt::format("'{}' has its value, and '{}' is a second one; nothing was changed; "
+                                                   "set one parameter a call",
+                                                   options.words[0], options.words[1]));
+  }
   const std::string text = options.words.size() == 1 ? options.words[0] : options.words[0] + "=" + options.words[1];
   const std::optional<SimDuration> spread =
       options.over.empty() ? std::nullopt : std::optional(SimDuration{spread_ns(options.over)});

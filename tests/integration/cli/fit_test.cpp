@@ -286,7 +286,8 @@ TEST_F(Fit, RefusesBeforeAnyRun) {
       "slewring", {"fit", "rail.yaml", "--data", "twice.csv", "--map", map, "--free", free, "-o", "none", "--quiet"},
       work_.path());
   EXPECT_EQ(twice.code, 2) << twice.out;
-  EXPECT_NE(twice.err.find("twice.csv:1:18: 'way' is there twice"), std::string::npos) << twice.err;
+  EXPECT_NE(twice.err.find("twice.csv:1:18: 'way [m]' and 'way [m]' are both named 'way'"), std::string::npos)
+      << twice.err;
   EXPECT_NE(refusal({"--map", map, "--free", "a=1m/s2..5m/s2:3"}).find("no count"), std::string::npos);
   EXPECT_NE(refusal({"--map", map, "--free", free, "--free", "a=1m/s2..4m/s2"}).find("--free a is given twice"),
             std::string::npos);

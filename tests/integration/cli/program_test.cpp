@@ -189,6 +189,7 @@ TEST_F(Program, UsageErrorsReportWhatWhereAndWhatToDoAndExitWith2) {
       {{"run", "x.yaml", "--pace", "slow"}, "--pace: slow not in {real,free}"},
       {{"run", "x.yaml", "--durtion", "5"}, "there is no option '--durtion' here; did you mean '--duration'?"},
       {{"run", "x.yaml", "--domain", "500"}, "--domain: Value 500 not in range 0 to 230"},
+      {{"param", "set", "A=1", "B=2"}, "'A=1' has its value, and 'B=2' is a second one; nothing was changed"},
       {{"run", "x.yaml", "--keep-free", "nan"},
        "--keep-free: 'nan' is no number from 0 to 1000000000; nothing was done"},
       {{"run", "x.yaml", "--join-timeout", "0"},
