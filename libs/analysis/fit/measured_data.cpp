@@ -64,13 +64,6 @@ class DataReader {
       report_.add(at->mark, "", at->problem);
       return false;
     }
-    const std::vector<scene::ColumnHead>& head = file_.head();
-    const auto second = std::find_if(head.begin() + static_cast<std::ptrdiff_t>(*found) + 1, head.end(),
-                                     [&](const scene::ColumnHead& one) { return one.name == name; });
-    if (second != head.end()) {
-      report_.add(second->mark, "", {"'" + name + "' is there twice", "one column for a name", ""});
-      return false;
-    }
     if (at->unit.empty()) return true;
     const scene::Unit* unit = units_.find(at->unit);
     if (unit == nullptr || unit->has_other_base) {
