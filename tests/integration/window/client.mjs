@@ -74,6 +74,7 @@ class Client {
     this.#topics.set(this.client.subscribe(this.channels.get(topic).id), topic);
   }
   async call(name, request) {
+    await waitFor(`the service ${name}`, () => this.services.has(name));
     const callId = ++this.#calls;
     const data = encoder.encode(JSON.stringify(request));
     this.client.sendServiceCallRequest({ serviceId: this.services.get(name), callId, encoding: "json", data });
