@@ -105,20 +105,13 @@ std::string error_cell(const Comparison& run) {
   if (run.has_failed) return "diverged" + flag;
   const PortError& port = worst_port(run);
   if (port.F > 10 * port.F_range) return "unstable" + flag;
-  return fmt::format("{:.1e} ({:.2g} N){}", port.F / port.F_range, port.F, flag);
-}
-
-std::string eta_cell(const Comparison& run) {
-  if (!is_usable(run)) return "";
-  const PortError& port = worst_port(run);
-  return fmt::format("{:.1e} ({:.2g})", port.eta(), port.F / port.F_largest / port.eta());
+  return fmt::format("{:.1e}{}", port.F / port.F_range, flag);
 }
 
 std::string header() {
   std::string text = "| H [ms] | omega_H ";
   for (const std::string_view name : kLevelNames) text += fmt::format("| {} ", name);
-  for (const std::string_view name : kLevelNames) text += fmt::format("| {}: eta ", name);
-  return text + "|\n|---|---|---|---|---|---|---|---|---|---|\n";
+  return text + "|\n|---|---|---|---|---|---|\n";
 }
 
 struct Sweep {
@@ -143,20 +136,19 @@ Sweep sweep(const Case& c, bool is_dashed) {
   }
   result.text += ".\n\n" + header();
   for (const double H : kSteps) {
-    std::string errors, etas;
+    std::string errors;
     double omega_H = 0;
     for (std::size_t level = 0; level < std::size(kLevels); ++level) {
       const Comparison run = compare(scene, H, kLevels[level], reference, c.duration);
       if (kLevels[level] == Level::two) omega_H = run.omega_H;
       errors += fmt::format("| {} ", error_cell(run));
-      etas += fmt::format("| {} ", eta_cell(run));
       result.curves[level].points.emplace_back(1e3 * H, run.has_failed ? 1e9 : share(run));
       result.curves[level].is_flagged.push_back(is_flagged(run));
       const PortError& port = worst_port(run);
       if (is_usable(run)) result.points.push_back({level, port.eta(), port.F / port.F_largest});
       std::cerr << "." << std::flush;
     }
-    result.text += fmt::format("| {:g} | {:.2f} {}{}|\n", 1e3 * H, omega_H, errors, etas);
+    result.text += fmt::format("| {:g} | {:.2f} {}|\n", 1e3 * H, omega_H, errors);
   }
   result.text += "\n";
   return result;
