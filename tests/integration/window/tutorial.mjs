@@ -77,7 +77,7 @@ async function makesTheBoomFlexible(page) {
   await page.click('[aria-label="End the editing"]');
   await select(page, "Bag");
   await select(page, boom);
-  // at rest under 500 kg the tip hangs 64 mm low (docs/tutorial/flexible-body.md, section 6)
+  // at rest under 500 kg the tip hangs 64 mm low (docs/tutorial/flexible-body.md, section 5)
   await waitFor("the deflection at rest", async () => Math.abs((await shown(page, "deflection.y")) + 0.064) < 0.006);
   console.log("the boom bends by four fields");
 }
