@@ -142,6 +142,23 @@ double bias_in_tree(const Link& link, const Row& row, const Workspace& ws) noexc
   return drive >= 0 ? ws.drives[at(drive)].acceleration : 0.0;
 }
 
+// gradient of a row and, by the present factors, its residual and rate
+void pass_row_back(const Model& model, std::size_t k, Workspace& ws) noexcept {
+  const Row& row = model.rows[k];
+  const std::size_t dof = ws.udot.size();
+  const std::span<double> J(ws.row_J.data() + k * dof, dof);
+  write_jacobian(model, ws, row, J);
+  const std::span<const int> supports(model.supports.data() + row.first_support,
+                                      model.supports.data() + row.support_end);
+  const std::span<double> residual(ws.row_residual.data() + k * dof, dof), rate(ws.row_rate.data() + k * dof, dof);
+  if (!model.has_closing_rows()) return solve_backward(model, ws, supports, J, residual, rate);
+  // loops reach links outside of the row's supports
+  std::fill(residual.begin(), residual.end(), 0.0);
+  std::fill(rate.begin(), rate.end(), 0.0);
+  solve_backward(model, ws, supports, J, residual, rate);
+  reduce_row(k, ws, residual, rate);
+}
+
 void evaluate_row(const Model& model, const State& state, std::size_t k, Workspace& ws) noexcept {
   const Row& row = model.rows[k];
   const std::size_t dof = ws.udot.size();
@@ -158,21 +175,22 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
     ws.row_a_free[k] = 0;
     return;
   }
-  const std::span<double> J(ws.row_J.data() + k * dof, dof);
-  write_jacobian(model, ws, row, J);
-  ws.row_a_free[k] = motion.bias + fixed_dot(J, ws.udot_free);
-  const std::span<const int> supports(model.supports.data() + row.first_support,
-                                      model.supports.data() + row.support_end);
-  const std::span<double> residual(ws.row_residual.data() + k * dof, dof), rate(ws.row_rate.data() + k * dof, dof);
-  if (!model.has_closing_rows()) return solve_backward(model, ws, supports, J, residual, rate);
-  // loops reach links outside of the row's supports
-  std::fill(residual.begin(), residual.end(), 0.0);
-  std::fill(rate.begin(), rate.end(), 0.0);
-  solve_backward(model, ws, supports, J, residual, rate);
-  reduce_row(k, ws, residual, rate);
+  pass_row_back(model, k, ws);
+  ws.row_a_free[k] = motion.bias + fixed_dot({ws.row_J.data() + k * dof, dof}, ws.udot_free);
 }
 
 }  // namespace
+
+void respond(const Model& model, std::span<const double> forces, Workspace& ws, std::span<double> udot) noexcept {
+  std::fill(ws.residual.begin(), ws.residual.end(), 0.0);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    if (ws.row_is_active[k] == 0 || forces[k] == 0) continue;
+    pass_row_back(model, k, ws);
+    const double* residual = ws.row_residual.data() + k * udot.size();
+    for (std::size_t j = 0; j < udot.size(); ++j) ws.residual[j] += residual[j] * forces[k];
+  }
+  solve_forward(model, ws, ws.residual, udot);
+}
 
 double row_acceleration(const Model& model, const Workspace& ws, std::size_t row, std::span<const double> udot,
                         std::span<double> J) noexcept {

@@ -11,6 +11,9 @@ namespace slew::multibody {
 // Needs motion, elements and factors of the same state, and ws.udot_free.
 void evaluate_rows(const Model& model, const State& state, Workspace& ws) noexcept;
 
+// M^-1 J^T forces (one per row) by the present factors, closing rows included, into udot.
+void respond(const Model& model, std::span<const double> forces, Workspace& ws, std::span<double> udot) noexcept;
+
 // x'' of an active row under u', from the motion of this q and u with u' = 0; J: its gradient, overwritten, zero
 // outside of the row's path.
 [[nodiscard]] double row_acceleration(const Model& model, const Workspace& ws, std::size_t row,

@@ -90,6 +90,14 @@ struct NodeMotion {
   std::vector<math::Vec3> Phi, Psi;  // columns of (2)
 };
 
+// What an interval adds to the masses and elastic forces of all modes: position K + rate D to M, strain K u to the force.
+struct ModalShares {
+  double position = 0;  // s2
+  double rate = 0;      // s
+  double strain = 0;    // s
+  [[nodiscard]] bool any() const noexcept { return position != 0 || rate != 0 || strain != 0; }
+};
+
 struct Model;
 struct Workspace;
 struct LinkMotion;
@@ -106,6 +114,8 @@ void move_node(const FlexibleNode& node, const LinkMotion& frame, const PartMoti
 // Inertia and bias wrench of (4), (5) beyond those of the undeformed body; starts (7) and the bias of (6).
 void add_part(const FlexiblePart& part, const LinkMotion& frame, PartMotion& motion,
               ArticulatedInertia& inertia) noexcept;
+// After add_part().
+void add_shares(const FlexiblePart& part, const ModalShares& shares, PartMotion& motion) noexcept;
 
 // The recursion: a node's articulated inertia into the modes, after it went into the frame's; then the modes out of the
 // frame's inertia, with their residuals. Where E is singular the accelerations are not finite.

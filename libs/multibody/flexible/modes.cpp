@@ -184,6 +184,18 @@ void add_part(const FlexiblePart& part, const LinkMotion& frame, PartMotion& mot
   inertia.n += bias.n;
 }
 
+void add_shares(const FlexiblePart& part, const ModalShares& shares, PartMotion& motion) noexcept {
+  const std::size_t n = part.modes;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t first = part.is_diagonal ? k : 0, end = part.is_diagonal ? k + 1 : n;
+    for (std::size_t l = first; l < end; ++l) {
+      const double K = part.stiffness[k * n + l];
+      motion.E[k * n + l] += shares.position * K + shares.rate * part.damping[k * n + l];
+      motion.bias[k] += shares.strain * K * motion.u[l];
+    }
+  }
+}
+
 PartWrench wrench_of(const PartMotion& motion, std::span<const double> udot, Vec3 alpha, Vec3 a) noexcept {
   PartWrench wrench{motion.f + cross(alpha, motion.s), motion.n + motion.J * alpha + cross(motion.s, a)};
   for (std::size_t k = 0; k < udot.size(); ++k) {

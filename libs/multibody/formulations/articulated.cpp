@@ -4,7 +4,7 @@
 // The bias wrenches are those of the accelerations with u' = 0, so that the recursion solves for u' alone:
 //   delta_A_i = X_i delta_A_parent + S_i u'_i,   X: (alpha, a) -> (alpha, a + alpha x r)            (1)
 //   U = (IA + E) S,  D = S^T U,  Ia = IA + E - U D^-1 U^T,  passed on to the parent through X       (2)
-// D^-1 is zero along directions that are prescribed (motions/drive.h).
+// D^-1 is zero along directions that are prescribed (motions/drive.h). Elements across a joint add to D: tree_matrix.h.
 // E is the contribution of dummies between the link and its parent. They depend on both links' motion, so E differs
 // between the two sides of (2): E_Vq and E_qq for motion of the joint alone, E_VV for motion of both links as one rigid
 // body. Those with a point on another node: flexible/node_dummies.h.
@@ -12,6 +12,7 @@
 
 #include "core/index.h"
 #include "multibody/formulations/passes.h"
+#include "multibody/formulations/tree_matrix.h"
 #include "multibody/joints/joint_directions.h"
 
 namespace slew::multibody {
@@ -73,6 +74,11 @@ void subtract_outer(Mat3& A, Vec3 a, Vec3 b) noexcept {
   A.c[2].lanes = math::subtract_product(A.c[2].lanes, a.lanes, math::broadcast<2>(b));
 }
 
+// elements between a link and its parent; null: none
+const RelativeMatrix* across(const Workspace& ws, std::size_t i) noexcept {
+  return ws.across == nullptr ? nullptr : ws.across->across(i);
+}
+
 // moves inertia and bias wrench from the child's origin to the parent's, r apart, and adds them there
 void add_to_parent(const ArticulatedInertia& I, Vec3 r, ArticulatedInertia& parent) noexcept {
   const Mat3 M_r = times_skew(I.M, r);
@@ -101,6 +107,7 @@ void factorize_axis(const Model& model, Workspace& ws, std::size_t i, LinkWrench
     d += dot(u, response.F_child);
     residual -= dot(u, child_bias(mass, m));
   }
+  if (const RelativeMatrix* A = across(ws, i)) d += dot(axis, (is_revolute ? A->ww : A->vv) * axis);
   JointFactor& factor = ws.factor[i];
   factor.U_ang.c[0] = U.n;
   factor.U_lin.c[0] = U.f;
@@ -170,6 +177,7 @@ void factorize_spherical(const Model& model, Workspace& ws, std::size_t i) noexc
     }
     residual -= cross(s, child_bias(mass, m));
   }
+  if (const RelativeMatrix* A = across(ws, i)) D += A->ww;
   factor.D_inv = inverse_symmetric(D);
   store(ws.residual, link.u, residual);
   if (link.parent != 0) pass_on(model, ws, i, I, residual);
@@ -215,6 +223,13 @@ void factorize_pair(const Model& model, Workspace& ws, std::size_t i) noexcept {
       factor.U_lin.c[k] += response.both.f;
       residual[k] -= dot(u[k], child_bias(mass, m));
       for (int l = 0; l < 2; ++l) D[l][k] += dot(u[l], response.F_child);
+    }
+  }
+  if (const RelativeMatrix* A = across(ws, i)) {
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 f = A->vv * S.slide[k] + A->vw * S.turn[k];
+      const Vec3 n = transpose_multiply(A->vw, S.slide[k]) + A->ww * S.turn[k];
+      for (int l = 0; l < 2; ++l) D[l][k] += dot(S.slide[l], f) + dot(S.turn[l], n);
     }
   }
   factor.D_inv = inverse_of_free(link, D[0][0], D[0][1], D[1][1]);

@@ -14,10 +14,7 @@
 #include "multibody/formulations/row_hold.h"
 
 namespace slew::multibody {
-namespace {
-
-// everything up to and including the backward pass
-void prepare(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
+void find_loads(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   if (!ws.loops.is_shown || !are_shown(model, q, u, ws)) {
     update_motion(model, q, u, ws);
     evaluate_cuts(model, q, u, ws);
@@ -26,21 +23,23 @@ void prepare(const Model& model, std::span<const double> q, std::span<const doub
   apply_all(model, q, ws);
 }
 
-}  // namespace
-
-void forward_dynamics(const Model& model, std::span<const double> q, std::span<const double> u,
-                      std::span<const double> row_forces, Workspace& ws) noexcept {
-  prepare(model, q, u, ws);
-  if (!row_forces.empty()) {
-    std::copy(row_forces.begin(), row_forces.end(), ws.row_force.begin());
-    apply_row_forces(model, ws);
-  }
+void solve_accelerations(const Model& model, Workspace& ws) noexcept {
   factorize(model, ws);
   if (model.has_closing_rows()) {
     factorize_cuts(model, ws);
     close_loops(model, ws);
   }
   solve_forward(model, ws, ws.residual, ws.udot);
+}
+
+void forward_dynamics(const Model& model, std::span<const double> q, std::span<const double> u,
+                      std::span<const double> row_forces, Workspace& ws) noexcept {
+  find_loads(model, q, u, ws);
+  if (!row_forces.empty()) {
+    std::copy(row_forces.begin(), row_forces.end(), ws.row_force.begin());
+    apply_row_forces(model, ws);
+  }
+  solve_accelerations(model, ws);
 }
 
 void evaluate(const Model& model, const State& state, Workspace& ws) noexcept {

@@ -19,6 +19,7 @@ namespace {
   for (std::size_t k = 0; k < model.parts.size(); ++k) {
     const auto link = at(model.parts[k].link);
     add_part(model.parts[k], ws.motion[link], ws.parts[k], ws.inertia[link]);
+    if (ws.shares.any()) add_shares(model.parts[k], ws.shares, ws.parts[k]);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "multibody/constraints/loops.h"
 #include "multibody/contacts/contact_passes.h"
@@ -51,6 +52,18 @@ double largest_speed(const StageContext& at) noexcept {
   return largest;
 }
 
+// the same of a step in the tree
+double largest_speed_in_tree(const StageContext& at, double tau) noexcept {
+  double largest = 0;
+  for (std::size_t i = 1; i < at.model.links.size(); ++i) {
+    for (const Vec3& part : {at.ws.delta_a[i], at.ws.delta_alpha[i]}) {
+      const double size = tau * std::sqrt(dot(part, part));
+      if (!(size <= largest)) largest = size;  // NaN stays
+    }
+  }
+  return largest;
+}
+
 // Projects the motion of the stage onto the joints: near a singular position accelerations divide its violation by a
 // small number.
 bool show_on_joints(const StageContext& at) noexcept {
@@ -66,6 +79,28 @@ bool show_on_joints(const StageContext& at) noexcept {
   return project(at.model, at.ws.q_stage, at.ws.u_stage, at.ws);
 }
 
+// Newton's method in the tree, after place(). False: as find_step_in_tree(), or it is slow; the speeds are those of the
+// last correction, placed.
+bool solve_in_tree(const StageContext& at, const Stage& stage, double settled) noexcept {
+  StageWorkspace& s = at.stages;
+  const std::span<double> u = at.u();
+  double last = std::numeric_limits<double>::infinity();
+  for (;; ++s.iterations) {
+    bool is_fast = find_step_in_tree(at, stage);
+    const double size = is_fast ? largest_speed_in_tree(at, stage.tau) : last;
+    // a size that is not finite goes on in body coordinates as well
+    is_fast = is_fast && std::isfinite(size) && (size <= settled || size <= kSlowStage * last);
+    if (!is_fast) {
+      place(at, stage.sigma);
+      return false;
+    }
+    for (std::size_t j = 0; j < u.size(); ++j) u[j] += s.step[j];
+    place(at, stage.sigma);
+    if (size <= settled) return true;
+    last = size;
+  }
+}
+
 // (4), from the present speeds; afterwards speeds, coordinates and motion are those of the stage
 bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) noexcept {
   StageWorkspace& s = at.stages;
@@ -78,6 +113,11 @@ bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) n
   const Extent extent = extent_of(at.ws);
   const double settled = tolerance * extent.speed + kStageRounding * extent.length / stage.tau;
   bool is_regular = true, is_near_singular = at.bws.ldl.smallest_pivot() < kNearSingular;
+  s.is_in_tree = s.tree && !is_near_singular && solve_in_tree(at, stage, settled);
+  if (s.is_in_tree) {
+    update_elements(at.model, at.moving.joints.q, Elements::used, at.ws);
+    return true;
+  }
   for (int i = 0; i < kMostCorrections; ++i, ++s.iterations) {
     const bool is_closed = !is_near_singular || show_on_joints(at);
     find_residual(at, stage);
@@ -380,6 +420,7 @@ StageWorkspace::StageWorkspace(const Model& model, const BodyModel& body, Coordi
   multipliers.resize(rows);
   const std::size_t links = model.links.size();
   const bool is_body = coordinates == Coordinates::body;
+  if (!is_body && model.gears.empty()) tree.emplace(model);
   const std::size_t modes = mode_count(model);
   q_0.resize(is_body ? 7 * (links - 1) + modes : model.start_q.size());
   const std::size_t speeds = is_body ? 6 * (links - 1) + modes : model.start_u.size();

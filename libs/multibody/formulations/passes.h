@@ -34,6 +34,11 @@ void apply_all(const Model& model, std::span<const double> q, Workspace& ws) noe
 void apply_elements(const Model& model, Workspace& ws) noexcept;
 void apply_row_forces(const Model& model, Workspace& ws) noexcept;
 
+// Motion, inertias, all loads except rows, and the closing rows' values: all that the two passes below need.
+void find_loads(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept;
+// Both passes, with the closing rows: ws.udot.
+void solve_accelerations(const Model& model, Workspace& ws) noexcept;
+
 // Backward pass: articulated inertias, factors and residuals; forward pass: udot from residuals.
 void factorize(const Model& model, Workspace& ws) noexcept;
 void solve_forward(const Model& model, Workspace& ws, std::span<const double> residual,

@@ -3,7 +3,10 @@
 #include <algorithm>
 
 #include "core/index.h"
+#include "multibody/constraints/loops.h"
+#include "multibody/constraints/rows.h"
 #include "multibody/contacts/contact_passes.h"
+#include "multibody/contacts/contact_stiffness.h"
 #include "multibody/formulations/passes.h"
 #include "multibody/formulations/stage_passes.h"
 #include "multibody/joints/joint_directions.h"
@@ -123,9 +126,8 @@ void push_by_rows(const StageContext& at, std::span<const double> forces) noexce
   }
 }
 
-}  // namespace
-
-void find_residual(const StageContext& at, const Stage& stage) noexcept {
+// wrenches M a - Q of all links and modes, without those of rows
+void find_wrenches(const StageContext& at, const Stage& stage) noexcept {
   StageWorkspace& s = at.stages;
   const std::span<const double> u = at.u();
   for (std::size_t j = 0; j < u.size(); ++j) s.rate[j] = (u[j] - s.fixed[j]) / stage.tau;
@@ -139,6 +141,12 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
   update_coupled(at.model, at.ws);
   apply_elements(at.model, at.ws);
   apply_contacts(at.model, at.ws);
+}
+
+}  // namespace
+
+void find_residual(const StageContext& at, const Stage& stage) noexcept {
+  find_wrenches(at, stage);
   evaluate_joints(at.model, at.body, at.moving.joints, at.ws, at.bws);
   put_bias(at.model, at.body, at.ws, at.bws);
   // rows of joints with the accelerations, where put_bias() left them out
@@ -164,12 +172,47 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
     });
     at.bws.solution[slew::at(at.bws.ldl.first_row(at.body.first_gear + static_cast<int>(k)))] = -g;
   }
-  push_by_rows(at, s.row_force);
+  push_by_rows(at, at.stages.row_force);
   for (double& x : at.bws.solution) x *= stage.tau;
+}
+
+bool find_step_in_tree(const StageContext& at, const Stage& stage) noexcept {
+  StageWorkspace& s = at.stages;
+  Workspace& ws = at.ws;
+  TreeMatrix& stiffness = *s.tree;
+  const ChangeWeights weights{.position = stage.tau * stage.sigma, .rate = stage.tau};
+  ws.shares = {.position = weights.position, .rate = weights.rate};
+  find_wrenches(at, stage);
+  ws.shares = {};
+  std::copy(s.row_force.begin(), s.row_force.end(), ws.row_force.begin());
+  std::fill(ws.tau.begin(), ws.tau.end(), 0.0);
+  apply_row_forces(at.model, ws);
+  stiffness.clear();
+  add_stiffness(at.model, ws, weights, stiffness);
+  add_contact_stiffness(at.model, ws, weights, stiffness);
+  if (!stiffness.put(ws)) return false;
+  ws.across = &stiffness;
+  factorize(at.model, ws);
+  ws.across = nullptr;
+  if (at.model.has_closing_rows()) {
+    evaluate_cuts(at.model, at.moving.joints.q, at.moving.joints.u, ws);
+    factorize_cuts(at.model, ws);
+    if (is_near_singular(ws)) return false;
+    close_loops(at.model, ws);
+  }
+  solve_forward(at.model, ws, ws.residual, s.step);
+  for (double& x : s.step) x *= stage.tau;
+  return true;
 }
 
 void add_displacement(const StageContext& at, std::span<const double> moments) noexcept {
   StageWorkspace& s = at.stages;
+  if (s.is_in_tree) {
+    respond(at.model, moments, at.ws, s.step);
+    for (std::size_t j = 0; j < s.base.size(); ++j) s.base[j] += s.step[j];
+    for (std::size_t i = 1; i < s.turn.size(); ++i) s.turn[i] += at.ws.delta_alpha[i];
+    return;
+  }
   std::fill(at.bws.solution.begin(), at.bws.solution.end(), 0.0);
   push_by_rows(at, moments);
   at.bws.ldl.solve(at.bws.solution);

@@ -37,6 +37,11 @@ void add_accelerations(const StageContext& at, std::span<const double> rate) noe
 // stage in ws.
 void find_residual(const StageContext& at, const Stage& stage) noexcept;
 
+// delta of (4) in joint coordinates by the recursion, whose inertias take tau D + tau sigma K: into stages.step, and by
+// link into ws.delta_a, ws.delta_alpha over tau. Needs place(), and the time of the stage in ws. False: the stiffness
+// does not follow the tree (tree_matrix.h), or the position is near a singular one; ws needs place() again.
+[[nodiscard]] bool find_step_in_tree(const StageContext& at, const Stage& stage) noexcept;
+
 // Left side of (4), after find_residual(); with the pull of the joints when their multipliers are known. False:
 // singular to working precision.
 [[nodiscard]] bool factorize_stage(const StageContext& at, const Stage& stage) noexcept;

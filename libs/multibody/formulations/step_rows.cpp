@@ -6,10 +6,12 @@
 
 #include "core/index.h"
 #include "multibody/constraints/loops.h"
+#include "multibody/constraints/rows.h"
 #include "multibody/contacts/contact_passes.h"
 #include "multibody/contacts/contact_stiffness.h"
 #include "multibody/formulations/body_block.h"
 #include "multibody/formulations/body_passes.h"
+#include "multibody/formulations/dynamics.h"
 #include "multibody/formulations/integrators.h"
 #include "multibody/formulations/passes.h"
 
@@ -68,13 +70,44 @@ bool has_springs(const Model& model) noexcept {
 }
 
 StepRows::StepRows(const Model& model)
-    : body_(build_stiff_body_model(model)), ws_(model), bws_(model, body_), strain_(bws_.solution.size()) {}
+    : tree_(model),
+      body_(build_stiff_body_model(model)),
+      ws_(model),
+      bws_(model, body_),
+      strain_(bws_.solution.size()) {}
 
 bool StepRows::evaluate(const Model& model, const State& state, const Workspace& at, double H,
                         StepShares shares) noexcept {
   std::copy(at.row_is_active.begin(), at.row_is_active.end(), ws_.row_is_active.begin());
   begin_contacts(model, state, ws_);
   set_time(model, state.time, ws_);
+  return evaluate_tree(model, state, H, shares) || evaluate_bodies(model, state, H, shares);
+}
+
+// False: tree_matrix.h does not cover an element.
+bool StepRows::evaluate_tree(const Model& model, const State& state, double H, StepShares shares) noexcept {
+  ws_.shares = {shares.position * H * H, shares.rate * H, shares.strain * H};
+  find_loads(model, state.q, state.u, ws_);
+  const auto fill = [&](ChangeWeights weights, Stiffness which) {
+    tree_.clear();
+    add_stiffness(model, ws_, weights, tree_, which);
+    add_contact_stiffness(model, ws_, weights, tree_);
+  };
+  fill({.position = ws_.shares.strain, .rate = 0}, Stiffness::of_strain);
+  tree_.load_speeds(ws_);
+  fill({.position = ws_.shares.position, .rate = ws_.shares.rate}, Stiffness::with_pulls);
+  tree_.load_accelerations(ws_);
+  if (!tree_.put(ws_)) return false;
+  ws_.across = &tree_;
+  solve_accelerations(model, ws_);
+  ws_.across = nullptr;
+  ws_.udot_free = ws_.udot;
+  evaluate_rows(model, state, ws_);
+  return true;
+}
+
+bool StepRows::evaluate_bodies(const Model& model, const State& state, double H, StepShares shares) noexcept {
+  ws_.shares = {};
   update_motion(model, state.q, state.u, ws_);
   forget_accelerations(ws_);
   apply_all(model, state.q, ws_);

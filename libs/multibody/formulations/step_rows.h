@@ -18,14 +18,17 @@
 // Not covered: laws of rows, joint friction and limits among them, which their owner condenses in addition; changes of
 // G and of the velocity terms over H; stops and contacts that are reached within it.
 //
-// Cost: one factorisation in body coordinates and one solution a row, as an evaluation of `lagrange`. Only the
-// constructor allocates.
+// Where all springs and dampers lie in modes, between neighbours of the tree or to Ground, (2) is the recursion of
+// dynamics.h with H D + H^2/2 K added to its inertias and H K u to its loads, which costs one evaluation
+// (tree_matrix.h). Else one factorisation in body coordinates and one solution a row, as an evaluation of `lagrange`.
+// Only the constructor allocates.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "multibody/formulations/body_coordinates.h"
+#include "multibody/formulations/tree_matrix.h"
 
 namespace slew::multibody {
 
@@ -50,8 +53,11 @@ class StepRows {
   [[nodiscard]] std::span<const double> mobility() const noexcept { return ws_.row_W; }
 
  private:
+  [[nodiscard]] bool evaluate_tree(const Model& model, const State& state, double H, StepShares shares) noexcept;
+  [[nodiscard]] bool evaluate_bodies(const Model& model, const State& state, double H, StepShares shares) noexcept;
   void subtract_strain(const Model& model, double H) noexcept;
 
+  TreeMatrix tree_;
   BodyModel body_;
   Workspace ws_;
   BodyWorkspace bws_;

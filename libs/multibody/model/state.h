@@ -104,6 +104,7 @@ struct LoopWorkspace {
 };
 
 class RowHold;
+class TreeMatrix;
 
 struct Workspace {
   explicit Workspace(const Model& model);
@@ -120,6 +121,7 @@ struct Workspace {
   std::vector<ArticulatedInertia> inertia;
   std::vector<JointFactor> factor;
   std::vector<PartMotion> parts;
+  ModalShares shares;  // of the owner: all zero at an instant
   std::vector<NodeMotion> nodes;
   std::vector<NodeDummyMotion> node_dummies;
   std::vector<CoupledMotion> coupled;
@@ -140,6 +142,7 @@ struct Workspace {
   std::vector<double> row_W;                 // rows x rows
   std::vector<double> row_force;             // row forces of the current stage
   std::vector<double> row_part;              // mean over a part of a sub-step
+  const TreeMatrix* across = nullptr;        // of the owner: elements across joints, for factorize()
   RowHold* hold = nullptr;                   // of the owner, corrects row forces in the stages of rk4: row_hold.h
   std::vector<unsigned char> row_is_active;  // 0 or 1
 

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "multibody/constraints/loops.h"
 #include "multibody/formulations/passes.h"
 #include "tests/properties/multibody/random_modes.h"
 #include "tests/support/reference_algebra.h"
@@ -199,6 +200,97 @@ TEST(StepRows, ModesAreAsInDenseAlgebra) {
     Mechanism m(flexible_arm(std::move(modes)), {"Cyl", "Hook"});
     set_speeds(m);
     expect_same(m, kH);
+  }
+}
+
+// a flexible arm in a loop, with elements across each kind of joint and to Ground
+MechanicsDef sprung_mechanism(ModalBody modes) {
+  MechanicsDef def = flexible_arm(std::move(modes));
+  def.gravity = {0, -9.81, 0};
+  const Triple tip = def.bodies[1].position;
+  def.bodies[1].mass = 40;
+  const auto beside = [&](double x, double y, double z) { return Triple{tip[0] + x, tip[1] + y, tip[2] + z}; };
+  def.bodies.push_back({.name = "Ball", .position = beside(0.2, -0.5, 0.1), .mass = 5, .inertia = {.1, .2, .3}});
+  def.bodies.push_back({.name = "Fork", .position = beside(0.4, 0.3, 0), .mass = 2, .inertia = {.1, .2, .1}});
+  def.bodies.push_back({.name = "Slide", .position = beside(0, 0, 0.6), .mass = 3, .inertia = {.2, .2, .1}});
+  def.bodies.push_back({.name = "Rod", .position = {0, -1, 0}, .mass = 6, .inertia = {.5, .5, .1}});
+  def.joints.push_back({.name = "Hang",
+                        .type = JointType::spherical,
+                        .body1 = "Tip",
+                        .point1 = {0.2, -0.4, 0.1},
+                        .body2 = "Ball",
+                        .point2 = {0, 0.1, 0}});
+  def.joints.push_back({.name = "Cross",
+                        .type = JointType::universal,
+                        .body1 = "Tip",
+                        .point1 = {0.4, 0.3, 0},
+                        .body2 = "Fork",
+                        .orientation2 = {0, M_PI / 2, 0}});
+  def.joints.push_back(
+      {.name = "Rail", .type = JointType::prismatic, .body1 = "Tip", .point1 = {0, 0, 0.6}, .body2 = "Slide"});
+  def.joints.push_back({.name = "Foot", .type = JointType::spherical, .point1 = {0, -1, 0}, .body2 = "Rod"});
+  def.joints.push_back({.name = "Close",
+                        .type = JointType::spherical,
+                        .body1 = "Tip",
+                        .point1 = {0, -0.2, 0},
+                        .body2 = "Rod",
+                        .point2 = beside(0, 0.8, 0)});
+  const auto join = [&](const char* name, const char* body1, Triple point1, const char* body2, double stiffness) {
+    BushingDef bushing;
+    bushing.name = name;
+    bushing.frames = {.body1 = body1, .point1 = point1, .body2 = body2};
+    bushing.stiffness = {4 * stiffness, stiffness, 2 * stiffness};
+    bushing.rotational_stiffness = {stiffness, 2 * stiffness, 3 * stiffness};
+    bushing.damping = {1e-3 * stiffness, 0, 2e-3 * stiffness};
+    bushing.rotational_damping = {2e-3 * stiffness, 1e-3 * stiffness, 0};
+    def.bushings.push_back(bushing);
+  };
+  join("OnBall", "Tip", {0.2, -0.5, 0.1}, "Ball", 1e4);
+  join("OnFork", "Tip", {0.4, 0.3, 0}, "Fork", 3e4);
+  join("OnSlide", "Tip", {0, 0, 0.6}, "Slide", 2e4);
+  join("ToGround", "Ground", {0, -1, 0}, "Rod", 1e3);
+  // without stiffness: see below
+  join("Far", "Ball", {}, "Slide", 0);
+  def.translational_forces.push_back({.name = "Stay",
+                                      .body1 = "Fork",
+                                      .body2 = "Ground",
+                                      .point2 = {0, 3, 1},
+                                      .spring_constant = 2e5,
+                                      .damping_constant = 300,
+                                      .free_length = 1});
+  return def;
+}
+
+// An element between links that are not neighbours takes the rows to body coordinates, with or without stiffness.
+TEST(StepRows, AreTheSameInTheRecursionAndInBodyCoordinates) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U}) {
+    std::mt19937 random(seed);
+    std::vector<MassPoint> points;
+    ModalBody modes = random_modes(random, Vec3(), points);
+    for (double& k : modes.stiffness) k *= 1e6;
+    MechanicsDef def = sprung_mechanism(std::move(modes));
+    const std::vector<std::string> names = {"Cyl", "Hook", "Rail", "Stay"};
+    Mechanism in_bodies(def, names);
+    std::erase_if(def.bushings, [](const BushingDef& bushing) { return bushing.name == "Far"; });
+    Mechanism in_tree(def, names);
+    for (std::size_t k = 0; k < in_tree.state.u.size(); ++k)
+      in_tree.state.u[k] = 0.3 - 0.07 * static_cast<double>(k % 9);
+    evaluate(in_tree.model, in_tree.state, in_tree.ws);
+    ASSERT_TRUE(project(in_tree.model, in_tree.state.q, in_tree.state.u, in_tree.ws));
+    StepRows tree(in_tree.model), bodies(in_bodies.model);
+    for (Mechanism* m : {&in_tree, &in_bodies}) evaluate(m->model, in_tree.state, m->ws);
+    ASSERT_TRUE(tree.evaluate(in_tree.model, in_tree.state, in_tree.ws, kH));
+    ASSERT_TRUE(bodies.evaluate(in_bodies.model, in_tree.state, in_bodies.ws, kH));
+    const Vector a_tree = to_vector(tree.free_accelerations()), W_tree = to_vector(tree.mobility());
+    EXPECT_LT((a_tree - to_vector(bodies.free_accelerations())).norm(), 1e-9 * a_tree.norm());
+    EXPECT_LT((W_tree - to_vector(bodies.mobility())).norm(), 1e-9 * W_tree.norm());
+    const StepShares damping{.position = 0, .rate = 1, .strain = 0};
+    ASSERT_TRUE(tree.evaluate(in_tree.model, in_tree.state, in_tree.ws, kH, damping));
+    ASSERT_TRUE(bodies.evaluate(in_bodies.model, in_tree.state, in_bodies.ws, kH, damping));
+    const Vector W_damped = to_vector(tree.mobility());
+    EXPECT_LT((W_damped - to_vector(bodies.mobility())).norm(), 1e-9 * W_damped.norm());
+    // all springs matter
+    EXPECT_GT((to_vector(row_mobility(in_tree.ws)) - W_tree).norm(), 0.01 * W_tree.norm());
   }
 }
 
