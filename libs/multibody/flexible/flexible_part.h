@@ -20,6 +20,9 @@
 // The recursion takes the modes as coordinates outside of the frame's joint:
 //   B = (c, b) + sum over nodes X^T I_A (Psi, Phi),  E = M + sum (Psi, Phi)^T I_A (Psi, Phi)             (7)
 //   I_A of the frame loses B E^-1 B^T before its own joint is eliminated (articulated.cpp)
+// With E = C C^T all passes take the modes as C^T q, whose mass is 1: X = C^-1 B^T, residuals and rates of modes are
+// C^-1 times those of (6), and their accelerations C^-T times the result,
+//   I_A -= X^T X,   u' = C^-T (C^-1 r - X (alpha, a))                                                    (8)
 #pragma once
 
 #include <cstddef>
@@ -82,7 +85,7 @@ struct PartMotion {
   std::vector<double> bias;              // right side of (6) with u' = 0
   std::vector<math::Vec3> B_lin, B_ang;  // columns of (7)
   std::vector<double> E;                 // then its Cholesky factor (small_cholesky.h)
-  std::vector<math::Vec3> X_lin, X_ang;  // E^-1 B^T, by mode
+  std::vector<math::Vec3> X_lin, X_ang;  // C^-1 B^T, by mode
 };
 
 struct NodeMotion {
@@ -90,7 +93,8 @@ struct NodeMotion {
   std::vector<math::Vec3> Phi, Psi;  // columns of (2)
 };
 
-// What an interval adds to the masses and elastic forces of all modes: position K + rate D to M, strain K u to the force.
+// What an interval adds to the masses and elastic forces of all modes: position K + rate D to M, strain K u to the
+// force.
 struct ModalShares {
   double position = 0;  // s2
   double rate = 0;      // s
@@ -127,10 +131,10 @@ void solve_modes(const Model& model, std::size_t part, const Workspace& ws, std:
                  std::span<double> udot) noexcept;
 void follow_node(const Model& model, std::size_t link, std::span<const double> udot, Workspace& ws) noexcept;
 
-// E^-1 times a right side by mode; they may be the same.
-void solve_mass(const PartMotion& motion, std::span<const double> right, std::span<double> x) noexcept;
-// The same for three right sides.
-void solve_mass(const PartMotion& motion, const std::vector<math::Vec3>& right, std::vector<math::Vec3>& x) noexcept;
+// C^-1 x in place, and for three right sides X = C^-1 B; C^-T x in place.
+void pass_modes(const PartMotion& motion, std::span<double> x) noexcept;
+void pass_modes(const PartMotion& motion, const std::vector<math::Vec3>& B, std::vector<math::Vec3>& X) noexcept;
+void return_modes(const PartMotion& motion, std::span<double> x) noexcept;
 
 struct PartEnergy {
   double kinetic = 0, potential = 0;  // J, beyond those of the undeformed body

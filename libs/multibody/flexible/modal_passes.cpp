@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The modes in the recursion: equation (7) of flexible_part.h.
+// The modes in the recursion: equations (7) and (8) of flexible_part.h.
 #include <cstddef>
 
 #include "core/index.h"
@@ -13,17 +13,12 @@ using math::Vec3;
 
 namespace {
 
-// X = E^-1 B with the factor C of E = C C^T, for all components of B at once
+// X = C^-1 B for all components of B at once
 void substitute(const std::vector<double>& C, const std::vector<Vec3>& B, std::vector<Vec3>& X) noexcept {
   const std::size_t n = B.size();
   for (std::size_t r = 0; r < n; ++r) {
     Vec3 sum = B[r];
     for (std::size_t k = 0; k < r; ++k) sum -= X[k] * C[r * n + k];
-    X[r] = Vec3(sum.lanes / C[r * n + r]);
-  }
-  for (std::size_t r = n; r-- > 0;) {
-    Vec3 sum = X[r];
-    for (std::size_t k = r + 1; k < n; ++k) sum -= X[k] * C[k * n + r];
     X[r] = Vec3(sum.lanes / C[r * n + r]);
   }
 }
@@ -59,14 +54,15 @@ void eliminate_modes(const Model& model, std::size_t index, Workspace& ws) noexc
   if (!math::factorize_cholesky(motion.E.data(), size)) motion.E[0] = 0;
   substitute(motion.E, motion.B_ang, motion.X_ang);
   substitute(motion.E, motion.B_lin, motion.X_lin);
+  const std::span<double> residual = std::span(ws.residual).subspan(at(part.u), n);
+  for (std::size_t k = 0; k < n; ++k) residual[k] = ws.tau[at(part.u) + k] - motion.bias[k];
+  pass_modes(motion, residual);
   for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t u = at(part.u) + k;
-    ws.residual[u] = ws.tau[u] - motion.bias[k];
-    I.J -= outer(motion.B_ang[k], motion.X_ang[k]);
-    I.K -= outer(motion.B_lin[k], motion.X_ang[k]);
-    I.M -= outer(motion.B_lin[k], motion.X_lin[k]);
-    I.n += motion.X_ang[k] * ws.residual[u];
-    I.f += motion.X_lin[k] * ws.residual[u];
+    I.J -= outer(motion.X_ang[k], motion.X_ang[k]);
+    I.K -= outer(motion.X_lin[k], motion.X_ang[k]);
+    I.M -= outer(motion.X_lin[k], motion.X_lin[k]);
+    I.n += motion.X_ang[k] * residual[k];
+    I.f += motion.X_lin[k] * residual[k];
   }
 }
 
@@ -76,19 +72,22 @@ void solve_modes(const Model& model, std::size_t index, const Workspace& ws, std
   const PartMotion& motion = ws.parts[index];
   const Vec3 alpha = ws.delta_alpha[at(part.link)], a = ws.delta_a[at(part.link)];
   const std::span<double> rate = udot.subspan(at(part.u), part.modes);
-  solve_mass(motion, residual.subspan(at(part.u), part.modes), rate);
-  for (std::size_t k = 0; k < part.modes; ++k) rate[k] -= dot(motion.X_ang[k], alpha) + dot(motion.X_lin[k], a);
+  for (std::size_t k = 0; k < part.modes; ++k) {
+    rate[k] = residual[at(part.u) + k] - dot(motion.X_ang[k], alpha) - dot(motion.X_lin[k], a);
+  }
+  return_modes(motion, rate);
 }
 
-void solve_mass(const PartMotion& motion, std::span<const double> right, std::span<double> x) noexcept {
-  const int size = static_cast<int>(right.size());
-  for (std::size_t k = 0; k < right.size(); ++k) x[k] = right[k];
-  math::substitute_forward(motion.E.data(), size, x.data());
-  math::substitute_backward(motion.E.data(), size, x.data());
+void pass_modes(const PartMotion& motion, std::span<double> x) noexcept {
+  math::substitute_forward(motion.E.data(), static_cast<int>(x.size()), x.data());
 }
 
-void solve_mass(const PartMotion& motion, const std::vector<Vec3>& right, std::vector<Vec3>& x) noexcept {
-  substitute(motion.E, right, x);
+void pass_modes(const PartMotion& motion, const std::vector<Vec3>& B, std::vector<Vec3>& X) noexcept {
+  substitute(motion.E, B, X);
+}
+
+void return_modes(const PartMotion& motion, std::span<double> x) noexcept {
+  math::substitute_backward(motion.E.data(), static_cast<int>(x.size()), x.data());
 }
 
 void follow_node(const Model& model, std::size_t link, std::span<const double> udot, Workspace& ws) noexcept {

@@ -83,10 +83,10 @@ void eliminate_outer_modes(const Model& model, const Workspace& ws, const NodeDu
                            NodeDummyMotion& m) noexcept {
   if (dummy.outer_part < 0) return;
   const PartMotion& part = ws.parts[at(dummy.outer_part)];
-  solve_mass(part, m.r, m.X);
+  pass_modes(part, m.r, m.X);
   for (std::size_t k = 0; k < m.X.size(); ++k) {
-    m.p_ang -= outer(part.B_ang[k], m.X[k]);
-    m.p_lin -= outer(part.B_lin[k], m.X[k]);
+    m.p_ang -= outer(part.X_ang[k], m.X[k]);
+    m.p_lin -= outer(part.X_lin[k], m.X[k]);
     m.h += m.X[k] * ws.residual[at(model.parts[at(dummy.outer_part)].u) + k];
   }
 }
@@ -141,7 +141,7 @@ void carry_to_frame(const Model& model, const Workspace& ws, const NodeDummy& du
 void add_between(const NodeDummyMotion& j, bool is_same_part, NodeDummyMotion& m) noexcept {
   Mat3 half = transpose(j.R) * m.DR * -0.5;
   if (is_same_part) {
-    for (std::size_t k = 0; k < m.X.size(); ++k) half -= outer(j.r[k] * 0.5, m.X[k]);
+    for (std::size_t k = 0; k < m.X.size(); ++k) half -= outer(j.X[k] * 0.5, m.X[k]);
   }
   m.p_lin += half;
   m.p_ang += skew(j.arm) * half;
@@ -282,15 +282,17 @@ void pull_joint(const Model& model, std::size_t index, std::span<double> udot, W
   ws.delta_a[index] += S.slide[0] * rate[0] + S.slide[1] * rate[1];
 }
 
-void pull_modes(const Model& model, std::size_t index, std::span<double> udot, const Workspace& ws) noexcept {
+void pull_modes(const Model& model, std::size_t index, std::span<double> udot, Workspace& ws) noexcept {
   const Link& link = model.links[index];
   for (int i = link.first_node_dummy; i < link.node_dummy_end; ++i) {
     const NodeDummy& dummy = model.node_dummies[at(i)];
     if (dummy.outer_part < 0) continue;
-    const NodeDummyMotion& m = ws.node_dummies[at(i)];
+    NodeDummyMotion& m = ws.node_dummies[at(i)];
     const Vec3 z = point_of(model, dummy, m, udot, ws);
+    for (std::size_t k = 0; k < m.X.size(); ++k) m.pull[k] = dot(m.X[k], z);
+    return_modes(ws.parts[at(dummy.outer_part)], m.pull);
     const std::size_t u = at(model.parts[at(dummy.outer_part)].u);
-    for (std::size_t k = 0; k < m.X.size(); ++k) udot[u + k] -= dot(m.X[k], z);
+    for (std::size_t k = 0; k < m.pull.size(); ++k) udot[u + k] -= m.pull[k];
   }
 }
 

@@ -13,13 +13,13 @@
 // C and of the forces on u_C:
 //   p = (s_B~, 1) A_AB,   r_k = A_AB (Phi_k + Psi_k x s_B)     (no r where B is on the frame itself)    (3)
 // and as modes and joint are eliminated, with E, B, U, S, D of flexible_part.h and articulated.cpp,
-//   X = E^-1 r,  p <- p - B X,  Z_ij -= r_i^T X_j,  h += X^T residual_C                                 (4)
+//   E = C C^T,  X = C^-1 r,  p <- p - B C^-T X,  Z_ij -= X_i^T X_j,  h += X^T C^-1 residual_C           (4)
 //   R = S^T p,   p <- p - U D^-1 R,  Z_ij -= R_i^T D^-1 R_j,  h += R^T D^-1 residual_q                  (5)
 // i and j are dummies across the same joint. p acts on the link P that carries the joint, the frame F or another node
 // of it: with the columns p_F about F and g_k = p^T (Psi_k, Phi_k) of P along its modes, T gains
 //   sum_i z_i^T (p_F^T V_F + g_k u_Fk)_i + 1/2 sum_ij z_i^T Z_ij z_j                                    (6)
 // by which J, K, M of F, its B and its E grow, and h is one more bias force at A. Going out again,
-//   u'_q -= D^-1 R z',   u'_C -= X z'                                                                   (7)
+//   u'_q -= D^-1 R z',   u'_C -= C^-T X z'                                                                   (7)
 // C may itself be a node of F at which another flexible body is fixed, whose node B is: then (5) falls away and p acts
 // on that node. Between points on one body there is nothing to eliminate: (6) with P the link of B. All of it is
 // O(modes^2) a dummy.
@@ -54,7 +54,7 @@ struct NodeDummy {
 // Values at one instant.
 struct NodeDummyMotion {
   NodeDummyMotion(std::size_t inner_modes, std::size_t outer_modes)
-      : y(inner_modes), g(inner_modes), r(outer_modes), X(outer_modes) {}
+      : y(inner_modes), g(inner_modes), r(outer_modes), X(outer_modes), pull(outer_modes) {}
   math::Vec3 arm;             // P_A - p_F [m]
   math::Vec3 h;               // N
   math::Mat3 p_ang, p_lin;    // first about C's origin, then about F's
@@ -62,6 +62,7 @@ struct NodeDummyMotion {
   std::vector<math::Vec3> y;  // columns of (2)
   std::vector<math::Vec3> g;  // columns of (6)
   std::vector<math::Vec3> r, X;
+  std::vector<double> pull;  // of (7), by mode of C
 };
 
 // Fills Model::node_dummies and the ranges of links from the coupled masses from `first` on, which the recursion does
@@ -76,7 +77,7 @@ void couple_node_dummies(const Model& model, std::size_t link, Workspace& ws) no
 
 // solve_forward(): (7) for the joint, once its rates are known without z, and then for the modes.
 void pull_joint(const Model& model, std::size_t link, std::span<double> udot, Workspace& ws) noexcept;
-void pull_modes(const Model& model, std::size_t link, std::span<double> udot, const Workspace& ws) noexcept;
+void pull_modes(const Model& model, std::size_t link, std::span<double> udot, Workspace& ws) noexcept;
 
 // solve_backward(): adds the load on A by the residuals of a link's modes and the rates of its joint to the wrenches n,
 // f on all links and the residuals of the modes.

@@ -75,8 +75,10 @@ void subtract_outer(Mat3& A, Vec3 a, Vec3 b) noexcept {
 }
 
 // elements between a link and its parent; null: none
+template <bool kHasElements>
 const RelativeMatrix* across(const Workspace& ws, std::size_t i) noexcept {
-  return ws.across == nullptr ? nullptr : ws.across->across(i);
+  if constexpr (kHasElements) return ws.across->across(i);
+  return nullptr;
 }
 
 // moves inertia and bias wrench from the child's origin to the parent's, r apart, and adds them there
@@ -92,6 +94,7 @@ void add_to_parent(const ArticulatedInertia& I, Vec3 r, ArticulatedInertia& pare
 }
 
 // revolute and prismatic: one direction; U = IA S is given
+template <bool kHasElements>
 void factorize_axis(const Model& model, Workspace& ws, std::size_t i, LinkWrench U, double d,
                     double residual) noexcept {
   const Link& link = model.links[i];
@@ -107,7 +110,7 @@ void factorize_axis(const Model& model, Workspace& ws, std::size_t i, LinkWrench
     d += dot(u, response.F_child);
     residual -= dot(u, child_bias(mass, m));
   }
-  if (const RelativeMatrix* A = across(ws, i)) d += dot(axis, (is_revolute ? A->ww : A->vv) * axis);
+  if (const RelativeMatrix* A = across<kHasElements>(ws, i)) d += dot(axis, (is_revolute ? A->ww : A->vv) * axis);
   JointFactor& factor = ws.factor[i];
   factor.U_ang.c[0] = U.n;
   factor.U_lin.c[0] = U.f;
@@ -126,18 +129,20 @@ void factorize_axis(const Model& model, Workspace& ws, std::size_t i, LinkWrench
   add_to_parent(I, ws.motion[i].r, ws.inertia[at(link.parent)]);
 }
 
+template <bool kHasElements>
 void factorize_revolute(const Model& model, Workspace& ws, std::size_t i) noexcept {
   const ArticulatedInertia& I = ws.inertia[i];
   const Vec3 axis = ws.motion[i].axis;
   const LinkWrench U = {I.J * axis, I.K * axis};
-  factorize_axis(model, ws, i, U, dot(axis, U.n), ws.tau[at(model.links[i].u)] - dot(axis, I.n));
+  factorize_axis<kHasElements>(model, ws, i, U, dot(axis, U.n), ws.tau[at(model.links[i].u)] - dot(axis, I.n));
 }
 
+template <bool kHasElements>
 void factorize_prismatic(const Model& model, Workspace& ws, std::size_t i) noexcept {
   const ArticulatedInertia& I = ws.inertia[i];
   const Vec3 axis = ws.motion[i].axis;
   const LinkWrench U = {transpose(I.K) * axis, I.M * axis};
-  factorize_axis(model, ws, i, U, dot(axis, U.f), ws.tau[at(model.links[i].u)] - dot(axis, I.f));
+  factorize_axis<kHasElements>(model, ws, i, U, dot(axis, U.f), ws.tau[at(model.links[i].u)] - dot(axis, I.f));
 }
 
 // (2) for up to three directions, of which the factor holds U and D^-1
@@ -156,6 +161,7 @@ void pass_on(const Model& model, Workspace& ws, std::size_t i, ArticulatedInerti
 }
 
 // spherical: three directions, the axes of Ground; U = (J; K) and D = J but for coupled masses
+template <bool kHasElements>
 void factorize_spherical(const Model& model, Workspace& ws, std::size_t i) noexcept {
   const Link& link = model.links[i];
   ArticulatedInertia I = ws.inertia[i];
@@ -177,7 +183,7 @@ void factorize_spherical(const Model& model, Workspace& ws, std::size_t i) noexc
     }
     residual -= cross(s, child_bias(mass, m));
   }
-  if (const RelativeMatrix* A = across(ws, i)) D += A->ww;
+  if (const RelativeMatrix* A = across<kHasElements>(ws, i)) D += A->ww;
   factor.D_inv = inverse_symmetric(D);
   store(ws.residual, link.u, residual);
   if (link.parent != 0) pass_on(model, ws, i, I, residual);
@@ -199,6 +205,7 @@ Mat3 inverse_of_free(const Link& link, double a, double b, double d) noexcept {
 }
 
 // universal and cylindrical: two directions
+template <bool kHasElements>
 void factorize_pair(const Model& model, Workspace& ws, std::size_t i) noexcept {
   const Link& link = model.links[i];
   ArticulatedInertia I = ws.inertia[i];
@@ -225,7 +232,7 @@ void factorize_pair(const Model& model, Workspace& ws, std::size_t i) noexcept {
       for (int l = 0; l < 2; ++l) D[l][k] += dot(u[l], response.F_child);
     }
   }
-  if (const RelativeMatrix* A = across(ws, i)) {
+  if (const RelativeMatrix* A = across<kHasElements>(ws, i)) {
     for (int k = 0; k < 2; ++k) {
       const Vec3 f = A->vv * S.slide[k] + A->vw * S.turn[k];
       const Vec3 n = transpose_multiply(A->vw, S.slide[k]) + A->ww * S.turn[k];
@@ -271,28 +278,27 @@ void factorize_floating(const Model& model, Workspace& ws, std::size_t i) noexce
   for (int k = model.links[i].first_part; k < model.links[i].part_end; ++k) eliminate_modes(model, at(k), ws);
 }
 
-}  // namespace
-
-void factorize(const Model& model, Workspace& ws) noexcept {
+template <bool kHasElements>
+void factorize_all(const Model& model, Workspace& ws) noexcept {
   if (!model.node_dummies.empty()) begin_node_dummies(model, ws);
   for (std::size_t i = model.links.size() - 1; i > 0; --i) {
     if (model.links[i].has_parts()) eliminate_parts(model, i, ws);
     switch (model.links[i].joint) {
       case LinkJoint::revolute:
-        factorize_revolute(model, ws, i);
+        factorize_revolute<kHasElements>(model, ws, i);
         break;
       case LinkJoint::prismatic:
-        factorize_prismatic(model, ws, i);
+        factorize_prismatic<kHasElements>(model, ws, i);
         break;
       case LinkJoint::spherical:
-        factorize_spherical(model, ws, i);
+        factorize_spherical<kHasElements>(model, ws, i);
         break;
       case LinkJoint::floating:
         factorize_floating(model, ws, i);
         break;
       case LinkJoint::universal:
       case LinkJoint::cylindrical:
-        factorize_pair(model, ws, i);
+        factorize_pair<kHasElements>(model, ws, i);
         break;
       case LinkJoint::node:
         add_to_parent(ws.inertia[i], ws.motion[i].r, ws.inertia[at(model.links[i].parent)]);
@@ -302,6 +308,13 @@ void factorize(const Model& model, Workspace& ws) noexcept {
     if (model.links[i].has_node_dummies()) couple_node_dummies(model, i, ws);
   }
   if (model.links[0].has_parts()) eliminate_parts(model, 0, ws);
+}
+
+}  // namespace
+
+void factorize(const Model& model, Workspace& ws) noexcept {
+  if (ws.across != nullptr) return factorize_all<true>(model, ws);
+  factorize_all<false>(model, ws);
 }
 
 }  // namespace slew::multibody

@@ -129,7 +129,7 @@ inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& 
 }
 
 // One row through the modes of a link: residual holds minus the contributions of the nodes.
-[[gnu::noinline]] void pass_modes(const Model& model, const Workspace& ws, const Link& link, const double* tau,
+[[gnu::noinline]] void pass_parts(const Model& model, const Workspace& ws, const Link& link, const double* tau,
                                   double* residual, double* rate, Vec3& n, Vec3& f) noexcept {
   for (int k = link.first_part; k < link.part_end; ++k) {
     const FlexiblePart& part = model.parts[at(k)];
@@ -145,11 +145,12 @@ inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& 
       for (std::size_t j = 0; j < part.modes; ++j) rate[u + j] = 0;
       continue;
     }
+    pass_modes(motion, {residual + u, part.modes});
     for (std::size_t j = 0; j < part.modes; ++j) {
+      rate[u + j] = residual[u + j];
       n += motion.X_ang[j] * residual[u + j];
       f += motion.X_lin[j] * residual[u + j];
     }
-    solve_mass(motion, {residual + u, part.modes}, {rate + u, part.modes});
   }
 }
 
@@ -182,7 +183,7 @@ void pass_back(const Model& model, Workspace& ws, std::span<const int> supports,
     for (std::size_t k = 0; k < rows.count; ++k) {
       Vec3 n = ws.pass_n[k * links + at(i)], f = ws.pass_f[k * links + at(i)];
       if (link.has_parts()) {
-        pass_modes(model, ws, link, rows.tau, rows.residual + k * speeds, rows.rate + k * speeds, n, f);
+        pass_parts(model, ws, link, rows.tau, rows.residual + k * speeds, rows.rate + k * speeds, n, f);
       }
       if (has_modes && link.joint == LinkJoint::node) pass_node(model, ws, link, rows.residual + k * speeds, n, f);
       pass_link(link, m, factor, rows.tau == nullptr ? nullptr : rows.tau + u, rows.residual + k * speeds + u,
@@ -196,7 +197,7 @@ void pass_back(const Model& model, Workspace& ws, std::span<const int> supports,
   if (model.links[0].part_end == 0) return;
   for (std::size_t k = 0; k < rows.count; ++k) {
     Vec3 n, f;
-    pass_modes(model, ws, model.links[0], rows.tau, rows.residual + k * speeds, rows.rate + k * speeds, n, f);
+    pass_parts(model, ws, model.links[0], rows.tau, rows.residual + k * speeds, rows.rate + k * speeds, n, f);
   }
 }
 
