@@ -79,8 +79,9 @@ bool show_on_joints(const StageContext& at) noexcept {
   return project(at.model, at.ws.q_stage, at.ws.u_stage, at.ws);
 }
 
-// Newton's method in the tree, after place(). False: as find_step_in_tree(), or it is slow; the speeds are those of the
-// last correction, placed.
+// Newton's method in the tree, after place(). What is left after a correction is at most its size times r/(1 - r), r
+// the ratio to the correction before. False: as find_step_in_tree(), or it is slow; the speeds are those of the last
+// correction, placed.
 bool solve_in_tree(const StageContext& at, const Stage& stage, double settled) noexcept {
   StageWorkspace& s = at.stages;
   const std::span<double> u = at.u();
@@ -96,7 +97,8 @@ bool solve_in_tree(const StageContext& at, const Stage& stage, double settled) n
     }
     for (std::size_t j = 0; j < u.size(); ++j) u[j] += s.step[j];
     place(at, stage.sigma);
-    if (size <= settled) return true;
+    const bool is_second = std::isfinite(last);
+    if (size <= settled || (is_second && size * size <= settled * (last - size))) return true;
     last = size;
   }
 }
