@@ -109,7 +109,7 @@ bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) n
   const std::span<double> u = at.u();
   double share = 1, last = INFINITY;
   int fresh = -1;  // correction at which the matrix was built
-  s.has_multipliers = false;
+  s.has_pulls = false;
   set_stage_time(at.model, at.moving.joints, stage.time, at.ws);
   place(at, stage.sigma);
   const Extent extent = extent_of(at.ws);
@@ -120,6 +120,7 @@ bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) n
     update_elements(at.model, at.moving.joints.q, Elements::used, at.ws);
     return true;
   }
+  std::fill(s.multipliers.begin(), s.multipliers.end(), 0.0);
   for (int i = 0; i < kMostCorrections; ++i, ++s.iterations) {
     const bool is_closed = !is_near_singular || show_on_joints(at);
     find_residual(at, stage);
@@ -136,11 +137,12 @@ bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) n
     at.bws.ldl.solve(at.bws.solution);
     const double size = share * largest_speed(at);
     if (!std::isfinite(size)) return false;
+    for (std::size_t k = 0; k < s.multipliers.size(); ++k) {
+      s.multipliers[k] += share * at.bws.solution[k] / stage.tau;
+    }
     if (size > kSlowStage * last && fresh != i && size > settled) {
       fresh = -1;
-      // include the pull of the joints from now on
-      for (std::size_t k = 0; k < s.multipliers.size(); ++k) s.multipliers[k] = at.bws.solution[k] / stage.tau;
-      s.has_multipliers = true;
+      s.has_pulls = true;
       place(at, stage.sigma);
       continue;
     }

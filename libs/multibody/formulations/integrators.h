@@ -100,8 +100,8 @@ struct StageWorkspace {
   std::vector<double> row_force;
   std::optional<TreeMatrix> tree;   // of joint coordinates without gears
   bool is_in_tree = false;          // the last stage's factors are those of the recursion
-  std::vector<double> multipliers;  // multipliers of the joints, by BlockLdl::first_row(), after the first request
-  bool has_multipliers = false;
+  std::vector<double> multipliers;  // lambda of the stage, by BlockLdl::first_row(); entries of speeds are not used
+  bool has_pulls = false;           // the matrix has the pull of the joints
   bool has_stops = false;
   bool takes_touch = false;       // set by the owner: take the sub-step as one in which a stop is touched
   bool has_alternated = false;    // a stop changed in an iteration of the sub-step

@@ -57,7 +57,7 @@ bool factorize_stage(const StageContext& at, const Stage& stage) noexcept {
   add_stiffness(at.model, at.ws, weights, matrix);
   add_contact_stiffness(at.model, at.ws, weights, matrix);
   add_modal_stiffness(at.model, at.body.modal, weights, at.ws, at.bws.ldl);
-  if (at.stages.has_multipliers) add_pulls(at, weights.position, matrix);
+  if (at.stages.has_pulls) add_pulls(at, weights.position, matrix);
   return at.bws.ldl.factorize(kDependent);
 }
 

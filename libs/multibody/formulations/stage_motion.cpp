@@ -143,6 +143,42 @@ void find_wrenches(const StageContext& at, const Stage& stage) noexcept {
   apply_contacts(at.model, at.ws);
 }
 
+// G^T lambda of all joints and gears, of the multipliers found so far, off bws.solution
+void subtract_joints(const StageContext& at) noexcept {
+  const math::BlockLdl& ldl = at.bws.ldl;
+  const std::vector<double>& multipliers = at.stages.multipliers;
+  const auto push = [&](int link, Vec3 v, Vec3 w, double lambda) {
+    if (link == 0) return;
+    double* x = at.bws.solution.data() + ldl.first_row(link - 1);
+    subtract(v * lambda, x);
+    subtract(w * lambda, x + 3);
+  };
+  for (std::size_t i = 1; i < at.body.joints.size(); ++i) {
+    const Constraint& joint = at.body.joints[i];
+    const double* lambda = multipliers.data() + ldl.first_row(static_cast<int>(i) - 1) + at.body.row_offset(i);
+    for (std::size_t k = 0; k < joint.rows.size(); ++k) {
+      const RowGradient& G = at.bws.rows[slew::at(at.bws.first_row[i]) + k].G;
+      push(joint.link1, G.v1, G.w1, lambda[k]);
+      push(joint.link2, G.v2, G.w2, lambda[k]);
+    }
+    if (joint.node < 0) continue;
+    const auto part = slew::at(at.model.nodes[slew::at(joint.node)].part);
+    const std::size_t modes = at.model.parts[part].modes;
+    for (const ModalBlock& block : at.body.modal) {
+      if (block.part != part) continue;
+      double* x = at.bws.solution.data() + ldl.first_row(block.node);
+      for (std::size_t k = 0; k < joint.rows.size(); ++k) {
+        const double* m = at.bws.modal.data() + slew::at(at.bws.first_modal[i]) + k * modes + block.first;
+        for (std::size_t j = 0; j < block.count; ++j) x[j] -= m[j] * lambda[k];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < at.bws.gears.size(); ++k) {
+    const double lambda = multipliers[slew::at(ldl.first_row(at.body.first_gear + static_cast<int>(k)))];
+    for_each_end(at.bws.gears[k], [&](int link, Vec3 v, Vec3 w) { push(link, v, w, lambda); });
+  }
+}
+
 }  // namespace
 
 void find_residual(const StageContext& at, const Stage& stage) noexcept {
@@ -173,6 +209,7 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
     at.bws.solution[slew::at(at.bws.ldl.first_row(at.body.first_gear + static_cast<int>(k)))] = -g;
   }
   push_by_rows(at, at.stages.row_force);
+  subtract_joints(at);
   for (double& x : at.bws.solution) x *= stage.tau;
 }
 

@@ -33,8 +33,8 @@ void place(const StageContext& at, double sigma) noexcept;
 // Adds the accelerations by the speeds' rates to those of the motion.
 void add_accelerations(const StageContext& at, std::span<const double> rate) noexcept;
 
-// Right side of (4) into bws.solution; evaluates elements, inertia and joints' rows. Needs place(), and the time of the
-// stage in ws.
+// Right side of (4), with lambda of stages.multipliers, into bws.solution; evaluates elements, inertia and joints'
+// rows. Needs place(), and the time of the stage in ws.
 void find_residual(const StageContext& at, const Stage& stage) noexcept;
 
 // delta of (4) in joint coordinates by the recursion, whose inertias take tau D + tau sigma K: into stages.step, and by
@@ -42,7 +42,7 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept;
 // does not follow the tree (tree_matrix.h), or the position is near a singular one; ws needs place() again.
 [[nodiscard]] bool find_step_in_tree(const StageContext& at, const Stage& stage) noexcept;
 
-// Left side of (4), after find_residual(); with the pull of the joints when their multipliers are known. False:
+// Left side of (4), after find_residual(); with the pull of the joints when stages.has_pulls. False:
 // singular to working precision.
 [[nodiscard]] bool factorize_stage(const StageContext& at, const Stage& stage) noexcept;
 
