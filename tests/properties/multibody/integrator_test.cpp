@@ -201,6 +201,42 @@ INSTANTIATE_TEST_SUITE_P(In, Integrators, ::testing::ValuesIn(gate_choices(kRule
 INSTANTIATE_TEST_SUITE_P(Nightly, Integrators, ::testing::ValuesIn(nightly_choices(kRules, kInBodyCoordinates)),
                          kChoiceName);
 
+// A coupling without stiffness between links that are no neighbours takes the matrix of body coordinates.
+void couple_far(MechanicsDef& def, const char* from) {
+  BushingDef bushing{.name = "Far"};
+  bushing.frames = {.body1 = from, .body2 = "C"};
+  def.bushings.push_back(bushing);
+}
+
+// u_1 - u_0 - h/2 (f_0 + f_1) of a sub-step, f by forward_dynamics()
+double residual_of_trapezoid(Formulated& mechanism, double h) {
+  const auto rates = [&] {
+    forward_dynamics(mechanism.model, mechanism.state.q, mechanism.state.u, {}, mechanism.ws);
+    return mechanism.ws.udot;
+  };
+  const std::vector<double> u_0 = mechanism.state.u, f_0 = rates();
+  mechanism.run(h, h);
+  const std::vector<double> f_1 = rates();
+  double largest = 0;
+  for (std::size_t j = 0; j < u_0.size(); ++j) {
+    largest = std::max(largest, std::fabs(mechanism.state.u[j] - u_0[j] - 0.5 * h * (f_0[j] + f_1[j])));
+  }
+  return largest;
+}
+
+TEST(Trapezoid, EndsWhereItsEquationHolds) {
+  constexpr double h = 2e-3;
+  for (const bool is_far : {false, true}) {
+    for (MechanicsDef def : {tumbling(), flexible_links(), flexible_links_with_dummies()}) {
+      if (is_far) couple_far(def, def.flexible_bodies.empty() ? "A" : "A.Node3");
+      def.integrator = Integrator::trapezoidal;
+      def.iteration_tolerance = 1e-12;
+      Formulated mechanism(def);
+      for (int i = 0; i < 20; ++i) EXPECT_LT(residual_of_trapezoid(mechanism, h), 1e-10) << is_far << " " << i;
+    }
+  }
+}
+
 // largest excursion of the energy over 20 s, and its end, of m g l
 struct Excursion {
   double largest = 0, end = 0;
