@@ -19,12 +19,14 @@
 // the angular velocity that the new speeds give it about the axes of q_0. f: accelerations of the mechanism, of the
 // form (1) of body_coordinates.h for any integrated coordinates, so that stiff elements, joints and loops are solved
 // together. Newton's method in body coordinates:
-//   [ M + tau D + tau sigma K  G^T ] [ delta ]         [ Q - M a  ]
-//   [ G                        0   ] [ mu    ]  =  tau [ -b - G a ]                                          (4)
-// In joint coordinates the recursion solves (4) where K and D follow the tree (tree_matrix.h), at every correction
-// anew; elsewhere, near a singular position, and where it is slow, the matrix is that of body coordinates. M a - Q by
-// Newton and Euler with all forces at the stage, so that the result does not depend on the left side; K and D: those of
-// all force elements and contacts (link_stiffness.h) and, once the iteration proves slow, the pull of a joint's force F
+//   [ M + tau D + tau sigma K  G^T ] [ delta ]         [ Q - M a - G^T lambda ]
+//   [ G                        0   ] [ mu    ]  =  tau [ -b - G a             ],   lambda += mu/tau          (4)
+// lambda stands on the right, since a matrix with the G of an earlier correction would leave a force across the joints.
+// In joint coordinates the recursion solves (4) where K and D follow the tree (tree_matrix.h), with a new matrix at
+// every correction; elsewhere, near a singular position, and where it is slow, the matrix is that of body coordinates.
+// M a - Q by Newton and Euler with all forces at the stage, so that the result does not depend on the left side; K and
+// D: those of all force elements and contacts (link_stiffness.h) and, once the iteration proves slow, the pull of a
+// joint's force F
 // at s from a link's origin, (F . s) across s where it is positive. It omits gyroscopic and centrifugal terms, row
 // forces, pushing joints. In joint coordinates delta is read off as relative speeds. A force that jumps at the edge of
 // a stop takes a value between its two there: (4) is relaxed if it alternates. A sub-step in which a stop is touched or
