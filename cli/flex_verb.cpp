@@ -126,10 +126,7 @@ std::vector<int> kept_modes(const ReportOptions& options, const flex::ReducedBod
   scene::UnitSystem units;
   const scene::QuantityResult highest =
       scene::read_quantity(options.highest, scene::Writing::plain, Dimension::frequency, units);
-  if (!highest.value)
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("--frequency-up-to: {}{}", highest.problem.what,
-                              highest.problem.expected.empty() ? "" : "; expected " + highest.problem.expected));
+  if (!highest.value) throw Failure(ExitCode::bad_input, "--frequency-up-to: " + highest.problem.text());
   const std::vector<int> ordinals = flex::modes_up_to(body, 2 * M_PI * *highest.value);
   if (ordinals.empty())
     throw Failure(ExitCode::bad_input,

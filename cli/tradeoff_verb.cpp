@@ -24,11 +24,10 @@ namespace {
 struct TradeoffOptions {
   analysis::TradeoffOptions settings;
   std::string budget;
-  std::vector<std::string> errors;
   std::string page, csv, overlay;
   bool is_full = false, is_json = false, is_quiet = false;
 
-  [[nodiscard]] bool has_question() const { return !budget.empty() || !errors.empty(); }
+  [[nodiscard]] bool has_question() const { return !budget.empty() || !settings.errors.empty(); }
 };
 
 struct RowOptions {
@@ -45,7 +44,7 @@ scene::Overrides overlay_settings(const TradeoffOptions& options, const analysis
 std::optional<analysis::Answer> answer(const TradeoffOptions& options, const analysis::Tradeoff& tradeoff) {
   analysis::Answer answer;
   if (!options.budget.empty()) answer.question.budget = analysis::parse_budget(options.budget);
-  for (const std::string& text : options.errors)
+  for (const std::string& text : options.settings.errors)
     answer.question.errors.push_back(analysis::parse_error(text, tradeoff));
   if (!answer.question.has_limits()) return std::nullopt;
   answer.row = analysis::best_row(tradeoff, answer.question);
@@ -131,7 +130,7 @@ void add_answers(options::Command& verb, TradeoffOptions& options) {
   verb.option("--budget", options.budget, "answer: least error at no more than this cost, such as '20 us/ms'")
       .value_name("COST")
       .group("Answer");
-  verb.option("--error", options.errors,
+  verb.option("--error", options.settings.errors,
               "answer: least cost with no more than this error, such as 'Cyl_Lift.force 1%' (of its range) or "
               "'Bag.position 1mm'; repeat for more")
       .one_value_each()

@@ -27,7 +27,11 @@ std::string Diagnostic::text() const {
   if (line > 0 && column > 0) text += ':' + std::to_string(column);
   text += ": ";
   if (!path.empty()) text += printable(path) + ": ";
-  text += printable_lines(what);
+  return text + ValueProblem{what, expected, suggestion}.text();
+}
+
+std::string ValueProblem::text() const {
+  std::string text = printable_lines(what);
   if (!expected.empty()) text += "; expected " + printable(expected);
   if (!suggestion.empty()) text += "; did you mean '" + printable(suggestion) + "'?";
   return text;

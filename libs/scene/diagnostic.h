@@ -57,6 +57,9 @@ struct ValueProblem {
   std::string what;
   std::string expected;
   std::string suggestion;
+
+  // "what; expected ...; did you mean '...'?", on one line or more. `what` quotes the text that is wrong.
+  [[nodiscard]] std::string text() const;
 };
 
 // Collects problems while a scene is read.

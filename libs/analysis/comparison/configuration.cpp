@@ -77,14 +77,14 @@ bool is_whole(double ratio) {
 double read_step(const char* option, const std::string& text) {
   scene::UnitSystem units;
   const scene::QuantityResult read = scene::read_quantity(text, scene::Writing::plain, Dimension::time, units);
-  if (!read.value)
-    refuse(fmt::format("{}: '{}' {}; expected a time such as '0.5 ms'", option, text, read.problem.what));
+  if (!read.value) refuse(fmt::format("{}: {}", option, read.problem.text()));
+  const double step = *read.value;
   const Range range = find_field(kSubstep)->range;
-  if (!range.contains(*read.value)) {
-    refuse(fmt::format("{}: {} is out of range; expected {} to {}", option, step_text(*read.value),
-                       step_text(range.min), step_text(range.max)));
+  if (!range.contains(step)) {
+    refuse(fmt::format("{}: {} is out of range; expected {} to {}", option, step_text(step), step_text(range.min),
+                       step_text(range.max)));
   }
-  return *read.value;
+  return step;
 }
 
 std::vector<double> select_steps(const ComparisonOptions& options, const scene::Scene& scene) {

@@ -14,8 +14,7 @@ double read_option(const std::string& option, const std::string& text, Dimension
   scene::UnitSystem units;
   const scene::QuantityResult read = scene::read_quantity(text, scene::Writing::plain, dimension, units);
   if (read.value) return *read.value;
-  throw Failure(ExitCode::bad_input, fmt::format("{}: '{}' {}; expected {}", option, text, read.problem.what,
-                                                 scene::expected_quantity(dimension)));
+  throw Failure(ExitCode::bad_input, fmt::format("{}: {}", option, read.problem.text()));
 }
 
 void play_to(PlayedScene& played, double at) {

@@ -90,9 +90,10 @@ ErrorBound parse_error(const std::string& text, const Tradeoff& tradeoff) {
   const std::string whole = trimmed(text);
   const std::size_t space = whole.find(' ');
   const auto refuse = [&](const std::string& what) -> Failure {
-    return {ExitCode::bad_input, fmt::format("--error '{}': {}; expected a variable of the table and a quantity or a "
-                                             "share of its range, such as 'Cyl_Lift.force 1%'",
-                                             text, what)};
+    return {ExitCode::bad_input,
+            fmt::format("--error '{}': {}; nothing was run; expected a variable of the table and a quantity or a "
+                        "share of its range, such as 'Cyl_Lift.force 1%'",
+                        text, what)};
   };
   if (space == std::string::npos) throw refuse("it has no bound");
   const std::string name = whole.substr(0, space);
@@ -117,7 +118,8 @@ ErrorBound parse_error(const std::string& text, const Tradeoff& tradeoff) {
     scene::UnitSystem units;
     const Dimension dimension = tradeoff.variables[bound.variables.front()].dimension;
     const scene::QuantityResult read = scene::read_quantity(quantity, scene::Writing::plain, dimension, units);
-    if (!read.value) throw refuse("'" + quantity + "' " + read.problem.what);
+    if (!read.value)
+      throw Failure(ExitCode::bad_input, fmt::format("--error '{}': {}; nothing was run", text, read.problem.text()));
     bound.bound = *read.value;
   }
   if (!(bound.bound > 0)) throw refuse("the bound is not positive");

@@ -64,6 +64,7 @@ class Trader {
     result_.folder = options.folder.empty() ? "runs/tradeoff-" + base_.name : options.folder;
     choose_axes();
     choose_variables();
+    for (const std::string& text : options.errors) static_cast<void>(parse_error(text, result_));
     plan_rows();
   }
 

@@ -23,6 +23,7 @@ struct TradeoffOptions {
   scene::SceneOptions scene;           // duration: run time; empty: the scene's
   std::vector<std::string> axes;       // texts; empty: those of the scene
   std::vector<std::string> variables;  // patterns; empty: forces of the actuators and the position of the payload
+  std::vector<std::string> errors;     // bounds of the answer, parse_error(): refused before anything runs
   GridSize size = GridSize::modest;
   std::string folder;  // folder of the results; empty: runs/tradeoff-SCENE
   int workers = 2;

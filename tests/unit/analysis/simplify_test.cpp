@@ -141,7 +141,8 @@ TEST(Simplify, RefusesWhatItCannotJudge) {
     }
   };
   expect_refusal("Load.position", "has no tolerance");
-  expect_refusal("Load.position 1 bar", "--error");
+  expect_refusal("Load.position 1 bar",
+                 "--error: '1 bar' is a pressure; expected a length such as '1.5 m', or a bare number in m");
   expect_refusal("Load.position 0 mm", "more than zero");
   expect_refusal("Lode.position 1 mm", "Lode.position");
 }

@@ -164,6 +164,32 @@ TEST(Answer, OfAnErrorIsTheLeastCostThatKeepsIt) {
   }
 }
 
+// each text of a message once
+TEST(Answer, OfAWrongQuantityIsRefusedWithItsDimension) {
+  try {
+    static_cast<void>(parse_error("Cyl.force 1 kg", example()));
+    ADD_FAILURE();
+  } catch (const Failure& failure) {
+    EXPECT_STREQ(failure.what(),
+                 "--error 'Cyl.force 1 kg': '1 kg' is a mass; expected a force such as '1 kN', or a bare number in N; "
+                 "nothing was run");
+  }
+}
+
+TEST(Answer, ThatCannotBeGivenIsRefusedBeforeAnythingRuns) {
+  TradeoffOptions options;
+  options.scene.file = kScenes + "first_steps.yaml";
+  options.folder = ::testing::TempDir() + "tradeoff_refused";
+  options.errors = {"Rod.center_of_mass 1 bar"};
+  options.variables = {"Rod.center_of_mass"};
+  const auto no_run = [](std::string_view doing, double) -> bool {
+    ADD_FAILURE() << doing;
+    return false;
+  };
+  EXPECT_THROW(static_cast<void>(trade_off(options, no_run)), Failure);
+  EXPECT_FALSE(std::filesystem::exists(options.folder));
+}
+
 TEST(Answer, OfAVectorIsAboutAllItsComponents) {
   Tradeoff tradeoff;
   for (const char* name : {"Bag.position.x", "Bag.position.y", "Bag.mass"}) {
