@@ -125,6 +125,7 @@ class Fitter {
       columns.push_back(map.substr(0, equals));
       job_.expressions.push_back(map.substr(equals + 1));
     }
+    refuse_doubled(columns);
     const std::vector<MeasuredSignal> measured = read_measured(options_.data, columns);
     const std::vector<ElementVariable> variables = variables_of_run(base_, session::DirectSession(base_));
     double end = 0;
@@ -148,6 +149,30 @@ class Fitter {
     }
     // rules of the scene about its duration hold for the data's
     if (base_.session.duration > 0 && end > base_.session.duration) job_.scene.duration = fmt::format("{} s", end);
+  }
+
+  // a signal that counts twice would narrow the intervals as further measurements do
+  void refuse_doubled(const std::vector<std::string>& columns) const {
+    const auto without_spaces = [](std::string text) {
+      std::erase(text, ' ');
+      return text;
+    };
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (columns[i] == columns[j]) {
+          refuse_fit(
+              fmt::format("--map: the column '{}' is given twice ('{}' and '{}') and would count twice; nothing "
+                          "was run; give it once",
+                          columns[i], options_.maps[j], options_.maps[i]));
+        }
+        if (without_spaces(job_.expressions[i]) == without_spaces(job_.expressions[j])) {
+          refuse_fit(
+              fmt::format("--map: '{}' is given twice ('{}' and '{}') and would count twice; nothing was run; "
+                          "give one column for it: of two sensors their mean",
+                          job_.expressions[i], options_.maps[j], options_.maps[i]));
+        }
+      }
+    }
   }
 
   void read_free_values() {

@@ -288,6 +288,15 @@ TEST_F(Fit, RefusesBeforeAnyRun) {
   EXPECT_EQ(twice.code, 2) << twice.out;
   EXPECT_NE(twice.err.find("twice.csv:1:18: 'way [m]' and 'way [m]' are both named 'way'"), std::string::npos)
       << twice.err;
+  // a signal counts once
+  EXPECT_NE(refusal({"--map", map, "--map", map, "--free", free}).find("the column 'way' is given twice"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--map", map, "--map", "way=Block.position.y", "--free", free})
+                .find("the column 'way' is given twice ('way=Block.position.x' and 'way=Block.position.y')"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--map", map, "--map", "other= Block.position.x", "--free", free})
+                .find("' Block.position.x' is given twice"),
+            std::string::npos);
   EXPECT_NE(refusal({"--map", map, "--free", "a=1m/s2..5m/s2:3"}).find("no count"), std::string::npos);
   EXPECT_NE(refusal({"--map", map, "--free", free, "--free", "a=1m/s2..4m/s2"}).find("--free a is given twice"),
             std::string::npos);
