@@ -10,6 +10,7 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/hydraulics_def.h"
 #include "hydraulics/line_limits.h"
+#include "hydraulics/oil_limits.h"
 #include "hydraulics/pump_lines.h"
 #include "hydraulics/start_volumes.h"
 #include "math/pattern_lu.h"
@@ -427,6 +428,7 @@ void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
   check_volumes(def, errors);
   check_outlets(def, errors, warnings);
   warn_of_held_temperatures(def, warnings);
+  find_implausible_oil(def, warnings);
   if (!are_types_known) return;
   check_ls_chain(def, errors, warnings);
   check_forces(def, errors);

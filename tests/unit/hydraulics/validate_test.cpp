@@ -321,6 +321,48 @@ TEST(HydraulicsValidation, start_pressures_below_the_floor_are_refused) {
   EXPECT_NE(what_at(errors, "Vol_MainPump.initial_pressure"), "");
 }
 
+// a number in another unit is a warning that names the unit
+TEST(HydraulicsValidation, implausible_oil_is_a_warning_with_the_unit_that_was_meant) {
+  const auto warning = [](double HydraulicsDef::*member, double value, const std::string& key) {
+    HydraulicsDef def = bench_circuit();
+    def.*member = value;
+    const Problems warnings = findings(def).warnings;
+    const auto found = std::find_if(warnings.begin(), warnings.end(),
+                                    [&](const Problem& one) { return one.path == "hydraulics." + key; });
+    return found == warnings.end() ? std::string() : found->what + "; expected " + found->expected;
+  };
+  const auto modulus = [&](double value) {
+    return warning(&HydraulicsDef::oil_bulk_modulus, value, "oil_bulk_modulus");
+  };
+  EXPECT_EQ(modulus(15000),
+            "15000 Pa is the bulk modulus of no hydraulic liquid (1e+08 to 1e+10 Pa); expected '15000 bar' if that was "
+            "meant, the value with its unit");
+  EXPECT_NE(modulus(1500).find("'1500 MPa'"), std::string::npos);
+  EXPECT_NE(modulus(1).find("'1 GPa'"), std::string::npos);
+  EXPECT_NE(modulus(217557).find("'217557 psi'"), std::string::npos);
+  EXPECT_NE(modulus(1e15).find("expected a value with its unit, such as '1.5e+09 Pa'"), std::string::npos);
+  for (const double sound : {1e8, 0.7e9, 1.5e9, 2.2e9, 1e10}) EXPECT_EQ(modulus(sound), "") << sound;
+  const auto density = [&](double value) { return warning(&HydraulicsDef::oil_density, value, "oil_density"); };
+  EXPECT_NE(density(0.87).find("'0.87 g/cm3'"), std::string::npos);
+  EXPECT_NE(density(8.7e-7).find("'8.7e-07 kg/mm3'"), std::string::npos);
+  EXPECT_NE(density(54.3).find("'54.3 lb/ft3'"), std::string::npos);
+  EXPECT_NE(density(1e-3).find("is the density of no hydraulic liquid"), std::string::npos);
+  for (const double sound : {700.0, 870.0, 1000.0, 1900.0}) EXPECT_EQ(density(sound), "") << sound;
+  const auto viscosity = [&](double value) { return warning(&HydraulicsDef::oil_viscosity, value, "oil_viscosity"); };
+  EXPECT_NE(viscosity(46).find("'46 cSt'"), std::string::npos);
+  EXPECT_NE(viscosity(1e3).find("'1000 cSt'"), std::string::npos);
+  EXPECT_NE(viscosity(0.46).find("'0.46 St'"), std::string::npos);
+  EXPECT_NE(viscosity(0.04).find("'47.1 cSt' if 0.04 Pa s was meant: the dynamic viscosity by the density"),
+            std::string::npos)
+      << viscosity(0.04);
+  for (const double sound : {1e-8, 1e-6, 46e-6, 0.01}) EXPECT_EQ(viscosity(sound), "") << sound;
+  EXPECT_NE(warning(&HydraulicsDef::air_reference_pressure, 1, "air_reference_pressure").find("'1 bar'"),
+            std::string::npos);
+  // what nothing reads is not judged
+  EXPECT_EQ(warning(&HydraulicsDef::oil_compressibility, 6.5e-5, "oil_compressibility"), "");
+  EXPECT_EQ(warning(&HydraulicsDef::oil_specific_heat, 1.9, "oil_specific_heat"), "");
+}
+
 TEST(HydraulicsValidation, anti_cavitation_stated_at_a_drop_below_its_crack_pressure_is_refused) {
   HydraulicsDef def = crane_circuit();
   component<L90lsValveDef>(def, "L90Lift").anti_cavitation_pressure_drop = 1e4;
