@@ -18,7 +18,6 @@
 #include "io_node/session_variables.h"
 #include "program/add_scene_options.h"
 #include "scene/canonical.h"
-#include "scene/name_pattern.h"
 #include "scene/scene_options.h"
 #include "scene/scene_outline.h"
 #include "session/direct_session.h"
@@ -38,8 +37,8 @@ struct CheckOptions {
   bool is_expanded = false;
 };
 
-// Checks names that only the built models have: variables of plots, outputs and devices must exist, in the dimension of
-// what they are compared with.
+// Checks names that only the built models have: variables of outputs and devices must exist, in the dimension of what
+// they are compared with. Those that a scene only shows (plots, recording.variables) are warnings, as in a run.
 void check_variables(const scene::Scene& scene, const session::DirectSession& session) {
   std::vector<std::string> names, units;
   for (const Role role : transport::physics_roles()) {
@@ -69,13 +68,6 @@ void check_variables(const scene::Scene& scene, const session::DirectSession& se
     throw Failure(ExitCode::bad_input,
                   fmt::format("{}: '{}' is in {}, not in {}; state a quantity of the same dimension", one.path,
                               one.variable, unit, one.unit));
-  }
-  for (const scene::PlotDef& plot : scene.plots) {
-    try {
-      static_cast<void>(scene::choose(plot.variables, names));
-    } catch (const Failure& failure) {
-      throw Failure(failure.code(), "plot " + plot.name + ": " + failure.what());
-    }
   }
 }
 

@@ -172,6 +172,7 @@ struct RecordingDef {
   StepsKept steps = StepsKept::all;
   RecordingCoding coding = RecordingCoding::zstd;
   std::int64_t significant_bits = kAllBits;  // of a recorded value of a variable, the others are zero
+  std::string place;                         // "scene.yaml:7:3" of variables; empty in a scene without a file
 };
 
 // A panel of `slewring plot` and of the summary picture.
@@ -179,6 +180,7 @@ struct PlotDef {
   std::string name;
   std::string title;                   // empty: the name
   std::vector<std::string> variables;  // names or patterns; one panel per unit
+  std::string place;                   // "scene.yaml:7:3" of variables; empty in a scene without a file
 };
 
 inline constexpr double kMinStep = 10e-6;                       // s

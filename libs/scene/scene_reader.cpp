@@ -249,9 +249,7 @@ class SceneReader {
       if (def.variable.empty()) continue;
       const std::string path = def.name + ".variable";
       check_variables(path, {def.variable});
-      if (!load_context_.has_folder) continue;
-      const Diagnostic place = report_.at(places_.nearest(path, root_.mark), path, {});
-      def.place = fmt::format("{}:{}:{}", printable(place.file), place.line, place.column);
+      def.place = place_of(path);
     }
     if (report_.size() > problems) return;
     check_problems([&](Problems& errors, Problems&) { check_instruments(scene_, errors); });
@@ -334,7 +332,19 @@ class SceneReader {
     elements_.read_section("recording");
     elements_.read_section("plots");
     check_variables("recording.variables", scene_.recording.variables);
-    for (const PlotDef& plot : scene_.plots) check_variables(plot.name + ".variables", plot.variables);
+    scene_.recording.place = place_of("recording.variables");
+    for (PlotDef& plot : scene_.plots) {
+      check_variables(plot.name + ".variables", plot.variables);
+      plot.place = place_of(plot.name + ".variables");
+    }
+  }
+
+  // "scene.yaml:7:3" of a value that only the built models can check; empty in a scene without a file
+  [[nodiscard]] std::string place_of(const std::string& path) const {
+    if (!load_context_.has_folder) return {};
+    const Diagnostic place = report_.at(places_.nearest(path, root_.mark), path, {});
+    if (place.line == 0) return printable(place.file);
+    return fmt::format("{}:{}:{}", printable(place.file), place.line, place.column);
   }
 
   void read_devices_and_outputs() {

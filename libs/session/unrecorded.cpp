@@ -69,18 +69,22 @@ std::vector<std::string> unmet_patterns(const scene::Scene& scene, const DirectS
     if (session.subsystem(role) == nullptr) continue;
     for (const ElementVariable& variable : session.subsystem(role)->variables()) names.push_back(variable.name);
   }
-  for (const std::string& pattern : scene::unmatched(scene.recording.variables, names)) {
-    sentences.push_back("recording.variables: " + scene::no_variable_text(pattern, names));
-  }
+  const auto add = [&](const std::string& place, const std::string& path, const std::vector<std::string>& patterns) {
+    for (const std::string& pattern : scene::unmatched(patterns, names)) {
+      sentences.push_back(
+          fmt::format("{}{}{}: {}", place, place.empty() ? "" : ": ", path, scene::no_variable_text(pattern, names)));
+    }
+  };
+  add(scene.recording.place, "recording.variables", scene.recording.variables);
+  for (const scene::PlotDef& plot : scene.plots) add(plot.place, plot.name + ".variables", plot.variables);
   return sentences;
 }
 
 std::vector<std::string> unmet_patterns(const scene::Scene& scene) {
   const std::vector<std::string>& patterns = scene.recording.variables;
-  if (std::find(patterns.begin(), patterns.end(), "*") != patterns.end() && patterns.size() == 1) return {};
-  DirectSession session(scene);
-  if (!session.start().is_ok()) return {};
-  return unmet_patterns(scene, session);
+  const bool are_all_recorded = patterns.size() == 1 && patterns.front() == "*";
+  if (are_all_recorded && scene.plots.empty()) return {};
+  return unmet_patterns(scene, DirectSession(scene));
 }
 
 std::string recorded_patterns_text(const scene::Scene& scene) {

@@ -21,8 +21,9 @@ namespace slew::session {
 // A sentence for every plot of which something will not be drawn for that reason.
 [[nodiscard]] std::vector<std::string> unrecorded_plots(const scene::Scene& scene);
 
-// A sentence for every pattern of recording.variables that no variable of the session fits: nothing is recorded for it.
-// Without a session one is made where the patterns need it; throws Failure for a model that cannot be built.
+// A sentence, with its place in the file, for every pattern of recording.variables and of a plot that no variable of
+// the session fits: nothing is recorded or drawn for it. The session need not be started; without a session one is made
+// where the patterns need it; throws Failure for a model that cannot be built.
 [[nodiscard]] std::vector<std::string> unmet_patterns(const scene::Scene& scene, const DirectSession& session);
 [[nodiscard]] std::vector<std::string> unmet_patterns(const scene::Scene& scene);
 

@@ -84,6 +84,9 @@ TEST_F(InProcess, APlotOfAVariableThatIsNotThereIsNamedAndTheRunIsGoodAllTheSame
   const CommandResult result =
       slewring({"run", "rod.yaml", "--in-process", "--pace", "free", "--duration", "0.1", "--json"});
   EXPECT_EQ(result.code, 0) << result.err;
+  const std::string warning =
+      "rod.yaml:6:22: Swing.variables: there is no variable 'Rod.nothing'; 'slewring variables' lists all";
+  EXPECT_NE(result.err.find("warning: " + warning), std::string::npos) << result.err;
   EXPECT_EQ(nlohmann::json::parse(result.out).at("notes"),
             (nlohmann::json{"plot Swing: not drawn: there is no variable 'Rod.nothing'; 'slewring variables' lists "
                             "all"}));
@@ -91,7 +94,10 @@ TEST_F(InProcess, APlotOfAVariableThatIsNotThereIsNamedAndTheRunIsGoodAllTheSame
   const CommandResult plotted = slewring({"plot", work_.recording().string()});
   EXPECT_EQ(plotted.code, 2);
   EXPECT_NE(plotted.err.find("there is no variable 'Rod.nothing'"), std::string::npos) << plotted.err;
-  EXPECT_EQ(slewring({"check", "rod.yaml"}).code, 2);
+  // the same rule before a run
+  const CommandResult checked = slewring({"check", "rod.yaml", "--json"});
+  EXPECT_EQ(checked.code, 0) << checked.err;
+  EXPECT_EQ(nlohmann::json::parse(checked.out).at("warnings"), (nlohmann::json{warning}));
 }
 
 // a pump against a closed line: its pressure leaves the range of the oil's law

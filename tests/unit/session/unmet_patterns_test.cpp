@@ -34,12 +34,22 @@ TEST_F(UnmetPatterns, OfARecordingAreNamedWithWhatWasMeant) {
     return unmet_patterns(load("recording: {variables: [" + patterns + "]}\n"));
   };
   const std::vector<std::string> expected = {
-      "recording.variables: there is no variable 'V.presure'; did you mean 'V.pressure'?"};
+      folder_.path() +
+      "/scene.yaml:8:24: recording.variables: there is no variable 'V.presure'; did you mean 'V.pressure'?"};
   EXPECT_EQ(warnings_of("V.presure"), expected);
   EXPECT_EQ(warnings_of("V.pressure, V.presure"), expected);
   EXPECT_EQ(warnings_of("'*', V.presure"), expected);
   EXPECT_TRUE(warnings_of("V.pressure, '*.flow', Stick.raw").empty());
   EXPECT_TRUE(warnings_of("'*'").empty());
+}
+
+TEST_F(UnmetPatterns, OfAPlotAreNamedWithTheirPlace) {
+  const std::vector<std::string> expected = {
+      folder_.path() +
+      "/scene.yaml:10:17: Line.variables: there is no variable 'V.presure'; did you mean 'V.pressure'?"};
+  EXPECT_EQ(unmet_patterns(load("plots:\n  Line:\n    {variables: [V.pressure, V.presure]}\n  Raw: {variables: "
+                                "[Stick.raw, '*.flow']}\n")),
+            expected);
 }
 
 TEST_F(UnmetPatterns, TheVariableOfASensorIsNamedWithItsPlace) {
