@@ -2,6 +2,8 @@
 // `slewring sessions`: lists the sessions on this domain.
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "cli/terminal.h"
 #include "cli/verbs.h"
 #include "core/display.h"
@@ -19,7 +21,7 @@ using wire::Role;
 
 struct SessionsOptions {
   node::SessionOptions network;
-  double seconds = 1;
+  std::optional<double> seconds;
   bool is_json = false;
 };
 
@@ -65,8 +67,9 @@ Json to_json(const session::FoundSession& session) {
 }
 
 ExitCode show(const SessionsOptions& options) {
-  const SimDuration listening{static_cast<std::int64_t>(options.seconds * 1e9)};
-  const std::vector<session::FoundSession> sessions = session::find_sessions(options.network, listening, listening);
+  session::SurveyTime survey = session::SurveyTime::usual(options.network);
+  if (options.seconds) survey.quiet = survey.longest = duration_of_seconds(*options.seconds);
+  const std::vector<session::FoundSession> sessions = session::find_sessions(options.network, survey);
   if (options.is_json) {
     Json all = Json::array();
     for (const session::FoundSession& session : sessions) all.push_back(to_json(session));
@@ -96,7 +99,12 @@ void add_sessions(options::Command& program) {
   options::Command verb = program.command("sessions", "list the sessions that run on a domain");
   const auto options = std::make_shared<SessionsOptions>();  // lives as long as the command line's callbacks
   program::add_network_options(verb, options->network);
-  verb.option("--time", options->seconds, "seconds to listen").between(0.1, 60.0).value_name("S").show_default();
+  verb.option(
+          "--time", options->seconds,
+          "seconds to listen after the last session or node that was found; without it 1, and while there is none 3, "
+          "with --keys 10")
+      .between(0.1, 60.0)
+      .value_name("S");
   verb.flag("--json", options->is_json, "for machines");
   verb.footer("Example:\n  slewring sessions --interface eth0 --peer 192.168.1.20 --keys plant");
   verb.action([options] { return show(*options); });

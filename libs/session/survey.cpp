@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "session/survey.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -12,43 +14,47 @@
 namespace slew::session {
 namespace {
 
-constexpr SimDuration kSurveyTime = milliseconds(700);
-constexpr SimDuration kLongestSurvey = milliseconds(3000);  // on a machine that is busy
+constexpr SimDuration kOnlyQuiet = milliseconds(700);          // where one session is usual
+constexpr SimDuration kLongestWithKeys = milliseconds(10000);  // on a machine that is busy
 constexpr SimDuration kSurveyWait = milliseconds(20);
-constexpr SimDuration kFindTimeout = milliseconds(3000);
+constexpr int kMostTimes = 10;  // end of a survey in which sessions come up all the time
 
 using Found = std::map<wire::SessionId, FoundSession>;
 
-void take(const transport::Received& message, Found& found) {
+// True for the first message of a session or of one of its nodes.
+bool take(const transport::Received& message, Found& found) {
   switch (message.topic) {
     case wire::Topic::session: {
       wire::SessionDescription description;
       // one in phase JOIN only claims the name
       if (transport::decode(message.bytes, description) && description.header.phase == wire::Phase::running) {
         FoundSession& session = found[description.header.session];
+        const bool is_new = session.description.name.empty();
         session.description = std::move(description);
+        return is_new;
       }
-      return;
+      return false;
     }
     case wire::Topic::node_status: {
       wire::NodeStatus status;
-      if (!transport::decode(message.bytes, status)) return;
+      if (!transport::decode(message.bytes, status)) return false;
       const auto role = static_cast<std::size_t>(status.header.role);
-      if (role >= wire::kRoles) return;
+      if (role >= wire::kRoles) return false;
       FoundSession& session = found[status.header.session];
+      const bool is_new = !session.has_status[role];
       session.has_status[role] = true;
       session.nodes[role] = std::move(status);
-      return;
+      return is_new;
     }
     case wire::Topic::health: {
       wire::Health health;
-      if (!transport::decode(message.bytes, health)) return;
+      if (!transport::decode(message.bytes, health)) return false;
       FoundSession& session = found[health.header.session];
       session.step = std::max(session.step, health.header.step);
-      return;
+      return false;
     }
     default:
-      return;
+      return false;
   }
 }
 
@@ -60,7 +66,9 @@ bool is_running(const FoundSession& session) {
 
 // Name of the one session of the domain. Throws Failure when there is none or more than one.
 std::string only_session(const node::SessionOptions& options) {
-  const std::vector<FoundSession> sessions = find_sessions(options, kSurveyTime, kLongestSurvey);
+  SurveyTime time = SurveyTime::usual(options);
+  time.quiet = kOnlyQuiet;
+  const std::vector<FoundSession> sessions = find_sessions(options, time);
   if (sessions.size() == 1) return sessions.front().description.name;
   if (sessions.empty()) {
     throw Failure(ExitCode::failed,
@@ -74,19 +82,26 @@ std::string only_session(const node::SessionOptions& options) {
 
 }  // namespace
 
-std::vector<FoundSession> find_sessions(const node::SessionOptions& options, SimDuration time, SimDuration longest) {
+SurveyTime SurveyTime::usual(const node::SessionOptions& options) noexcept {
+  return options.keys.empty() ? SurveyTime{} : SurveyTime{.longest = kLongestWithKeys};
+}
+
+std::vector<FoundSession> find_sessions(const node::SessionOptions& options, const SurveyTime& time) {
   const auto transport = node::open_survey(options);
   Found found;
-  const std::int64_t begin_ns = monotonic_ns();
-  const auto end_ns = [&] {
-    const bool is_any =
-        std::any_of(found.begin(), found.end(), [](const auto& entry) { return is_running(entry.second); });
-    return begin_ns + (is_any ? time.ns : std::max(time.ns, longest.ns));
-  };
-  while (monotonic_ns() < end_ns() && node::stop_requested.load() == 0) {
+  const std::int64_t last_ns = monotonic_ns() + kMostTimes * std::max(time.quiet.ns, time.longest.ns);
+  std::int64_t end_ns = monotonic_ns() + std::max(time.quiet.ns, time.longest.ns);
+  while (monotonic_ns() < std::min(end_ns, last_ns) && node::stop_requested.load() == 0) {
     transport::Received message;
-    while (transport->take(message)) take(message, found);
-    transport->wait_until(std::min(end_ns(), monotonic_ns() + kSurveyWait.ns));
+    bool is_any_new = false;
+    while (transport->take(message)) is_any_new = take(message, found) || is_any_new;
+    const bool is_any_running =
+        std::any_of(found.begin(), found.end(), [](const auto& entry) { return is_running(entry.second); });
+    if (is_any_new && is_any_running) end_ns = monotonic_ns() + time.quiet.ns;
+    const std::int64_t wake_ns = std::min(end_ns, monotonic_ns() + kSurveyWait.ns);
+    transport->wait_until(wake_ns);
+    // time in which the machine did not run this process
+    end_ns += std::max<std::int64_t>(0, monotonic_ns() - wake_ns);
   }
   std::vector<FoundSession> sessions;
   for (auto& [id, session] : found) {
@@ -105,13 +120,15 @@ std::unique_ptr<observer::Observer> find_session(node::SessionOptions options, A
   auto found = std::make_unique<observer::Observer>(
       std::move(transport),
       observer::ObserverOptions{.session = options.session, .receiver = receiver, .stop = &node::stop_requested});
-  if (found->wait_for([&] { return found->view().has_session(); }, kFindTimeout)) return found;
+  const SimDuration longest = SurveyTime::usual(options).longest;
+  if (found->wait_for([&] { return found->view().has_session(); }, longest)) return found;
   if (const int stop = node::stop_requested.load(); stop != 0)
     throw Failure(static_cast<ExitCode>(stop), "interrupted");
   throw Failure(ExitCode::failed, "no session '" + options.session + "' was found on domain " +
                                       std::to_string(options.domain) +
-                                      " within 3 s; see 'slewring sessions', and compare --domain, --interface, "
-                                      "--peer and --keys with those of the session");
+                                      fmt::format(" within {:g} s; see 'slewring sessions', and compare --domain, "
+                                                  "--interface, --peer and --keys with those of the session",
+                                                  longest.seconds()));
 }
 
 }  // namespace slew::session

@@ -21,10 +21,18 @@ struct FoundSession {
   StepIndex step = kJoinStep;
 };
 
-// All sessions that publish within the time, by name; while there are none, waits on up to the longest time. Those that
-// are over are left out.
-[[nodiscard]] std::vector<FoundSession> find_sessions(const node::SessionOptions& options, SimDuration time,
-                                                      SimDuration longest);
+// Duration of a survey. With keys, processes agree on them before the first message: 0.4 s on an idle machine, seconds
+// on a busy one.
+struct SurveyTime {
+  SimDuration quiet = milliseconds(1000);    // after the last session or node that was found
+  SimDuration longest = milliseconds(3000);  // while there is none
+
+  [[nodiscard]] static SurveyTime usual(const node::SessionOptions& options) noexcept;
+};
+
+// All sessions that publish within the time, by name. Time in which this process was not run does not count, up to ten
+// times the longest. Those that are over are left out.
+[[nodiscard]] std::vector<FoundSession> find_sessions(const node::SessionOptions& options, const SurveyTime& time);
 
 // An observer with `look` can send no requests; one with `control` has the rights of a controller.
 enum class Access : std::uint8_t { look, control, steer };

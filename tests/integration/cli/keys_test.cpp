@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Key stores: made, checked, exported, revoked; sessions with keys, and those who have none.
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <chrono>
 #include <filesystem>
@@ -298,6 +299,33 @@ TEST_F(Keys, AViewerLooksOnAndCanDoNothing) {
       run("slewring", {"control", "stop", "--session", "t", "--domain", domain(), "--keys", "plant"}, folder());
   EXPECT_EQ(stopped.code, 0) << stopped.err;
   EXPECT_EQ(session.wait().code, 0);
+}
+
+// a session whose processes get no time for a while, as on a busy machine
+TEST_F(Keys, SessionsThatAnswerLateAreListed) {
+  ASSERT_EQ(keys({"create", "plant"}).code, 0);
+  Command session("slewring",
+                  {"run", scene_file("first_steps.yaml"), "--keys", "plant", "--domain", domain(), "--session", "late",
+                   "--duration", "0", "--step", "10 ms", "--no-record", "--set", "session.give_up_after=60s"},
+                  folder());
+  const std::vector<std::string> list = {"sessions", "--keys", "plant", "--domain", domain(), "--json"};
+  ASSERT_TRUE(wait_until([&] { return run("slewring", list, folder()).out.find("late") != std::string::npos; }))
+      << session.err();
+  std::vector<pid_t> nodes;
+  for (const char* program : {"io_node", "mechanics_node"}) {
+    nodes.push_back(child_of(session.pid(), program));
+    ASSERT_GT(nodes.back(), 0) << program;
+  }
+  for (const pid_t node : nodes) ASSERT_EQ(kill(node, SIGSTOP), 0);
+  Command late("slewring", list, folder());
+  const auto begin = std::chrono::steady_clock::now();
+  static_cast<void>(wait_until(
+      [&] { return late.has_ended() || std::chrono::steady_clock::now() - begin > std::chrono::seconds(2); }));
+  EXPECT_FALSE(late.has_ended());
+  for (const pid_t node : nodes) ASSERT_EQ(kill(node, SIGCONT), 0);
+  const CommandResult listed = late.wait();
+  EXPECT_NE(listed.out.find("late"), std::string::npos) << listed.out << listed.err << session.err();
+  session.send(SIGINT);
 }
 
 TEST_F(Keys, SessionWithKeysGivesTheBitsOfOneWithout) {
