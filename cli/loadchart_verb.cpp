@@ -80,8 +80,9 @@ void add_loadchart(options::Command& program) {
            "JOINT=VALUES")
       .required();
   repeated("--tipping-line", settings.lines,
-           "two points of Ground [m] about whose line the machine tips, such as '1.4 0 -1.2, 1.4 0 1.2'; repeat for "
-           "more; without it the lines around the scene's tyres",
+           "two points of Ground [m] about whose line the machine tips, such as '1.4 0 -1.2, 1.4 0 1.2', and where its "
+           "side is to be stated a third one on the machine's side, ', 0 0 0'; repeat for more; without it the lines "
+           "around the scene's tyres",
            "POINTS");
   repeated("--structure", settings.structure,
            "force that a cylinder's structure allows, 'Cyl_Lift=400kN'; repeat for more", "CYLINDER=FORCE");

@@ -263,9 +263,10 @@ class ChartMaker {
     }
   }
 
-  // of the lines that were given
+  // of the lines that were given without it
   void find_sides() {
     for (std::size_t line = 0; line < lines_.size(); ++line) {
+      if (lines_[line].side != 0) continue;
       std::vector<TippingMoments> moments;
       for (const TippingPose& pose : tipping_) {
         if (!pose.moments.empty()) moments.push_back(pose.moments[line]);

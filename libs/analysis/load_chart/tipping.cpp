@@ -28,7 +28,7 @@ constexpr double kLeastLevel = 1e-6;
 [[noreturn]] void refuse_line(const std::string& text) {
   throw Failure(ExitCode::bad_input,
                 fmt::format("--tipping-line: '{}' is no line; expected two points of Ground in m that differ, such as "
-                            "'1.4 0 -1.2, 1.4 0 1.2'",
+                            "'1.4 0 -1.2, 1.4 0 1.2', and where its side is to be stated a third on the machine's side",
                             text));
 }
 
@@ -113,11 +113,13 @@ double side_of(const TippingLine& line, Vec3 point, Vec3 gravity) noexcept {
 }
 
 TippingLine read_tipping_line(const std::string& text, Vec3 gravity) {
-  const std::size_t comma = text.find(',');
-  if (comma == std::string::npos) refuse_line(text);
-  TippingLine line;
-  line.P = read_point(text.substr(0, comma), text);
-  line.Q = read_point(text.substr(comma + 1), text);
+  std::vector<Vec3> points;
+  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+    end = text.find(',', begin);
+    points.push_back(read_point(text.substr(begin, end == std::string::npos ? end : end - begin), text));
+  }
+  if (points.size() != 2 && points.size() != 3) refuse_line(text);
+  TippingLine line{.P = points[0], .Q = points[1]};
   const Vec3 along = line.Q - line.P;
   if (!(norm(along) > 0)) refuse_line(text);
   if (norm(cross(along, gravity)) < kLeastLevel * norm(along) * norm(gravity)) {
@@ -125,6 +127,15 @@ TippingLine read_tipping_line(const std::string& text, Vec3 gravity) {
                                                    "it; nothing was computed; give two points that lie beside each "
                                                    "other, such as '1.4 0 -1.2, 1.4 0 1.2'",
                                                    text));
+  }
+  if (points.size() == 2) return line;
+  line.side = side_of(line, points[2], gravity);
+  if (!(std::fabs(line.side) > kOnLine * norm(gravity))) {
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("--tipping-line: the third point of '{}' lies on the line, seen along gravity; nothing was "
+                    "computed; give one on the side where the machine stands",
+                    text));
   }
   return line;
 }
@@ -193,7 +204,8 @@ SideChoice choose_side(std::vector<TippingLine>& lines, std::size_t line, std::s
   }
   side = side_of_others(lines, line, gravity);
   if (side != 0) return {.text = "the machine stands on the side of the other lines"};
-  constexpr const char* kRemedy = "fix its carrier to Ground, with its mass, where it stands on the other one";
+  constexpr const char* kRemedy =
+      "where it stands on the other one, give the line a third point there, or fix its carrier with its mass to Ground";
   const auto count = [&](auto is_it) { return std::count_if(moments.begin(), moments.end(), is_it); };
   const auto beyond = count([](const TippingMoments& one) { return one.payload > 0; });
   const auto before = count([](const TippingMoments& one) { return one.payload < 0; });

@@ -24,7 +24,8 @@ struct TippingLine {
   double side = 0;  // sign: that of side_of() where the machine stands; 0: not known
 };
 
-// "1.4 0 -1.2, 1.4 0 1.2": two points of Ground [m]. Throws Failure (bad_input), for a line along gravity too.
+// "1.4 0 -1.2, 1.4 0 1.2": two points of Ground [m]; a third one lies on the side where the machine stands. Throws
+// Failure (bad_input), for a line along gravity too, and for a third point above or below the line.
 [[nodiscard]] TippingLine read_tipping_line(const std::string& text, math::Vec3 gravity);
 
 // Moment of 1 kg at this point about the line [Nm]; its sign is that of the point's side.

@@ -251,6 +251,28 @@ TEST(LoadChart, AMachineThatTipsWithoutLoadHasNone) {
   }
 }
 
+// The boom is behind a line at 12 m, and so is its payload: the machine stands there and never tips about it.
+TEST(LoadChart, AThirdPointStatesTheSideOfALine) {
+  const auto chart = [](const char* line) {
+    return chart_of({.scene = kTwoBars, .over = {"Boom_Foot=5deg..15deg:2"}, .lines = {line}});
+  };
+  const LoadChart stated = chart("12 0 1, 12 0 -1, 0 0 0"), other = chart("12 0 1, 12 0 -1, 13 5 0");
+  EXPECT_TRUE(stated.notes.empty());
+  for (const ChartPose& pose : stated.poses) {
+    EXPECT_FALSE(pose.tips_alone);
+    EXPECT_TRUE(std::isinf(pose.loads.back())) << pose.loads.back();
+  }
+  for (const ChartPose& pose : other.poses) EXPECT_TRUE(pose.tips_alone);
+  // as the side that the parts fixed to Ground decide
+  const LoadChart found = chart("1.4 0 -1.2, 1.4 0 1.2"), same = chart("1.4 0 -1.2, 1.4 0 1.2, -2 0 0");
+  for (std::size_t i = 0; i < found.poses.size(); ++i) {
+    EXPECT_DOUBLE_EQ(found.poses[i].loads.back(), same.poses[i].loads.back());
+  }
+  for (const char* wrong : {"1 0 -1, 1 0 1, 1 3 0", "1 0 -1, 1 0 1, 0 0 0, 0 0 1", "1 0 -1, 1 0 1,"}) {
+    EXPECT_THROW(static_cast<void>(chart(wrong)), Failure) << wrong;
+  }
+}
+
 TEST(LoadChart, TheMachineStandsOnOneSideOfALine) {
   const math::Vec3 gravity(0, -kGravity, 0);
   const TippingLine front{{1, 0, -1}, {1, 0, 1}}, rear{{-1, 0, 1}, {-1, 0, -1}};
