@@ -128,10 +128,13 @@ Status Monolith::advance_to(SimTime t, std::span<const double> controls_begin, s
                                                "out of the scene, or run it split");
   }
   if (failure.empty()) return Status::ok();
-  return Status::error(ExitCode::diverged, "the reference integration ended at " + std::to_string(solver_.time()) +
-                                               " s (" + failure + "); it could not follow " +
-                                               equations_.state_name(solver_.worst_state()) +
-                                               "; check the scene at that time, or set another tolerance");
+  return Status::error(ExitCode::diverged,
+                       "the reference integration ended at " + std::to_string(solver_.time()) + " s (" + failure +
+                           "); it could not follow " + equations_.state_name(solver_.worst_state()) +
+                           "; check the scene at that time, or set another tolerance" +
+                           (equations_.has_loops() ? "; a loop whose links lie in one line there (a change point, a "
+                                                     "dead centre of its drive) has no unique motion"
+                                                   : ""));
 }
 
 Status Monolith::set_parameter(std::string_view path, double value) {

@@ -2,6 +2,7 @@
 #include "monolith/stiff_solver.h"
 
 #include <cvode/cvode.h>
+#include <fmt/format.h>
 #include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
@@ -16,6 +17,10 @@ namespace slew::monolith {
 namespace {
 
 constexpr long kMostSteps = 2'000'000;  // within one advance; a step of 1 us over 2 s
+constexpr long kStepsOfProgress = 10'000;
+// Parts of kStepsOfProgress in a row whose pace would need more than kMostSteps for the rest: a transient has one or
+// two.
+constexpr int kMostPartsWithoutProgress = 3;
 
 int call_rates(realtype t, N_Vector y, N_Vector f, void* user) {
   const realtype* const values = N_VGetArrayPointer(y);
@@ -67,7 +72,7 @@ StiffSolver::StiffSolver(DifferentialEquation& equation, std::span<const double>
   SLEW_CHECK(CVodeSVtolerances(m.cvode, relative, m.tolerance) == CV_SUCCESS);
   SLEW_CHECK(CVodeSetUserData(m.cvode, &equation_) == CV_SUCCESS);
   SLEW_CHECK(CVodeSetLinearSolver(m.cvode, m.solver, m.matrix) == CV_SUCCESS);
-  SLEW_CHECK(CVodeSetMaxNumSteps(m.cvode, kMostSteps) == CV_SUCCESS);
+  SLEW_CHECK(CVodeSetMaxNumSteps(m.cvode, kStepsOfProgress) == CV_SUCCESS);
   SLEW_CHECK(CVodeSetErrHandlerFn(m.cvode, ignore_cvode_message, nullptr) == CV_SUCCESS);
 }
 
@@ -84,7 +89,21 @@ void StiffSolver::restart(double t, std::span<const double> y) {
 std::string StiffSolver::advance(double t_end) {
   realtype reached = t_;
   int flag = CVodeSetStopTime(memory_->cvode, t_end);
-  if (flag == CV_SUCCESS) flag = CVode(memory_->cvode, t_end, memory_->y, &reached, CV_NORMAL);
+  // in parts with the same steps as in one call
+  int slow_parts = 0;
+  double before = t_;
+  for (long steps = 0; flag == CV_SUCCESS; steps += kStepsOfProgress) {
+    flag = CVode(memory_->cvode, t_end, memory_->y, &reached, CV_NORMAL);
+    if (flag != CV_TOO_MUCH_WORK) break;
+    const double progress = reached - before, needed = kMostSteps / double{kStepsOfProgress} * progress;
+    slow_parts = needed < t_end - reached ? slow_parts + 1 : 0;
+    if (slow_parts == kMostPartsWithoutProgress || steps + kStepsOfProgress >= kMostSteps) {
+      t_ = reached;
+      return fmt::format("no progress: the last {} steps advanced it by {:.2g} s", kStepsOfProgress, progress);
+    }
+    before = reached;
+    flag = CV_SUCCESS;
+  }
   t_ = reached;
   if (flag >= 0) return {};
   char* const name = CVodeGetReturnFlagName(flag);

@@ -38,7 +38,8 @@ class StiffSolver {
 
   // Restarts from y at t without history: after every jump of y or of the equation.
   void restart(double t, std::span<const double> y);
-  // Advances to exactly t_end > t. Empty: done; else CVODE's message.
+  // Advances to exactly t_end > t. Empty: done; else CVODE's message, or that its steps have become too short to reach
+  // t_end in a sensible number: near a singularity of the equation.
   [[nodiscard]] std::string advance(double t_end);
 
   [[nodiscard]] std::span<const double> y() const noexcept;

@@ -71,6 +71,21 @@ TEST(StiffSolver, NamesTheStateThatTheErrorTestIsAbout) {
   }
 }
 
+// y' = -sign(y): from y = 0 on no step is short enough for the error test, and each advances a little
+struct Chattering final : DifferentialEquation {
+  void rates(double, const double* y, double* f) noexcept override { f[0] = y[0] > 0 ? -1e3 : 1e3; }
+};
+
+TEST(StiffSolver, EndsWhereItMakesNoProgress) {
+  Chattering equation;
+  StiffSolver solver(equation, std::array<double, 1>{1e-12}, 1e-9);
+  solver.restart(0, std::array<double, 1>{1});
+  const std::string failure = solver.advance(1);
+  EXPECT_NE(failure.find("no progress: the last 10000 steps advanced it by"), std::string::npos) << failure;
+  EXPECT_LT(solver.statistics().steps, 100'000);
+  EXPECT_NEAR(solver.time(), 1e-3, 1e-4);
+}
+
 TEST(StiffSolver, ReportsThatASolutionEscapes) {
   // y = 1 / (1 - t) has no value at 1
   Growth equation;
