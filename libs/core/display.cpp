@@ -49,6 +49,12 @@ std::string few_digits(double value) {
   return rounded == 0 ? "0" : fmt::format("{}", rounded);
 }
 
+std::string without_sign_of_zero(std::string text) {
+  const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
+  if (is_zero && text.starts_with('-')) text.erase(0, 1);
+  return text;
+}
+
 std::string with_unit(std::string text, std::string_view unit) {
   return unit.empty() ? text : text + ' ' + std::string(unit);
 }
@@ -63,14 +69,20 @@ DisplayUnit display_unit(std::string_view si_unit, std::string_view variable) {
   return {1, si_unit};
 }
 
+std::string digits_text(double value, int digits) {
+  return without_sign_of_zero(fmt::format("{:.{}g}", value, digits));
+}
+
+std::string decimals_text(double value, int decimals) {
+  return without_sign_of_zero(fmt::format("{:.{}f}", value, decimals));
+}
+
 std::string quantity_text(double value, std::string_view si_unit, std::string_view variable) {
   // what rounding leaves of an angle of zero
   constexpr double kNoAngle = 1e-12;  // rad
   if (si_unit == "rad" && std::fabs(value) < kNoAngle) value = 0;
   const DisplayUnit shown = display_unit(si_unit, variable);
-  std::string text = fmt::format("{:.4g}", value * shown.factor);
-  if (text == "-0") text = "0";
-  return with_unit(std::move(text), shown.unit);
+  return with_unit(digits_text(value * shown.factor, 4), shown.unit);
 }
 
 std::string chosen_text(double value, std::string_view si_unit) {

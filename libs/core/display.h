@@ -22,6 +22,11 @@ struct DisplayUnit {
 // in rpm; rates of joints and bodies (`velocity`, `rate`, `angular_velocity`) in deg/s.
 [[nodiscard]] DisplayUnit display_unit(std::string_view si_unit, std::string_view variable = {});
 
+// A number with so many significant digits ("{:.4g}"), or so many decimals ("{:.2f}"). A zero has no sign: -0 is "0",
+// -0.001 to two decimals "0.00".
+[[nodiscard]] std::string digits_text(double value, int digits);
+[[nodiscard]] std::string decimals_text(double value, int decimals);
+
 // "47.2 kN" style: value in the display unit with four significant digits. An angle below 1e-12 rad is 0.
 [[nodiscard]] std::string quantity_text(double value, std::string_view si_unit, std::string_view variable = {});
 

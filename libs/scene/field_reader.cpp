@@ -98,6 +98,8 @@ class ValueReader {
       report_problem(node.mark, {describe(node) + " is out of range", range_text(field_.range, dimension), ""});
       return std::nullopt;
     }
+    // of a damping or a mass -0 is 0; a coordinate keeps its sign, as that of the same scene from its expanded text
+    if (result.value && *result.value == 0 && has_range && field_.range.min >= 0) result.value = 0;
     return result.value;
   }
 

@@ -436,7 +436,7 @@ Assignment ParameterDirectory::parse_assignment(std::string_view text, std::opti
     if (!quantity.problem.suggestion.empty()) refusal += "; did you mean '" + quantity.problem.suggestion + "'?";
     return refused(std::move(refusal));
   }
-  return check(path, *quantity.value, over, beside);
+  return check(path, *quantity.value == 0 ? 0.0 : *quantity.value, over, beside);  // -0 is 0
 }
 
 }  // namespace slew::scene

@@ -398,7 +398,7 @@ std::string si_unit_of(const Exponents& exponent) {
 }
 
 std::string with_unit(double value, Dimension dimension) {
-  std::string text = fmt::format("{}", value);
+  std::string text = fmt::format("{}", value == 0 ? 0.0 : value);  // -0 is 0
   if (!is_plain_number(dimension)) text += fmt::format(" {}", info(dimension).si_unit);
   return text;
 }

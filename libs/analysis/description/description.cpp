@@ -128,7 +128,7 @@ Json body_json(const BodyNumbers& body) {
 }
 
 std::string triple_text(const Triple& v) {
-  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v[0], v[1], v[2]);
+  return fmt::format("[{}, {}, {}]", digits_text(v[0], 6), digits_text(v[1], 6), digits_text(v[2], 6));
 }
 
 // "Bag from bag.stl: 0.64 m3 of 781.25 kg/m3, 500 kg; centre of mass [0, -0.6, 0] m; about it ..."

@@ -10,12 +10,12 @@ namespace slew::analysis {
 namespace {
 
 std::string in_unit(double value, const std::string& unit) {
-  return fmt::format("{:.6g}{}{}", value, unit.empty() ? "" : " ", unit);
+  return fmt::format("{}{}{}", digits_text(value, 6), unit.empty() ? "" : " ", unit);
 }
 
 std::string interval_of(const FittedValue& value) {
   if (!value.interval) return "not determined";
-  std::string text = fmt::format("{:.6g} .. {:.6g}", value.interval->low, value.interval->high);
+  std::string text = digits_text(value.interval->low, 6) + " .. " + digits_text(value.interval->high, 6);
   if (value.is_beyond_range) text += ", wider than its bounds: the data do not determine it";
   if (value.is_at_bound) text += ", at its bound: the interval does not hold";
   return text;
@@ -29,7 +29,7 @@ std::string correlations_of(const Fit& fit, std::size_t width) {
   ReportTable table(std::move(columns));
   for (std::size_t i = 0; i < n; ++i) {
     std::vector<ReportCell> cells = {fit.values[i].path};
-    for (std::size_t j = 0; j < n; ++j) cells.emplace_back(fmt::format("{:.2f}", fit.correlations[i * n + j]));
+    for (std::size_t j = 0; j < n; ++j) cells.emplace_back(decimals_text(fit.correlations[i * n + j], 2));
     table.add(std::move(cells));
   }
   return '\n' + table.text("", width);

@@ -16,6 +16,7 @@
 #include "analysis/description/settled_pose.h"
 #include "analysis/load_chart/tipping.h"
 #include "analysis/parameter_sweep/variation.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/index.h"
 #include "core/suggestion.h"
@@ -172,7 +173,7 @@ class ChartMaker {
       const std::optional<double> value = number_of(variation, text);
       if (!value) refuse_chart("--over: '" + text + "' is no position", "expected an angle or a length");
       pose.values.push_back(*value);
-      pose.settings.push_back(variation.range ? fmt::format("{:.4g} {}", *value, variation.unit) : text);
+      pose.settings.push_back(variation.range ? digits_text(*value, 4) + " " + variation.unit : text);
       overrides.push_back(path + "=" + text);
     }
     try {

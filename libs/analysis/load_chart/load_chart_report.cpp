@@ -44,8 +44,8 @@ ReportTable table_of(const LoadChart& chart) {
       table.add(std::move(row));
       continue;
     }
-    row.emplace_back(fmt::format("{:.3f} m", pose.reach), Json(pose.reach));
-    row.emplace_back(fmt::format("{:.3f} m", pose.height), Json(pose.height));
+    row.emplace_back(decimals_text(pose.reach, 3) + " m", Json(pose.reach));
+    row.emplace_back(decimals_text(pose.height, 3) + " m", Json(pose.height));
     row.emplace_back(kilograms(pose.load), Json(pose.load));
     const ChartLimit& limit = chart.limits[pose.limiting];
     const bool tips_alone = pose.tips_alone && limit.kind == LimitKind::tipping;

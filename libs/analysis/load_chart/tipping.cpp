@@ -9,6 +9,7 @@
 #include <optional>
 #include <sstream>
 
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/index.h"
 #include "multibody/model/model.h"
@@ -198,8 +199,8 @@ SideChoice choose_side(std::vector<TippingLine>& lines, std::size_t line, std::s
     if (std::fabs(side) > kOnLine * norm(gravity)) {
       return {.text =
                   fmt::format("the machine stands on the side of its parts that are fixed to Ground (centre of mass "
-                              "at {:.4g} {:.4g} {:.4g} m)",
-                              center->x(), center->y(), center->z())};
+                              "at {} {} {} m)",
+                              digits_text(center->x(), 4), digits_text(center->y(), 4), digits_text(center->z(), 4))};
     }
   }
   side = side_of_others(lines, line, gravity);

@@ -21,7 +21,7 @@ std::string bracketed(const std::string& text, const std::string& unit) {
 std::string short_value(const Variation& variation, const std::string& value) {
   const std::optional<double> number = number_of(variation, value);
   if (!number || !variation.range) return value;
-  return fmt::format("{:.6g}{}{}", *number, variation.unit.empty() ? "" : " ", variation.unit);
+  return fmt::format("{}{}{}", digits_text(*number, 6), variation.unit.empty() ? "" : " ", variation.unit);
 }
 
 std::string result_of(const SweptRow& row) {
@@ -114,9 +114,10 @@ std::string statistics_text(const ParameterSweep& sweep, std::size_t width) {
 
 std::string correlation_text(const std::optional<Correlation>& correlation) {
   if (!correlation) return "-";
-  std::string text = fmt::format("{:.2f}", correlation->value);
+  std::string text = decimals_text(correlation->value, 2);
   if (correlation->interval) {
-    text += fmt::format(" ({:.2f} .. {:.2f})", correlation->interval->low, correlation->interval->high);
+    text += fmt::format(" ({} .. {})", decimals_text(correlation->interval->low, 2),
+                        decimals_text(correlation->interval->high, 2));
   }
   return text;
 }

@@ -67,6 +67,17 @@ TEST(Display, WritesAChosenValueAsAPersonWould) {
   EXPECT_EQ(chosen_text(std::numeric_limits<double>::infinity(), "rad"), "none");
 }
 
+TEST(Display, AZeroHasNoSign) {
+  EXPECT_EQ(digits_text(-0.0, 4), "0");
+  EXPECT_EQ(digits_text(-1e-9, 4), "-1e-09");
+  EXPECT_EQ(decimals_text(-0.0, 0), "0");
+  EXPECT_EQ(decimals_text(-1e-3, 2), "0.00");
+  EXPECT_EQ(decimals_text(-0.012, 2), "-0.01");
+  EXPECT_EQ(digits_text(-std::numeric_limits<double>::infinity(), 3), "-inf");
+  EXPECT_EQ(quantity_text(-0.0, "N"), "0 kN");
+  EXPECT_EQ(chosen_text(-0.0, "N"), "0 kN");
+}
+
 TEST(Display, CountsInTheRightNumber) {
   EXPECT_EQ(counted(0, "body", "bodies"), "0 bodies");
   EXPECT_EQ(counted(1, "body", "bodies"), "1 body");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "scene/scene.h"
 #include "scene/sections.h"
 #include "scene/source.h"
+#include "scene/units.h"
 #include "scene_text.h"
 #include "temporary_folder.h"
 
@@ -280,6 +282,19 @@ std::string all_of(const std::vector<std::string>& warnings) {
   std::string text;
   for (const std::string& warning : warnings) text += warning + "\n";
   return text;
+}
+
+// a damping that a message would show as -0
+TEST(Load, ADampingOfMinusZeroIsZero) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write(
+      "scene.yaml",
+      "bodies: {Rod: {mass: 2 kg, inertia: [1, 1, 1]}}\n"
+      "joints: {Hinge: {type: revolute, body2: Rod, viscous_friction: -0 Nms/rad, coulomb_friction: -0.0}}\n");
+  const Scene scene = load_file(file);
+  EXPECT_FALSE(std::signbit(scene.mechanics.joints[0].first.viscous_friction));
+  EXPECT_EQ(scene.expanded_text.find("friction: -"), std::string::npos) << scene.expanded_text;
+  EXPECT_EQ(with_unit(-0.0, Dimension::force), "0 N");
 }
 
 TEST(Load, AKeyThatNothingReadsIsAnErrorWhereItIsStatedAndAWarningWhereALaterChoiceLeftIt) {
