@@ -113,7 +113,11 @@ void PortProblem::take_substep(const Step& step, double h, bool is_first, std::s
       solved.has_converged = false;
     }
   }
-  if (!solved.has_converged) step.report.raise(StepFlag::not_converged);
+  if (!solved.has_converged) {
+    step.report.raise(StepFlag::not_converged);
+    const auto& contact = mechanism_.workspace().contact;
+    if (contact != nullptr && step.report.offender < 0) step.report.offender = contact->lost_pair;
+  }
   step.report.iterations += static_cast<std::uint32_t>(solved.iterations + mechanism_.dynamics().iterations());
   step.report.substeps += static_cast<std::uint32_t>(mechanism_.dynamics().parts());
   if (!(solved.residual <= step.report.residual)) step.report.residual = solved.residual;  // NaN stays

@@ -11,10 +11,13 @@ bool is_up(StepFlag flag, const wire::SampleState& state) {
   return (state.flags & static_cast<std::uint32_t>(flag)) != 0;
 }
 
-// The offender of a sample of sensors is a sensor, that of hydraulics a volume or line unless a flag that names
-// something else is up.
+// The offender of a sample of sensors is a sensor, that of mechanics a contact whose shapes passed each other, that of
+// hydraulics a volume or line unless a flag that names something else is up.
 bool names_offender(wire::Role role, StepFlag flag, const wire::SampleState& state) {
   if (role == wire::Role::sensor) return flag == StepFlag::not_converged;
+  if (role == wire::Role::mechanics) {
+    return flag == StepFlag::not_converged && !is_up(StepFlag::non_finite, state);
+  }
   if (role != wire::Role::hydraulics) return false;
   for (const StepFlag other : {StepFlag::not_converged, StepFlag::step_budget, StepFlag::non_finite}) {
     if (is_up(other, state)) return false;

@@ -27,7 +27,7 @@ class FlagCounter {
   struct Seen {
     std::uint64_t steps = 0;
     StepIndex first = 0;
-    std::int32_t offender = -1;  // volume or sensor: the first one that a step names
+    std::int32_t offender = -1;  // volume, sensor or contact: the first one that a step names
   };
   struct Counts {
     std::array<Seen, kFlags.size()> seen;  // in the order of kFlags

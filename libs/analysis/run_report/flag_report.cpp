@@ -48,9 +48,14 @@ constexpr Meaning kCircuitFailed = {
     "choose a smaller session.step or hydraulics.max_substep; with rk4 its steps are too long for the circuit: choose "
     "another hydraulics.solver"};
 
-const Meaning& meaning_of(wire::Role role, std::size_t flag) {
+constexpr Meaning kPassed = {
+    "its shapes passed through each other between two instants, or faster than a sub-step follows",
+    "choose a smaller session.step or mechanics.max_substep, or a thicker shape"};
+
+const Meaning& meaning_of(wire::Role role, std::size_t flag, bool is_named) {
   if (FlagCounter::kFlags[flag] != StepFlag::not_converged) return kMeanings[flag];
   if (role == wire::Role::sensor) return kSearchFailed;
+  if (role == wire::Role::mechanics && is_named) return kPassed;
   return role == wire::Role::hydraulics ? kCircuitFailed : kMeanings[flag];
 }
 
@@ -71,10 +76,12 @@ std::vector<std::string> flag_sentences(const FlagCounter& flags, SimDuration st
     for (std::size_t i = 0; i < kMeanings.size(); ++i) {
       const FlagCounter::Seen& entry = counts.seen[i];
       if (entry.steps == 0) continue;
-      const std::vector<std::string>& of_role = role == wire::Role::sensor ? names.sensors : names.states;
+      const std::vector<std::string>& of_role = role == wire::Role::sensor      ? names.sensors
+                                                : role == wire::Role::mechanics ? names.contacts
+                                                                                : names.states;
       const bool is_named = entry.offender >= 0 && static_cast<std::size_t>(entry.offender) < of_role.size();
       const std::string name = is_named ? of_role[static_cast<std::size_t>(entry.offender)] + ": " : "";
-      const Meaning& meaning = meaning_of(role, i);
+      const Meaning& meaning = meaning_of(role, i, is_named);
       sentences.push_back(fmt::format("{}: {}{} in {}, first at {}; {}", node::to_text(role), name, meaning.what,
                                       counted(entry.steps, "step", "steps"),
                                       duration_text(static_cast<double>(entry.first) * step.seconds()),
@@ -98,6 +105,7 @@ OffenderNames offender_names(const scene::Scene& scene) {
     }
   }
   for (const sensors::SensorDef& sensor : scene.sensors) names.sensors.push_back(sensor.name);
+  for (const multibody::ContactPairDef& pair : scene.mechanics.contacts) names.contacts.push_back(pair.name);
   return names;
 }
 

@@ -13,10 +13,10 @@
 
 namespace slew::analysis {
 
-// Names of what samples name by number: volumes and components of the circuit's states in their order, sensors in the
-// order of the scene.
+// Names of what samples name by number: volumes and components of the circuit's states in their order, sensors and
+// contacts in the order of the scene.
 struct OffenderNames {
-  std::vector<std::string> states, sensors;
+  std::vector<std::string> states, sensors, contacts;
 };
 
 // Flags of the samples of mechanics, hydraulics and sensors: not converged, sub-step budget, clamp, energy from the

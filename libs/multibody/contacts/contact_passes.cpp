@@ -121,20 +121,43 @@ Touch touch_of(const ContactElements& elements, const Workspace& ws, const Conta
       elements, *ws.contact, ws, point, elements.model.frame_of(pair.shape_a), elements.model.frame_of(pair.shape_b)};
 }
 
+void lose(const ContactElements& elements, std::size_t pair, ContactWorkspace& contacts) noexcept {
+  contacts.is_lost = true;
+  if (contacts.lost_pair < 0) contacts.lost_pair = elements.pair_of_tested[pair];
+}
+
 // pairs that were apart at the start and are apart now, or touch from the other side, but met between
-bool find_passed(const ContactElements& elements, ContactWorkspace& contacts) noexcept {
+void find_passed(const ContactElements& elements, ContactWorkspace& contacts) noexcept {
   const std::span<const ContactPoint> points = contacts.set.points();
   for (std::size_t pair = 0; pair < contacts.was_touching.size(); ++pair) {
     if (contacts.was_touching[pair] != 0) continue;
-    const contact::Meeting meeting = sweep(elements.model, pair, contacts.start_poses, contacts.poses, contacts.set);
+    const contact::Meeting meeting =
+        sweep(elements.model, pair, contacts.start_poses, contacts.poses, contacts.set, contact::Turn::steady);
     if (meeting.kind == contact::Meeting::Kind::none) continue;
     const auto at_end =
         std::find_if(points.begin(), points.end(), [pair](const ContactPoint& point) { return point.pair == pair; });
     const bool is_seen =
         meeting.kind == contact::Meeting::Kind::found && at_end != points.end() && dot(at_end->n_W, meeting.n_W) > 0;
-    if (!is_seen) return true;
+    if (!is_seen) return lose(elements, pair, contacts);
   }
-  return false;
+}
+
+// Where the start's speeds led past no shape, but forces or motions did. A pair that overlaps now from the side it came
+// from is met in the next sub-step.
+void look_back(const ContactElements& elements, const Workspace& ws, ContactWorkspace& contacts) noexcept {
+  place_frames(elements, ws, contacts.poses);
+  for (std::size_t pair = 0; pair < contacts.was_touching.size(); ++pair) {
+    const contact::Meeting meeting =
+        sweep(elements.model, pair, contacts.start_poses, contacts.poses, contacts.set, contact::Turn::steady);
+    if (meeting.kind == contact::Meeting::Kind::none) continue;
+    bool is_seen = false;
+    if (meeting.kind == contact::Meeting::Kind::found) {
+      const std::span<const contact::ManifoldPoint> points =
+          points_at_end(elements.model, pair, meeting, contacts.poses, contacts.set);
+      is_seen = !points.empty() && dot(points.front().n_W, meeting.n_W) > 0;
+    }
+    if (!is_seen) return lose(elements, pair, contacts);
+  }
 }
 
 // poses reached with the speeds of the start within h
@@ -235,13 +258,14 @@ ContactSlopes slopes_of_contact(const Model& model, const Workspace& ws, std::si
 }
 
 void accept_contacts(const Model& model, double h, State& state, Workspace& ws) noexcept {
-  if (model.contact == nullptr || !ws.contact->is_near) return;
+  if (model.contact == nullptr) return;
   const ContactElements& elements = *model.contact;
   ContactWorkspace& contacts = *ws.contact;
+  if (!contacts.is_near) return look_back(elements, ws, contacts);
   contacts.time = h;
   place_frames(elements, ws, contacts.poses);
   find_contacts(elements.model, contacts.poses, contacts.set);
-  contacts.is_lost = find_passed(elements, contacts) || contacts.is_lost;
+  find_passed(elements, contacts);
   state.contacts.advance(contacts.before, elements.model, contacts.poses, contacts.set);
   const std::span<const ContactPoint> points = contacts.set.points();
   contacts.is_hit = false;

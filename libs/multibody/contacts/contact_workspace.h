@@ -60,6 +60,7 @@ struct ContactWorkspace {
                          // speed of its law
   bool is_lost = false;  // since this was last cleared, shapes passed through each other, or contacts were faster than
                          // the shortest part
+  int lost_pair = -1;    // of ContactElements::pairs, the first one that is_lost was set for; -1: none, or its parts
 };
 
 }  // namespace slew::multibody

@@ -136,8 +136,11 @@ bool is_resolved(const Workspace& ws, double h) noexcept {
   return true;
 }
 
+// the pair stays for the report of the step
 bool take_lost(Workspace& ws) noexcept {
-  return ws.contact != nullptr && std::exchange(ws.contact->is_lost, false);
+  if (ws.contact == nullptr) return false;
+  if (!ws.contact->is_lost) ws.contact->lost_pair = -1;
+  return std::exchange(ws.contact->is_lost, false);
 }
 
 // conditions on the end of a sub-step

@@ -470,7 +470,7 @@ bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Mo
   const bool is_impulse = rule.integrator == Integrator::semi_implicit_euler;
   const bool is_closed = is_impulse ? close_impulse(at, h) : close(at);
   moving.joints.time += h;
-  if (ws.contact != nullptr && ws.contact->is_near) {
+  if (ws.contact != nullptr) {
     if (moving.bodies == nullptr) update_motion(model, moving.joints.q, moving.joints.u, ws);
     accept_contacts(model, h, moving.joints, ws);
   }

@@ -12,7 +12,7 @@ namespace flag_counter_test {
 
 using node::FlagCounter;
 
-const OffenderNames kNames = {{"Tank", "Line"}, {"Gap", "Hit"}};
+const OffenderNames kNames = {{"Tank", "Line"}, {"Gap", "Hit"}, {"Ball_Floor", "Ball_Plate"}};
 
 void take(FlagCounter& flags, StepIndex step, StepFlag flag, std::uint32_t epoch = 1,
           wire::Role role = wire::Role::hydraulics) {
@@ -53,6 +53,17 @@ TEST(FlagCounter, NamesTheLineThatCavitates) {
   EXPECT_EQ(flag_sentences(flags, milliseconds(1), kNames),
             std::vector<std::string>{"hydraulics: Line: the oil cavitated in 2 steps, first at 1 ms; look at the "
                                      "pressures near zero"});
+}
+
+TEST(FlagCounter, NamesTheContactWhoseShapesPassed) {
+  FlagCounter flags;
+  for (const StepIndex step : {1, 2}) take(flags, step, StepFlag::not_converged, 1, wire::Role::mechanics);
+  EXPECT_EQ(
+      flag_sentences(flags, milliseconds(1), kNames),
+      std::vector<std::string>{
+          "mechanics: Ball_Plate: its shapes passed through each other between two instants, or faster than a "
+          "sub-step follows in 2 steps, first at 1 ms; choose a smaller session.step or mechanics.max_substep, or "
+          "a thicker shape"});
 }
 
 // sensors publish at every k-th step

@@ -168,6 +168,37 @@ TEST_P(Bullet, ThatPassesUnseenIsFlagged) {
   EXPECT_FALSE(motion.is_sound);
 }
 
+// at rest before a wall of 2 mm, 5 cm within the first step: its speed at the start of the step leads nowhere
+TEST_P(Bullet, ThatAForceDrivesPastIsFlagged) {
+  MechanicsDef def = bullet(0, 0.002);
+  def.gravity = {1e5, 0, 0};
+  def.bodies[0].position[0] = def.joints[0].point1[0] = -0.02;
+  Motion motion(def, GetParam());
+  motion.run(1e-3, 1e-3);
+  EXPECT_GT(motion.pose("Ball").position[0], 0.02);
+  EXPECT_FALSE(motion.is_sound);
+}
+
+// a rod of 1 m that turns by 0.1 rad a step about its middle: its end passes a sheet of 1 mm, its middle does not move
+TEST_P(Bullet, ThatIsTheEndOfARodIsFlagged) {
+  const auto is_sound = [](double radius) {
+    MechanicsDef def;
+    def.gravity = {};
+    add_free(def, box_body("Rod", 1, {1, 0.002, 0.002}, {}), {});
+    def.joints[0].initial_rotation = {0, 0, 100};
+    def.shapes = {box_shape("Skin", "Rod", {1, 0.002, 0.002}), box_shape("Sheet", "Ground", {0.02, 0.001, 0.1})};
+    def.shapes[1].position = {radius * std::cos(0.15), radius * std::sin(0.15), 0};
+    def.contacts = {pair_of("Skin", "Sheet", {.stiffness = 1e6, .restitution = 0.5})};
+    def.contacts[0].normal.smallest_impact_speed = 0.05;
+    Motion motion(def, GetParam());
+    motion.run(2e-3, 1e-3);
+    // unless it was met and held
+    return motion.is_sound && motion.pose("Rod").angular_velocity[2] > 90;
+  };
+  EXPECT_FALSE(is_sound(0.48));
+  EXPECT_TRUE(is_sound(0.55));
+}
+
 TEST_P(Bullet, ThatMissesTheWallIsNot) {
   MechanicsDef def = bullet(1e3, 0.02);
   def.bodies[0].position[1] = def.joints[0].point1[1] = 1.5;
