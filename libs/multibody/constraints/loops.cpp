@@ -53,15 +53,6 @@ void find_step(const Model& model, Workspace& ws, Value value) noexcept {
   find_step(model, ws);
 }
 
-void show_rows(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
-  update_motion(model, q, u, ws);
-  evaluate_cuts(model, q, u, ws);
-  LoopWorkspace& loops = ws.loops;
-  loops.is_shown = ws.drives.empty();
-  std::copy(q.begin(), q.end(), loops.shown_q.begin());
-  std::copy(u.begin(), u.end(), loops.shown_u.begin());
-}
-
 template <typename Value>
 double largest(const LoopWorkspace& loops, Value value) noexcept {
   double result = 0;
@@ -82,7 +73,7 @@ bool correct(const Model& model, std::span<const double> q, std::span<const doub
     if (i > 0 && i % kRenewal == 0) renew_matrix(model, q, u, ws);
     find_step(model, ws, value);
     move();
-    show_rows(model, q, u, ws);
+    show(model, q, u, ws);
   }
   return largest(ws.loops, value) <= tolerance;
 }
@@ -98,6 +89,15 @@ void renew_matrix(const Model& model, std::span<const double> q, std::span<const
   factorize(model, ws);
   evaluate_cuts(model, q, u, ws);
   factorize_cuts(model, ws);
+}
+
+void show(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
+  update_motion(model, q, u, ws);
+  evaluate_cuts(model, q, u, ws);
+  LoopWorkspace& loops = ws.loops;
+  loops.is_shown = ws.drives.empty();
+  std::copy(q.begin(), q.end(), loops.shown_q.begin());
+  std::copy(u.begin(), u.end(), loops.shown_u.begin());
 }
 
 bool are_shown(const Model& model, std::span<const double> q, std::span<const double> u, const Workspace& ws) noexcept {
@@ -210,7 +210,7 @@ bool project(const Model& model, std::span<double> q, std::span<double> u, Works
   if (is_near_singular(ws)) {
     renew_matrix(model, q, u, ws);
   } else {
-    show_rows(model, q, u, ws);
+    show(model, q, u, ws);
   }
   const Extent extent = extent_of(ws);
   const bool is_closed = correct(
@@ -264,7 +264,7 @@ bool project_step(const Model& model, double h, std::span<double> q, std::span<d
   // the second-order change, which shift() neglects, is far below kClosedByEuler
   constexpr double kSmall = 1e-5;
   if (is_near_singular(ws)) return project(model, q, u, ws);
-  show_rows(model, q, u, ws);
+  show(model, q, u, ws);
   const double closed = kClosedByEuler * extent_of(ws).length;
   const auto value = [](const RowValue& row) { return row.g; };
   for (int left = kMostQuickCorrections; left > 0; --left) {
@@ -276,7 +276,7 @@ bool project_step(const Model& model, double h, std::span<double> q, std::span<d
     if (open <= kSmall) {
       shift(model, ws);
     } else {
-      show_rows(model, q, u, ws);
+      show(model, q, u, ws);
     }
   }
   return project(model, q, u, ws);

@@ -26,6 +26,9 @@ void evaluate_cuts(const Model& model, std::span<const double> q, std::span<cons
 [[nodiscard]] bool are_shown(const Model& model, std::span<const double> q, std::span<const double> u,
                              const Workspace& ws) noexcept;
 
+// Motion and rows' values of these coordinates and speeds, which the next step's start need not recompute either.
+void show(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept;
+
 // W and its factors; needs the rows' values and factorize().
 inline constexpr double kDependent = 1e-12;  // pivot, share of the row's mobility
 inline constexpr double kNearSingular = 1e-2;

@@ -162,7 +162,7 @@ bool finish_step(const Model& model, State& state, Workspace& ws, double h, std:
   normalize_quaternions(model, state.q);
   if (model.has_closing_rows()) is_closed = project(model, state.q, state.u, ws) && is_closed;
   if (ws.contact != nullptr) {
-    update_motion(model, state.q, state.u, ws);
+    if (!are_shown(model, state.q, state.u, ws)) show(model, state.q, state.u, ws);
     accept_contacts(model, h, state, ws);
   }
   return is_closed;

@@ -88,7 +88,7 @@ bool advance_by_euler(const Model& model, State& state, Workspace& ws, double h,
   const bool is_closed = !model.has_closing_rows() || project_step(model, h, state.q, state.u, ws);
   state.time += h;
   if (ws.contact != nullptr) {
-    update_motion(model, state.q, state.u, ws);
+    if (!are_shown(model, state.q, state.u, ws)) show(model, state.q, state.u, ws);
     accept_contacts(model, h, state, ws);
   }
   return is_closed;

@@ -471,7 +471,8 @@ bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Mo
   const bool is_closed = is_impulse ? close_impulse(at, h) : close(at);
   moving.joints.time += h;
   if (ws.contact != nullptr) {
-    if (moving.bodies == nullptr) update_motion(model, moving.joints.q, moving.joints.u, ws);
+    const State& joints = moving.joints;
+    if (moving.bodies == nullptr && !are_shown(model, joints.q, joints.u, ws)) show(model, joints.q, joints.u, ws);
     accept_contacts(model, h, moving.joints, ws);
   }
   return is_closed && has_settled && (!is_implicit(rule.integrator) || is_followed(at, h));
