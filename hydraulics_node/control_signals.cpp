@@ -40,8 +40,11 @@ void ControlSignals::foresee(hydraulics::Circuit& circuit, hydraulics::CircuitIn
     circuit.set_control(flow_controls[k], present_[k] + change);
     is_any_moving = true;
   }
-  if (!is_any_moving) return;
-  integrator.refresh_force_rates();
+  if (is_any_moving) integrator.refresh_force_rates();
+}
+
+void ControlSignals::recall(hydraulics::Circuit& circuit) const noexcept {
+  const std::span<const int> flow_controls = circuit.flow_controls();
   for (std::size_t k = 0; k < flow_controls.size(); ++k) circuit.set_control(flow_controls[k], present_[k]);
 }
 

@@ -25,7 +25,10 @@ class ControlSignals {
   void set(std::span<const double> controls, hydraulics::Circuit& circuit) noexcept;
   // Computes the integrator's F_dot for the coming step, whose signals are not known yet: they continue to change as
   // before, by the limiter of coupling/trends.h, so that a jump is not continued.
+  // The circuit keeps the expected signals until recall().
   void foresee(hydraulics::Circuit& circuit, hydraulics::CircuitIntegrator& integrator) noexcept;
+  // Back to the present signals after foresee().
+  void recall(hydraulics::Circuit& circuit) const noexcept;
 
   void add_to(const hydraulics::Circuit& circuit, StateHash& hash) const noexcept;
   void save(StateWriter& bytes) const { trends_.save(bytes); }

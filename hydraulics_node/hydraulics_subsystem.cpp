@@ -44,6 +44,7 @@ HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
       reduced_(laws_of(scene)),
       springs_(m_),
       emptying_(m_),
+      foreseen_(*circuit_, is_free_running_),
       late_samples_(m_, cross_count(), is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
       alarm_(scene),
       convergence_(scene.hydraulics.solver),
@@ -70,6 +71,9 @@ void HydraulicsSubsystem::reset() {
   late_samples_.clear();
   used_step_ = -1;
   partner_age_ = 0;
+  foreseen_.reset();
+  has_own_ = false;
+  coupling::resize(own_, m_);
   coupling::resize(published_, m_);
   stiffness_.resize(m_);
   for (double& K : stiffness_) K = 0;
@@ -108,7 +112,7 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
   apply_levels();
   integrator_->refresh();
   if (partners.mechanism != nullptr && m_ > 0) reduced_.set_sample(*partners.mechanism);
-  publish(sample.actuators, 0, false);
+  publish(sample.actuators, 0, false, true);
   if (m_ > 0 && alarm_.ends_session()) {
     Status status = check_coupling(scene_, partners.mechanism->W, published_, levels_);
     if (!status.is_ok()) return status;
@@ -134,14 +138,14 @@ void HydraulicsSubsystem::lump_lines() noexcept {
 // The pistons take the positions of a new sample of this step; a late one corrects them.
 void HydraulicsSubsystem::align(const coupling::MechanismSample& mechanism, StepIndex age) noexcept {
   if (age == 0) {
-    alarm_.update(mechanism, published_, stiffness_, levels_);
+    alarm_.update(mechanism, at_instant(), stiffness_, levels_, foreseen_.bends());
     integrator_->align(mechanism.x.span(), mechanism.v.span());
     return;
   }
   late_samples_.align(used_step_, mechanism, *integrator_);
   coupling::ActuatorSample own;
   if (late_samples_.own_sample(used_step_, mechanism, H_.seconds(), own)) {
-    alarm_.update(mechanism, own, stiffness_, levels_);
+    alarm_.update(mechanism, own, stiffness_, levels_, foreseen_.bends());
   }
 }
 
@@ -191,7 +195,7 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
     sample.actuators = published_;
     return report;
   }
-  publish(sample.actuators, report.flags, n % exchange_every_ != 0);
+  publish(sample.actuators, report.flags, n % exchange_every_ != 0, (n + 1) % exchange_every_ == 0);
   if (is_free_running_ && m_ > 0) late_samples_.keep_sent(n + 1, published_);
   return report;
 }
@@ -207,7 +211,8 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
                                        coupling::OwnSample& sample) noexcept {
   apply_tick(n, controls);
   lump_lines();
-  if (partners.mechanism != nullptr && m_ > 0) alarm_.update(*partners.mechanism, published_, stiffness_, levels_);
+  if (partners.mechanism != nullptr && m_ > 0)
+    alarm_.update(*partners.mechanism, at_instant(), stiffness_, levels_, foreseen_.bends());
   const bool is_step = n >= 0 && circuit_->has_temperatures();
   if (is_step) circuit_->begin_heat(integrator_->state().data());
   std::copy(step.state.begin(), step.state.end(), integrator_->mutable_state().begin());
@@ -225,7 +230,7 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
     report.raise(StepFlag::ended);
   }
   if (is_out_of_barrel(step.state.data())) report.raise(StepFlag::ended);
-  publish(sample.actuators, report.flags, false);
+  publish(sample.actuators, report.flags, false, false);
   std::copy(step.work.begin(), step.work.end(), sample.actuators.work.begin());
   std::copy(step.impulse.begin(), step.impulse.end(), sample.actuators.impulse.begin());
   published_ = sample.actuators;
@@ -237,15 +242,20 @@ bool HydraulicsSubsystem::is_out_of_barrel(const double* y) noexcept {
       *circuit_, y, [this](int j) -> std::string_view { return scene_.ports[static_cast<std::size_t>(j)].name; });
 }
 
-// adds_up: work and impulse continue those of the sample before, since there was no exchange in between
-void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up) noexcept {
+// adds_up: work and impulse continue those of the sample before, since there was no exchange in between; is_used: the
+// mechanics continues from this sample
+void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up,
+                                  bool is_used) noexcept {
   if (sample.F.size() != m_) coupling::resize(sample, m_);
   signals_.foresee(*circuit_, *integrator_);
   const double exchange = exchange_every_ * H_.seconds();
   const std::span<const hydraulics::ActuatorLinearisation> actuators = integrator_->actuators();
   for (std::size_t i = 0; i < m_; ++i) springs_[i] = actuators[i].springs;
   const bool takes_part = integrator_->take_part(exchange, springs_);
-  emptying_.end_springs(*integrator_, *circuit_, shared_, reduced_, exchange, springs_);
+  if (is_used) foreseen_.follow(*integrator_, *circuit_, reduced_, levels_, exchange);
+  has_own_ = is_used && foreseen_.foresee(*integrator_, reduced_, levels_, exchange, springs_);
+  signals_.recall(*circuit_);
+  if (!has_own_) emptying_.end_springs(*integrator_, *circuit_, shared_, reduced_, exchange, springs_);
   for (std::size_t i = 0; i < m_; ++i) {
     const hydraulics::ActuatorLinearisation& a = actuators[i];
     const math::RelaxingSpring spring = math::one_for_all(springs_[i], exchange);
@@ -271,6 +281,11 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
     shared_.write(springs_, takes_part ? &integrator_->response() : nullptr, *circuit_, integrator_->state().data(),
                   exchange, sample.lambda, sample.K_cross);
   }
+  if (has_own_) {
+    own_ = sample;
+    for (std::size_t i = 0; i < m_; ++i) own_.K[i] = actuators[i].K;
+    foreseen_.set_forces(exchange, sample);
+  }
   sample.flags = flags;
   published_ = sample;
 }
@@ -294,6 +309,7 @@ std::uint64_t HydraulicsSubsystem::state_hash() const noexcept {
   levels_.add_to(hash);
   signals_.add_to(*circuit_, hash);
   convergence_.add_to(hash);
+  foreseen_.add_to(hash);
   hash.add(failure_.has_failed());
   return hash.digest();
 }

@@ -24,6 +24,7 @@
 #include "hydraulics_node/convergence_watch.h"
 #include "hydraulics_node/coupling_alarm.h"
 #include "hydraulics_node/emptying_chambers.h"
+#include "hydraulics_node/foreseen_forces.h"
 #include "hydraulics_node/late_samples.h"
 #include "hydraulics_node/reduced_mechanics.h"
 #include "hydraulics_node/shared_volumes.h"
@@ -65,6 +66,8 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   }
 
   [[nodiscard]] const coupling::Indicator& indicator() const noexcept { return alarm_.indicator(); }
+  // The published sample with the force and the springs of its instant (foreseen_forces.h).
+  [[nodiscard]] const coupling::ActuatorSample& at_instant() const noexcept { return has_own_ ? own_ : published_; }
   [[nodiscard]] const hydraulics::Circuit& circuit() const noexcept { return *circuit_; }
   [[nodiscard]] const hydraulics::CircuitIntegrator& integrator() const noexcept { return *integrator_; }
   [[nodiscard]] hydraulics::CircuitIntegrator& integrator() noexcept { return *integrator_; }  // for tests and tools
@@ -78,7 +81,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   void take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
                       StepReport& report) noexcept;
   void align(const coupling::MechanismSample& mechanism, StepIndex age) noexcept;
-  void publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up) noexcept;
+  void publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up, bool is_used) noexcept;
   [[nodiscard]] bool is_out_of_barrel(const double* y) noexcept;
   void list_variables();
   [[nodiscard]] std::size_t cross_count() const noexcept { return shared_.any() ? m_ * m_ : 0; }
@@ -96,6 +99,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   ReducedMechanics reduced_;
   std::vector<hydraulics::ActuatorSprings> springs_;  // over an interval
   EmptyingChambers emptying_;
+  ForeseenForces foreseen_;
   LateSamples late_samples_;
   CouplingAlarm alarm_;
   ConvergenceWatch convergence_;
@@ -104,6 +108,8 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   StepIndex partner_age_ = 0;  // age of this sample in the last step
   std::vector<ElementVariable> variables_;
   coupling::ActuatorSample published_;
+  coupling::ActuatorSample own_;  // at_instant()
+  bool has_own_ = false;
   coupling::PortArray stiffness_;  // of the oil columns, also of ports that publish none [N/m]
   StepReport failure_;
   std::uint64_t saved_model_ = 0;  // identifies the scenes whose saved states fit

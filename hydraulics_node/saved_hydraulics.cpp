@@ -5,7 +5,7 @@
 namespace slew::hydraulics_node {
 namespace {
 
-constexpr std::uint32_t kLayout = 4;
+constexpr std::uint32_t kLayout = 5;
 
 }  // namespace
 
@@ -34,6 +34,10 @@ void HydraulicsSubsystem::visit(Self& self, Bytes& bytes) {
   visit_sized(bytes, self.stiffness_, self.m_);
   visit_report(bytes, self.failure_);
   CouplingAlarm::visit_text(self.alarm_, bytes);
+  CouplingAlarm::visit_made(self.alarm_, bytes);
+  ForeseenForces::visit(self.foreseen_, bytes);
+  bytes.flag(self.has_own_);
+  if (self.has_own_) visit_actuators(self.own_, self.m_, self.cross_count(), bytes);
   ConvergenceWatch::visit(self.convergence_, bytes);
 }
 

@@ -178,6 +178,8 @@ class Circuit {
 
   // Capacities C_i [m3/Pa] over the state; 0 for fixed volumes.
   void capacities(const double* y, double* C) const noexcept;
+  // That of a volume that is not fixed.
+  [[nodiscard]] double capacity_at(std::size_t volume, const double* y) const noexcept;
   // d ln C / dp of a volume that is not fixed [1/Pa]
   [[nodiscard]] double capacity_growth(int volume, const double* y) const noexcept;
   // Slopes -dQ/dp of each volume at y, on the steeper side of switches.
@@ -331,7 +333,6 @@ class Circuit {
   [[nodiscard]] Capacity capacity(std::size_t volume, const double* y) const noexcept;
   // Oil in a volume [m3]; with vapour its room.
   [[nodiscard]] double content_at(std::size_t volume, const double* y) const noexcept;
-  [[nodiscard]] double capacity_at(std::size_t volume, const double* y) const noexcept;
   [[nodiscard]] double capacity_of_lines(std::size_t volume, double p, const double* y) const noexcept;
   void stamp_flows(const double* y) noexcept;
   void evaluate_flows(const double* y, double* f) noexcept;

@@ -8,7 +8,6 @@
 #include "core/reductions.h"
 #include "math/cvode_stepper.h"
 #include "math/implicit_euler.h"
-#include "math/rodas3.h"
 #include "math/runge_kutta4.h"
 
 namespace slew::hydraulics {
@@ -52,6 +51,12 @@ math::StiffOptions options_of(const Circuit& circuit, const HydraulicsDef& def) 
           .relative = circuit.relatives(),
           .relative_below_zero = circuit.relatives_below_zero(),
           .is_replaced = replaced_states(circuit)};
+}
+
+// Of an interval that is only foreseen.
+math::StiffOptions options_ahead(math::StiffOptions options) {
+  options.relative_tolerance = std::max(options.relative_tolerance, math::kSoundShare);
+  return options;
 }
 
 std::unique_ptr<math::StiffIntegrator> make_solver(const Circuit& circuit, Solver choice,
@@ -115,6 +120,10 @@ CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
       options_(options_of(circuit, def)),
       choice_(def.solver),
       solver_(make_solver(circuit, def.solver, options_)),
+      ahead_solver_(coupled_pattern(circuit), y_.size(), options_ahead(options_)),
+      y_ahead_(y_),
+      f_ahead_(y_),
+      vapour_(C_.size()),
       inputs_(def.solver == Solver::cvode ? circuit.control_signals().size() + circuit.parameter_values().size() : 0),
       quasi_static_above_(def.quasi_static_above),
       mass_(y_.size(), 1),
@@ -175,6 +184,7 @@ void CircuitIntegrator::list_quasi_static() {
     if (is_quasi_static_[i] != 0) quasi_static_.push_back(static_cast<StateIndex>(i));
   }
   if (solver_->takes_algebraic_rows()) solver_->set_mass(mass_);
+  ahead_solver_.set_mass(mass_);
   algebraic_ = math::DenseLu(quasi_static_.size());
   before_.assign(quasi_static_.size(), 0.0);
   balanced_ = before_;

@@ -35,9 +35,11 @@
 #include "core/state_hash.h"
 #include "core/step_report.h"
 #include "hydraulics/circuit.h"
+#include "hydraulics/foreseen_interval.h"
 #include "hydraulics/piston_motion.h"
 #include "hydraulics/step_response.h"
 #include "math/dense_lu.h"
+#include "math/rodas3.h"
 #include "math/stiff_system.h"
 
 namespace slew::hydraulics {
@@ -93,6 +95,10 @@ class CircuitIntegrator final : private math::StiffSystem {
   // (not_converged), of the volume farthest beyond the oil's law, or of the first volume that cavitates.
   StepReport step(double H, const PistonMotion& motion) noexcept;
 
+  // Foresees the H seconds from the present state on under the present control signals, and goes back to that state.
+  // False: not computed within the budget of sub-steps. No allocation.
+  [[nodiscard]] bool foresee(double H, const PistonMotion& motion, ForeseenInterval& interval) noexcept;
+
   [[nodiscard]] std::span<const ActuatorLinearisation> actuators() const noexcept { return published_; }
   // Changes the springs of actuators() to those over H seconds, as StepResponse::take_part().
   [[nodiscard]] bool take_part(double H, std::span<ActuatorSprings> springs) noexcept {
@@ -100,6 +106,8 @@ class CircuitIntegrator final : private math::StiffSystem {
   }
   [[nodiscard]] const StepResponse& response() const noexcept { return response_; }
   [[nodiscard]] std::span<const double> state() const noexcept { return y_; }
+  [[nodiscard]] std::span<const double> rates() const noexcept { return f_; }       // y' at actuators()
+  [[nodiscard]] std::span<const double> capacities() const noexcept { return C_; }  // m3/Pa, 0 for fixed volumes
   // Mutable state for tests and tools; call refresh() afterwards.
   [[nodiscard]] std::span<double> mutable_state() noexcept { return y_; }
   [[nodiscard]] std::span<LineChamber> mutable_lines() noexcept { return circuit_.mutable_lines(); }
@@ -125,6 +133,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   void load(StateReader& bytes);
 
  private:
+  class Ahead;
   template <typename Self, typename Bytes>
   static void visit(Self& self, Bytes& bytes);
   void derivative(const double* y, double* f) noexcept override;
@@ -180,6 +189,8 @@ class CircuitIntegrator final : private math::StiffSystem {
   math::StiffOptions options_;
   Solver choice_;
   std::unique_ptr<math::StiffIntegrator> solver_;
+  math::Rodas3 ahead_solver_;  // of foresee()
+  std::vector<double> y_ahead_, f_ahead_, vapour_;
   math::StiffReport report_;
   std::vector<double> inputs_;  // controls and live parameters of the last step; empty if unused
   double quasi_static_above_;   // 1/s

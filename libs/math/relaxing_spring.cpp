@@ -10,6 +10,8 @@ namespace {
 // of 2 b/a - 1, where double can still distinguish it from 1: lambda H of 2e9
 constexpr double kFastest = 1 - 1e-9;
 
+constexpr int kLastTerm = 28;  // 5! 2^23/28! is below the rounding
+
 // a(x) and b(x) of (1)
 struct Response {
   double end, integral;
@@ -52,6 +54,19 @@ double rate_of_share(double share) noexcept {
 
 double remaining_share(double x) noexcept {
   return response(x).end;
+}
+
+DecayedIntegrals decayed_integrals(double x) noexcept {
+  if (x > 2) {
+    const double phi_1 = -std::expm1(-x) / x, phi_2 = (1 - phi_1) / x, phi_3 = (0.5 - phi_2) / x;
+    const double phi_4 = (1.0 / 6 - phi_3) / x;
+    return {phi_1, phi_2, phi_3, phi_4, (1.0 / 24 - phi_4) / x};
+  }
+  // below, the differences lose digits: 5! phi_5 by its series
+  double sum = 1;
+  for (int k = kLastTerm; k > 5; --k) sum = 1 - x / k * sum;
+  const double phi_5 = sum / 120, phi_4 = 1.0 / 24 - x * phi_5, phi_3 = 1.0 / 6 - x * phi_4, phi_2 = 0.5 - x * phi_3;
+  return {1 - x * phi_2, phi_2, phi_3, phi_4, phi_5};
 }
 
 RelaxingSpring one_for_all(std::span<const RelaxingSpring> springs, double H) noexcept {

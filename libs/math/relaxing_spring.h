@@ -32,6 +32,13 @@ struct RelaxingSpring {
 // a(x) of (1), x >= 0.
 [[nodiscard]] double remaining_share(double x) noexcept;
 
+// phi_1 = (1 - e^-x)/x, phi_k+1 = (1/k! - phi_k)/x for x >= 0: a signal t^k/k! that decays with lambda has the integral
+// h^(k+1) phi_k+1(lambda h) after h.
+struct DecayedIntegrals {
+  double phi_1, phi_2, phi_3, phi_4, phi_5;  // 1/k! for x = 0
+};
+[[nodiscard]] DecayedIntegrals decayed_integrals(double x) noexcept;
+
 // Of a force over H seconds: its change at the end over -u H, the integral of its change over -u H^2 [N/m], and the
 // integral at v_ref over H^2 [N/s].
 struct SpringResponse {

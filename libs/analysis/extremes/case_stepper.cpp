@@ -194,15 +194,15 @@ class Stepper {
     }
     if (!has_ports()) return;
     const coupling::Indicator& indicator = hydraulics_->indicator();
+    const coupling::ActuatorSample& actuators = hydraulics_->at_instant();
     for (std::size_t i = 0; i < scene_.ports.size(); ++i) {
-      energy_[i].add(indicator.port(i).dE_star, session_.mechanism().work[i], session_.actuators().F[i],
-                     session_.actuators().K[i]);
+      energy_[i].add(indicator.port(i).dE_star, session_.mechanism().work[i], actuators.F[i], actuators.K[i]);
       m.eta = std::max(m.eta.value_or(0), indicator.port(i).eta);
-      run_.trace.values.push_back(session_.actuators().F[i]);
+      run_.trace.values.push_back(actuators.F[i]);
     }
     const double omega_H = indicator.omega_H();
     m.stiffness = std::max(m.stiffness.value_or(0), omega_H * omega_H);
-    ceiling_.follow(session_.mechanism(), session_.actuators());
+    ceiling_.follow(session_.mechanism(), actuators);
     if (k == 0 || !commands_.empty()) ceiling_.put_on(session_.mechanism());
   }
 

@@ -132,5 +132,24 @@ TEST(RelaxingSpring, OfAResponseIsAtMostAsStiffAsItsBound) {
   }
 }
 
+// phi_k = int_0^1 e^{-x(1-t)} t^{k-1}/(k-1)! dt, by Simpson's rule
+TEST(RelaxingSpring, DecayedIntegralsAreThoseOfTheirDefinition) {
+  for (const double x : {0.0, 1e-9, 1e-3, 0.3, 1.999, 2.001, 4.0, 30.0}) {
+    double sums[5] = {0, 0, 0, 0, 0};
+    constexpr int kParts = 4000;
+    for (int i = 0; i <= kParts; ++i) {
+      const double t = static_cast<double>(i) / kParts, weight = i == 0 || i == kParts ? 1 : (i % 2 == 1 ? 4 : 2);
+      double term = weight * std::exp(-x * (1 - t)) / (3.0 * kParts);
+      for (int k = 0; k < 5; ++k) sums[k] += term, term *= t / (k + 1);
+    }
+    const DecayedIntegrals phi = decayed_integrals(x);
+    EXPECT_NEAR(phi.phi_1, sums[0], 1e-10 * sums[0]) << x;
+    EXPECT_NEAR(phi.phi_2, sums[1], 1e-10 * sums[1]) << x;
+    EXPECT_NEAR(phi.phi_3, sums[2], 1e-10 * sums[2]) << x;
+    EXPECT_NEAR(phi.phi_4, sums[3], 1e-10 * sums[3]) << x;
+    EXPECT_NEAR(phi.phi_5, sums[4], 1e-10 * sums[4]) << x;
+  }
+}
+
 }  // namespace relaxing_spring_test
 }  // namespace slew::math

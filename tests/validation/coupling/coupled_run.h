@@ -50,7 +50,7 @@ class CoupledRun {
 
   [[nodiscard]] SimTime time() const { return start_of(n_, H_); }
   [[nodiscard]] const MechanismSample& mechanism() const { return session_.mechanism(); }
-  [[nodiscard]] const ActuatorSample& actuators() const { return session_.actuators(); }
+  [[nodiscard]] const ActuatorSample& actuators() const { return hydraulics().at_instant(); }
   [[nodiscard]] bool has_failed() const { return has_failed_; }
   // the last step had a sample that no step before it had
   [[nodiscard]] bool had_new_sample() const { return had_new_sample_; }
