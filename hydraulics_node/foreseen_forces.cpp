@@ -13,7 +13,7 @@ namespace {
 
 using coupling::kMaxPorts;
 
-// of (1): a swing of omega H = 0.2 through the softest range keeps its size to 0.5 % over 20 swings without
+// of (1)
 constexpr double kBends = 0.01;
 constexpr double kSoftens = 0.8;  // of the stiffer spring
 constexpr double kMostSwing = 2;  // of omega_H squared

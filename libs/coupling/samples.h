@@ -47,7 +47,7 @@ struct MechanismSample {
 //   F' = F_dot - K (v - v_ref) - lambda (F - F_n),  line contribution -D (v - v_ref).
 // Where ports share volumes of oil, F_i' has -sum_j K_cross_ij (v_j - v_ref_j) too.
 struct ActuatorSample {
-  PortArray F;               // pressure force pA AA - pB AB [N]
+  PortArray F;  // pressure force pA AA - pB AB [N]; where the step was foreseen (foreseen_forces.h) its line's begin
   PortArray F_dot;           // under the signals expected for the next tick [N/s]
   PortArray K;               // oil-column stiffness, >= 0 [N/m]
   PortArray lambda;          // leakage of the spring, >= 0 [1/s]
