@@ -41,19 +41,37 @@ Json bounded(Json schema, const Range& range) {
 // Kind of file: expressions are part of scenes alone.
 enum class Values { of_scene, plain };
 
-Json text_like(const char* pattern) {
-  return {{"type", "string"}, {"pattern", pattern}};
+// Texts that stand in many places are definitions of the schema.
+struct TextPattern {
+  std::string_view name;
+  const char* pattern;
+};
+constexpr TextPattern kQuantityText{"quantity", kQuantityPattern}, kValueText{"value", kValuePattern},
+    kExpressionText{"expression", kExpressionPattern}, kPointText{"point", kPointPattern};
+
+Json reference_to(std::string_view name) {
+  return {{"$ref", "#/$defs/" + std::string(name)}};
+}
+
+Json text_like(const TextPattern& text) {
+  return reference_to(text.name);
+}
+
+Json text_definitions(std::initializer_list<TextPattern> texts) {
+  Json definitions = Json::object();
+  for (const TextPattern& text : texts) definitions[text.name] = {{"type", "string"}, {"pattern", text.pattern}};
+  return definitions;
 }
 
 Json quantity(const Range& range, Values values) {
-  const char* pattern = values == Values::of_scene ? kValuePattern : kQuantityPattern;
+  const TextPattern& pattern = values == Values::of_scene ? kValueText : kQuantityText;
   return {{"anyOf", Json::array({bounded({{"type", "number"}}, range), text_like(pattern)})}};
 }
 
 // an integer, a truth value or a choice
 Json or_expression(Json schema, Values values) {
   if (values == Values::plain) return schema;
-  return {{"anyOf", Json::array({std::move(schema), text_like(kExpressionPattern)})}};
+  return {{"anyOf", Json::array({std::move(schema), text_like(kExpressionText)})}};
 }
 
 Json list_of(Json items, int length) {
@@ -77,7 +95,7 @@ Json or_point(Json schema, const Field& field, Values values) {
   if (values == Values::plain || field.dimension != Dimension::length || !may_be_point) {
     return or_expression(std::move(schema), values);
   }
-  return {{"anyOf", Json::array({std::move(schema), text_like(kPointPattern)})}};
+  return {{"anyOf", Json::array({std::move(schema), text_like(kPointText)})}};
 }
 
 Json type_of(const Field& field, Values values) {
@@ -105,7 +123,7 @@ Json type_of(const Field& field, Values values) {
                          {"required", Json::array({"file"})},
                          {"additionalProperties", false}};
       Json forms = Json::array({std::move(table), name, file});
-      if (values == Values::of_scene) forms.push_back(text_like(kExpressionPattern));
+      if (values == Values::of_scene) forms.push_back(text_like(kExpressionText));
       return {{"anyOf", std::move(forms)}};
     }
     case FieldType::numbers:
@@ -125,6 +143,7 @@ Json property(const Field& field, Values values) {
                         field.type == FieldType::triples || field.type == FieldType::numbers;
   if (has_unit && field.dimension != Dimension::none) description += "; " + expected_quantity(field.dimension);
   if (!field.reference.empty()) description += "; name of a " + std::string(field.reference);
+  for (const ReadBy& condition : field.read_by) description += "; read with " + std::string(condition.what);
   schema["description"] = description;
   if (field.change == Change::live) schema["x-live"] = true;
   return schema;
@@ -237,7 +256,7 @@ void add_language_keys(Json& type, const ElementTable& table) {
     };
     const std::string suffix = number, key = std::string(kFrameKey) + suffix;
     if (has(key) || !has("body" + suffix) || !has("point" + suffix) || !has("orientation" + suffix)) continue;
-    properties[key] = text_like(kPointPattern);
+    properties[key] = text_like(kPointText);
     properties[key]["description"] = "named point that gives body, point and orientation";
   }
 }
@@ -281,19 +300,21 @@ Json forms_of(std::string_view section) {
   return types;
 }
 
-// An element that may extend an included one: keys of one of the section's forms, none of them required.
-Json partial_element(const Json& forms) {
-  Json parts = Json::array();
-  for (const Json& form : forms.items()) {
-    Json part = form;
-    // what lies over a template takes any key, and only `use` makes it one
-    if (form.at("properties").find(kUseKey) == nullptr) {
-      for (const char* const demand : {"required", "oneOf"}) part.erase(demand);
-    }
-    parts.push_back(std::move(part));
+// "bodies.rigid.from_shape.box": the section, and what makes this form of its elements one of its own.
+std::string name_of_form(std::string_view section, const Json& form) {
+  std::string name(section);
+  const Json& properties = form.at("properties");
+  if (properties.find(kUseKey) != nullptr) return name + "." + std::string(kUseKey);
+  for (const std::string_view key : {std::string_view("type"), kInertiaKey, kShapeKey}) {
+    const Json* const property = properties.find(key);
+    const Json* const word = property == nullptr ? nullptr : property->find("const");
+    if (word != nullptr) name += "." + word->text();
   }
-  return {{"anyOf", std::move(parts)}};
+  return name;
 }
+
+// Parts of a form that a whole element must have.
+constexpr const char* kDemands[] = {"required", "oneOf"};
 
 // Ground is there by itself and has named points alone.
 Json ground(const Json& forms) {
@@ -305,12 +326,30 @@ Json ground(const Json& forms) {
 // The elements of a file: whole ones, or with an include also parts of those of the included files.
 enum class Elements { whole, of_include };
 
-Json elements_of(std::string_view section, Elements elements) {
-  const Json forms = forms_of(section);
-  Json schema = {
-      {"additionalProperties", elements == Elements::whole ? Json{{"oneOf", forms}} : partial_element(forms)}};
+Json elements_of(std::string_view section, Elements elements, const Json& forms) {
+  Json types = Json::array();
+  for (const Json& form : forms.items()) {
+    Json type = reference_to(name_of_form(section, form));
+    // what lies over a template takes any key, and only `use` makes it one
+    const bool is_whole = elements == Elements::whole || form.at("properties").find(kUseKey) != nullptr;
+    for (const char* const demand : kDemands) {
+      if (is_whole && form.find(demand) != nullptr) type[demand] = form.at(demand);
+    }
+    types.push_back(std::move(type));
+  }
+  const char* const choice = elements == Elements::whole ? "oneOf" : "anyOf";
+  Json schema = {{"additionalProperties", Json{{choice, std::move(types)}}}};
   if (section == "bodies") schema["properties"] = {{std::string(multibody::kGroundName), ground(forms)}};
   return schema;
+}
+
+// The forms of a section's elements by name, without what a whole element must have.
+void add_definitions(Json& definitions, std::string_view section, const Json& forms) {
+  for (const Json& form : forms.items()) {
+    Json definition = form;
+    for (const char* const demand : kDemands) definition.erase(demand);
+    definitions[name_of_form(section, form)] = std::move(definition);
+  }
 }
 
 Json script() {
@@ -372,6 +411,7 @@ std::string flexible_json_schema() {
   properties["reduction"] = object_of(flex::reduction_fields(), "reduction of the body", "", Values::plain);
   // with an include the names may stand there
   schema.erase("required");
+  schema["$defs"] = text_definitions({kQuantityText});
   return schema.dump(2, Json::Order::as_put) + "\n";
 }
 
@@ -428,16 +468,20 @@ std::string json_schema() {
     properties[std::string(table.section)] = object_of(table.fields, table.doc, "", Values::of_scene);
   }
   Json whole = Json::object(), of_include = Json::object();
+  Json definitions = text_definitions({kValueText, kExpressionText, kPointText});
   for (const std::string_view key : element_sections()) {
     const std::string section(key);
     properties[section] = {{"type", "object"},
                            {"propertyNames", {{"pattern", kNamePattern}, {"maxLength", kMaxNameLength}}}};
-    whole[section] = elements_of(section, Elements::whole);
-    of_include[section] = elements_of(section, Elements::of_include);
+    const Json forms = forms_of(section);
+    whole[section] = elements_of(section, Elements::whole, forms);
+    of_include[section] = elements_of(section, Elements::of_include, forms);
+    add_definitions(definitions, section, forms);
   }
   schema["if"] = {{"required", Json::array({"include"})}};
   schema["then"] = {{"properties", std::move(of_include)}};
   schema["else"] = {{"properties", std::move(whole)}};
+  schema["$defs"] = std::move(definitions);
   return schema.dump(2, Json::Order::as_put) + "\n";
 }
 

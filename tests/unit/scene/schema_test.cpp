@@ -28,8 +28,28 @@ std::string read_file(const std::string& path) {
   return text.str();
 }
 
+// A schema with its definitions in place of the references to them.
+nlohmann::json resolved(const nlohmann::json& node, const nlohmann::json& definitions) {
+  nlohmann::json result = node;
+  if (!node.is_structured()) return result;
+  if (node.is_object() && node.contains("$ref")) {
+    const std::string name = node["$ref"].get<std::string>().substr(std::string("#/$defs/").size());
+    result = resolved(definitions.at(name), definitions);
+    result.update(node);
+    result.erase("$ref");
+    return result;
+  }
+  for (auto& [key, part] : result.items()) part = resolved(part, definitions);
+  return result;
+}
+
+nlohmann::json resolved_schema(const std::string& text) {
+  const auto schema = nlohmann::json::parse(text);
+  return resolved(schema, schema.at("$defs"));
+}
+
 TEST(Schema, HasEveryFieldOfEveryTable) {
-  const auto schema = nlohmann::json::parse(json_schema());
+  const auto schema = resolved_schema(json_schema());
   for (const ElementTable& table : element_tables()) {
     const auto& element = schema["else"]["properties"][std::string(table.section)]["additionalProperties"];
     // not constant: a key that is missing reads as null
@@ -54,7 +74,7 @@ TEST(Schema, HasEveryFieldOfEveryTable) {
 }
 
 TEST(Schema, ReportsWhichFieldsAreLive) {
-  const auto schema = nlohmann::json::parse(json_schema());
+  const auto schema = resolved_schema(json_schema());
   const auto& bodies = schema["else"]["properties"]["bodies"]["additionalProperties"]["oneOf"];
   // numbers, mesh, each shape, parts; flexible and segmented; the last one is laid over a template
   const std::size_t rigid_forms = 3 + shape_words().size();
@@ -66,7 +86,7 @@ TEST(Schema, ReportsWhichFieldsAreLive) {
 }
 
 TEST(Schema, HasTheFieldsOfABodyFromAMesh) {
-  const auto schema = nlohmann::json::parse(json_schema());
+  const auto schema = resolved_schema(json_schema());
   const auto& bodies = schema["else"]["properties"]["bodies"]["additionalProperties"]["oneOf"];
   EXPECT_EQ(bodies[1]["properties"]["inertia"]["const"], "from_mesh");
   for (const Field& field : mesh_inertia_fields()) {
@@ -78,7 +98,7 @@ TEST(Schema, HasTheFieldsOfABodyFromAMesh) {
 }
 
 TEST(Schema, HasTheFieldsOfABodyFromShapes) {
-  const auto schema = nlohmann::json::parse(json_schema());
+  const auto schema = resolved_schema(json_schema());
   const auto& bodies = schema["else"]["properties"]["bodies"]["additionalProperties"]["oneOf"];
   const auto expect_fields = [](const nlohmann::json& type, std::span<const Field> fields) {
     for (const Field& field : fields) {
@@ -106,7 +126,7 @@ TEST(Schema, HasTheFieldsOfABodyFromShapes) {
 }
 
 TEST(Schema, HasTheKeysThatTheLoaderResolves) {
-  const auto schema = nlohmann::json::parse(json_schema());
+  const auto schema = resolved_schema(json_schema());
   for (const std::string_view key : language_keys()) {
     EXPECT_FALSE(schema["properties"][std::string(key)]["description"].get<std::string>().empty()) << key;
   }
@@ -125,7 +145,7 @@ TEST(Schema, HasTheKeysThatTheLoaderResolves) {
 
 // an overlay sets one key of an element of the included scene
 TEST(Schema, WithAnIncludeNoKeyIsRequiredAndNoneIsUnknown) {
-  const auto schema = nlohmann::json::parse(json_schema());
+  const auto schema = resolved_schema(json_schema());
   for (const ElementTable& table : element_tables()) {
     const auto& forms = schema["then"]["properties"][std::string(table.section)]["additionalProperties"]["anyOf"];
     const auto& whole = schema["else"]["properties"][std::string(table.section)]["additionalProperties"]["oneOf"];
@@ -142,6 +162,25 @@ TEST(Schema, WithAnIncludeNoKeyIsRequiredAndNoneIsUnknown) {
     EXPECT_EQ(ground["properties"].size(), 1u) << form;
     EXPECT_TRUE(ground["properties"].contains("points")) << form;
   }
+}
+
+TEST(Schema, HoldsEachFormOfAnElementOnce) {
+  const auto schema = nlohmann::json::parse(json_schema());
+  for (const std::string_view section : element_sections()) {
+    for (const char* const form : {"then", "else"}) {
+      const auto& elements = schema[form]["properties"][std::string(section)]["additionalProperties"];
+      for (const auto& type : elements[elements.contains("oneOf") ? "oneOf" : "anyOf"]) {
+        EXPECT_TRUE(type.contains("$ref") && !type.contains("properties")) << section << " " << type.dump();
+      }
+    }
+  }
+  EXPECT_EQ(schema["$defs"]["bodies.rigid.from_shape.box"]["properties"]["shape"]["const"], "box");
+}
+
+TEST(Schema, StatesTheChoiceThatReadsAField) {
+  const auto schema = nlohmann::json::parse(json_schema());
+  const std::string text = schema["properties"]["session"]["properties"]["overrun"]["description"].get<std::string>();
+  EXPECT_NE(text.find("; read with pace: real"), std::string::npos) << text;
 }
 
 TEST(Schema, EveryFieldHasADocLine) {
@@ -201,7 +240,7 @@ TEST(FormatDocument, WithoutMarkersIsNotTouched) {
 }
 
 TEST(Schema, OfFlexibleBodiesHasTheirFieldsAndShapes) {
-  const auto schema = nlohmann::json::parse(flexible_json_schema());
+  const auto schema = resolved_schema(flexible_json_schema());
   const auto& properties = schema.at("properties");
   for (const flex::SectionType& type : flex::section_types()) {
     const auto& shapes = properties.at("sections").at("additionalProperties").at("oneOf");
