@@ -11,7 +11,7 @@ void add_schema(options::Command& program) {
   options::Command verb = program.command("schema", "print the JSON Schema of scene files");
   // both live as long as the command line's callbacks
   const auto is_table = std::make_shared<bool>(false), is_flexible = std::make_shared<bool>(false);
-  verb.flag("--table", *is_table, "as tables for people (Markdown): fields, dimensions, ranges, defaults");
+  verb.flag("--table", *is_table, "as text for people (Markdown): fields, dimensions, ranges, defaults");
   verb.flag("--flexible", *is_flexible, "of descriptions of flexible bodies instead");
   verb.footer("Example:\n  slewring schema > slewring.schema.json");
   verb.action([is_table, is_flexible] {

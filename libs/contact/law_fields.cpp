@@ -26,9 +26,8 @@ constexpr Field kNormalLawFields[] = {
                                                         .range = kPositive,
                                                         .presence = Presence::required,
                                                         .doc = "stiffness of the pair at the reference depth"}),
-    field<&NormalLawDef::restitution>(
-        "restitution_coefficient",
-        {.range = kRestitution, .doc = "rebound speed over impact speed; 0.01 is the least there is"}),
+    field<&NormalLawDef::restitution>("restitution_coefficient",
+                                      {.range = kRestitution, .doc = "rebound speed over impact speed"}),
     field<&NormalLawDef::exponent>("contact_exponent",
                                    {.range = kDepthExponent, .doc = "force over depth: 1 linear, 1.5 Hertz"}),
     field<&NormalLawDef::reference_depth>("reference_depth", {.dimension = length,

@@ -17,21 +17,20 @@ namespace {
 
 constexpr Field kLayoutFields[] = {
     field<&LayoutDef::byte_order>("byte_order", {.choices = kByteOrderNames, .doc = "order of a number's bytes"}),
-    field<&LayoutDef::packing>("packing",
-                               {.range = {.min = 1, .max = 8, .min_is_open = false, .max_is_open = false},
-                                .doc = "largest alignment of a field as of #pragma pack: 1 (no gaps), 4 or 8"}),
+    field<&LayoutDef::packing>("packing", {.range = {.min = 1, .max = 8, .min_is_open = false, .max_is_open = false},
+                                           .doc = "largest alignment of a field: 1 (no gaps), 4 or 8"}),
     field<&LayoutDef::size>("size",
                             {.range = {.min = 0, .max = kMaxLayoutBytes, .min_is_open = false, .max_is_open = false},
                              .doc = "bytes of the packet; 0: as its fields need"}),
-    field<&LayoutDef::most_lost>(
-        "most_lost", {.range = {.min = 0, .max = 1e6, .min_is_open = false, .max_is_open = false},
-                      .doc = "lost packets in a row up to which the next packet is used; after more it is refused and "
-                             "the sequence goes on from it"}),
+    field<&LayoutDef::most_lost>("most_lost",
+                                 {.range = {.min = 0, .max = 1e6, .min_is_open = false, .max_is_open = false},
+                                  .doc = "lost packets in a row after which the next one is still used; after more it "
+                                         "is refused and begins the sequence again"}),
 };
 
 constexpr Field kLayoutFieldFields[] = {
-    field<&LayoutFieldDef::name>("name", {.presence = Presence::required,
-                                          .doc = "letters, digits and _; the field's name in the generated C header"}),
+    field<&LayoutFieldDef::name>(
+        "name", {.presence = Presence::required, .doc = "name in the generated C header: letters, digits and _"}),
     field<&LayoutFieldDef::type>("as", {.choices = kByteTypeNames, .doc = "type of the field's bytes"}),
     field<&LayoutFieldDef::role>(
         "is", {.choices = kFieldRoleNames,
@@ -44,12 +43,11 @@ constexpr Field kLayoutFieldFields[] = {
                                           .doc = "number of bits; two's complement when the integer is signed"}),
     field<&LayoutFieldDef::scale>("scale", {.doc = "value = scale * raw + offset; not 0"}),
     field<&LayoutFieldDef::offset>("offset", {.doc = "value of a raw 0"}),
-    field<&LayoutFieldDef::unit>("unit",
-                                 {.doc = "unit of the value, for the header and the note; of a variable its SI unit"}),
+    field<&LayoutFieldDef::unit>("unit", {.doc = "unit of the value for header and note; of a variable its SI unit"}),
     field<&LayoutFieldDef::lowest>("lowest", {.range = {.min_is_open = false}, .doc = "lowest value that is sent"}),
     field<&LayoutFieldDef::highest>("highest", {.range = {.max_is_open = false}, .doc = "highest value that is sent"}),
     field<&LayoutFieldDef::input>(
-        "input", {.reference = "input", .doc = "received: input that the value moves, -1 to 1, digital 0 or 1"}),
+        "input", {.reference = "input", .doc = "received: input that the value moves (-1 to 1, digital 0 or 1)"}),
     field<&LayoutFieldDef::variable>("variable", {.doc = "sent: variable of the session, as Cyl_Lift.force, in SI"}),
     field<&LayoutFieldDef::output>(
         "output", {.reference = "output", .doc = "sent: output of the scene; without variable and output 0 is sent"}),

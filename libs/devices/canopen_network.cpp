@@ -19,16 +19,16 @@ constexpr double kLeastSync = 0.002;                            // s; the device
 constexpr Field kCanOpenFields[] = {
     field<&CanOpenDef::own_node>(
         "own_node", {.range = {.min = 0, .max = kMaxCanOpenNode, .min_is_open = false, .max_is_open = false},
-                     .doc = "canopen: number of the device as a node of the network; 0: it is none"}),
+                     .doc = "canopen: number of the device as a node; 0: it is none"}),
     field<&CanOpenDef::own_heartbeat>(
         "own_heartbeat",
         {.dimension = Dimension::time,
          .range = {.min = kLeastHeartbeat, .max = kMostHeartbeat, .min_is_open = false, .max_is_open = false},
          .doc = "canopen: time between two heartbeats of own_node"}),
-    field<&CanOpenDef::sync>(
-        "sync", {.dimension = Dimension::time,
-                 .range = {.min = 0, .max = kMostHeartbeat, .min_is_open = false, .max_is_open = false},
-                 .doc = "canopen: time between two SYNC messages that the device sends, at least 2 ms; 0: none"}),
+    field<&CanOpenDef::sync>("sync",
+                             {.dimension = Dimension::time,
+                              .range = {.min = 0, .max = kMostHeartbeat, .min_is_open = false, .max_is_open = false},
+                              .doc = "canopen: time between two sent SYNC messages, at least 2 ms; 0: none"}),
 };
 
 constexpr Field kCanOpenNodeFields[] = {
@@ -39,9 +39,9 @@ constexpr Field kCanOpenNodeFields[] = {
     field<&CanOpenNodeDef::heartbeat>(
         "heartbeat", {.dimension = Dimension::time,
                       .range = {.min = 0, .max = kMostHeartbeat, .min_is_open = false, .max_is_open = false},
-                      .doc = "time without a heartbeat after which the node is missing; 0: it is not watched, and its "
+                      .doc = "time without a heartbeat after which the node is missing; 0: it is not watched, its "
                              "values count in any state"}),
-    field<&CanOpenNodeDef::is_started>("start", {.doc = "the device starts the node, and again after its restart"}),
+    field<&CanOpenNodeDef::is_started>("start", {.doc = "the device starts the node, again after a restart"}),
 };
 
 CanFrame frame_of(std::uint32_t id, std::span<const std::byte> bytes) {

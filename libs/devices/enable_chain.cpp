@@ -20,7 +20,7 @@ constexpr Field kEnableChainFields[] = {
                            .doc = "silence after which a device is not fresh"}),
     field<&EnableChainDef::neutral_band>("neutral_band",
                                          {.range = {.min = 0, .max = 1, .min_is_open = false},
-                                          .doc = "largest deflection of an axis at which the chain enables"}),
+                                          .doc = "largest deflection of an axis at which the inputs are enabled"}),
 };
 
 // First device or condition that is missing.

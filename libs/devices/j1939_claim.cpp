@@ -29,17 +29,16 @@ constexpr Field kUnitFields[] = {
     field<&J1939UnitDef::has_arbitrary_address>(
         "arbitrary_address", {.doc = "j1939: a device that loses its address claims another one of 128 to 247"}),
     field<&J1939UnitDef::identity>("identity",
-                                   number_below(1 << 21, "j1939: identity number in the NAME, of this device alone")),
-    field<&J1939UnitDef::manufacturer>("manufacturer", number_below(1 << 11, "j1939: manufacturer code in the NAME")),
-    field<&J1939UnitDef::function>("function", number_below(1 << 8, "j1939: function in the NAME")),
-    field<&J1939UnitDef::function_instance>("function_instance",
-                                            number_below(1 << 5, "j1939: function instance in the NAME")),
-    field<&J1939UnitDef::ecu_instance>("ecu_instance", number_below(1 << 3, "j1939: ECU instance in the NAME")),
-    field<&J1939UnitDef::vehicle_system>("vehicle_system", number_below(1 << 7, "j1939: vehicle system in the NAME")),
+                                   number_below(1 << 21, "j1939: identity number of the NAME, of this device alone")),
+    field<&J1939UnitDef::manufacturer>("manufacturer", number_below(1 << 11, "j1939: part of the NAME")),
+    field<&J1939UnitDef::function>("function", number_below(1 << 8, "j1939: part of the NAME")),
+    field<&J1939UnitDef::function_instance>("function_instance", number_below(1 << 5, "j1939: part of the NAME")),
+    field<&J1939UnitDef::ecu_instance>("ecu_instance", number_below(1 << 3, "j1939: part of the NAME")),
+    field<&J1939UnitDef::vehicle_system>("vehicle_system", number_below(1 << 7, "j1939: part of the NAME")),
     field<&J1939UnitDef::vehicle_system_instance>("vehicle_system_instance",
-                                                  number_below(1 << 4, "j1939: vehicle system instance in the NAME")),
-    field<&J1939UnitDef::industry_group>(
-        "industry_group", number_below(1 << 3, "j1939: industry group in the NAME; 3: construction equipment")),
+                                                  number_below(1 << 4, "j1939: part of the NAME")),
+    field<&J1939UnitDef::industry_group>("industry_group",
+                                         number_below(1 << 3, "j1939: part of the NAME; 3: construction equipment")),
 };
 
 CanFrame claim_frame(std::uint8_t source, std::uint64_t name) {

@@ -39,7 +39,7 @@ constexpr Field kMotionPlatformFields[] = {
     field<&MotionPlatformDef::hold_time>("hold_time",
                                          {.dimension = Dimension::time,
                                           .range = {.min = 0, .max = 60, .min_is_open = false, .max_is_open = false},
-                                          .doc = "time for which the pose is held before it goes back to neutral"}),
+                                          .doc = "time for which the pose is held before it returns to neutral"}),
 };
 
 // 0 to 1 over t in 0 .. 1 without a jump of the speed

@@ -24,14 +24,14 @@ constexpr Field kAxisFields[] = {
     field<&AxisDef::channel>("channel", {.range = {.min = 0, .max = 63, .min_is_open = false, .max_is_open = false},
                                          .doc = "channel of the inputs that the axis moves"}),
     field<&AxisDef::lowest>("lowest", {.range = kCounts, .presence = Presence::required, .doc = "counts at one end"}),
-    field<&AxisDef::centre>("centre", {.range = kCounts,
-                                       .presence = Presence::required,
-                                       .doc = "counts at rest; for a pedal those of the end at which it rests"}),
+    field<&AxisDef::centre>(
+        "centre",
+        {.range = kCounts, .presence = Presence::required, .doc = "counts at rest, which for a pedal is an end"}),
     field<&AxisDef::highest>("highest",
                              {.range = kCounts, .presence = Presence::required, .doc = "counts at the other end"}),
-    field<&AxisDef::dead_zone>("dead_zone", {.range = {.min = 0, .max = 1, .min_is_open = false},
-                                             .doc = "share of half the travel about the centre that gives 0; the rest "
-                                                    "is stretched, so that full stick stays 1"}),
+    field<&AxisDef::dead_zone>(
+        "dead_zone", {.range = {.min = 0, .max = 1, .min_is_open = false},
+                      .doc = "share of half the travel about the centre that gives 0; the rest is stretched"}),
     field<&AxisDef::expo>("expo", {.range = kFraction, .doc = "curve (1 - e) y + e y^3: finer about the centre"}),
     field<&AxisDef::invert>("invert", {.doc = "reverses the direction"}),
 };

@@ -36,7 +36,7 @@ constexpr Field kWashoutFields[] = {
         "return_frequency",
         {.dimension = Dimension::angular_velocity,
          .range = {.min = 0, .max = 100, .min_is_open = false, .max_is_open = false},
-         .doc = "w_b: return to neutral under sustained acceleration; 0: second order, which keeps an offset"}),
+         .doc = "w_b: return to neutral under sustained acceleration; 0: second order, keeps an offset"}),
     field<&WashoutDef::tilt_frequency>(
         "tilt_frequency",
         {.dimension = Dimension::angular_velocity, .range = kFrequency, .doc = "w_t of the low pass into tilt"}),

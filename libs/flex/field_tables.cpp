@@ -42,7 +42,7 @@ constexpr Field kMaterialFields[] = {
     field<&NamedMaterial::material, &Material::youngs_modulus>("youngs_modulus", {.dimension = Dimension::pressure,
                                                                                   .range = kPositive,
                                                                                   .presence = Presence::required,
-                                                                                  .doc = "modulus of elasticity E"}),
+                                                                                  .doc = "Young's modulus E"}),
     field<&NamedMaterial::material, &Material::poisson_ratio>("poisson_ratio",
                                                               {.range = kPoisson, .doc = "Poisson's ratio nu"}),
     field<&NamedMaterial::material, &Material::shear_modulus>(

@@ -130,22 +130,21 @@ inline constexpr Field kHydraulicsFields[] = {
                                                                  .range = kPositive,
                                                                  .read_by = kReadByAir,
                                                                  .doc = "bulk modulus of the oil without air"}),
-    field<&HydraulicsDef::oil_density>(
-        "oil_density", {.dimension = Dimension::density, .range = kPositive, .doc = "density of the oil"}),
-    field<&HydraulicsDef::oil_viscosity>("oil_viscosity",
-                                         {.dimension = Dimension::kinematic_viscosity,
-                                          .range = kPositive,
-                                          .doc = "kinematic viscosity of the oil at working temperature, or at "
-                                                 "reference_temperature"}),
+    field<&HydraulicsDef::oil_density>("oil_density",
+                                       {.dimension = Dimension::density, .range = kPositive, .doc = "oil density"}),
+    field<&HydraulicsDef::oil_viscosity>(
+        "oil_viscosity", {.dimension = Dimension::kinematic_viscosity,
+                          .range = kPositive,
+                          .doc = "kinematic viscosity at working temperature, or at reference_temperature"}),
     field<&HydraulicsDef::entrained_air>(
         "entrained_air", {.range = kAirRange,
                           .read_by = kReadByAir,
-                          .doc = "volume of entrained air per volume of oil at the reference pressure"}),
+                          .doc = "volume of entrained air per volume of oil at air_reference_pressure"}),
     field<&HydraulicsDef::air_reference_pressure>("air_reference_pressure",
                                                   {.dimension = Dimension::pressure,
                                                    .range = kPositive,
                                                    .read_by = kReadByAirThere,
-                                                   .doc = "absolute pressure at which the air content is stated"}),
+                                                   .doc = "absolute pressure of entrained_air"}),
     field<&HydraulicsDef::polytropic_exponent>(
         "polytropic_exponent",
         {.range = kPolytropicRange, .read_by = kReadByAirThere, .doc = "polytropic exponent of the air"}),
@@ -158,10 +157,10 @@ inline constexpr Field kHydraulicsFields[] = {
                                              .range = kPeakRange,
                                              .read_by = kReadByParabola,
                                              .doc = "absolute pressure at the top of the density parabola"}),
-    field<&HydraulicsDef::oil_temperature>(
-        "oil_temperature", {.choices = kOilTemperatureChoices,
-                            .doc = "one: of all oil, constant; by_volume: every volume has its own, with the heat of "
-                                   "losses, and the properties follow"}),
+    field<&HydraulicsDef::oil_temperature>("oil_temperature",
+                                           {.choices = kOilTemperatureChoices,
+                                            .doc = "one: constant, of all oil; by_volume: every volume has its own, "
+                                                   "with the heat of losses, and the properties follow"}),
     field<&HydraulicsDef::reference_temperature>(
         "reference_temperature",
         {.dimension = Dimension::temperature,
@@ -172,11 +171,11 @@ inline constexpr Field kHydraulicsFields[] = {
                                                                .range = kOilTemperatureRange,
                                                                .read_by = kReadByTemperatures,
                                                                .doc = "second temperature of known properties"}),
-    field<&HydraulicsDef::hot_viscosity>("hot_viscosity", {.dimension = Dimension::kinematic_viscosity,
-                                                           .range = kNotNegative,
-                                                           .read_by = kReadByTemperatures,
-                                                           .doc = "kinematic viscosity at hot_temperature; must be "
-                                                                  "stated with oil_temperature: by_volume"}),
+    field<&HydraulicsDef::hot_viscosity>("hot_viscosity",
+                                         {.dimension = Dimension::kinematic_viscosity,
+                                          .range = kNotNegative,
+                                          .read_by = kReadByTemperatures,
+                                          .doc = "kinematic viscosity at hot_temperature; must be stated"}),
     field<&HydraulicsDef::hot_density>("hot_density", {.dimension = Dimension::density,
                                                        .range = kNotNegative,
                                                        .read_by = kReadByTemperatures,
@@ -189,7 +188,7 @@ inline constexpr Field kHydraulicsFields[] = {
     field<&HydraulicsDef::oil_specific_heat>("oil_specific_heat", {.dimension = Dimension::specific_heat,
                                                                    .range = kPositive,
                                                                    .read_by = kReadByTemperatures,
-                                                                   .doc = "specific heat of the oil"}),
+                                                                   .doc = "specific heat"}),
     field<&HydraulicsDef::start_temperature>("start_temperature", {.dimension = Dimension::temperature,
                                                                    .range = kOilTemperatureRange,
                                                                    .read_by = kReadByTemperatures,
@@ -197,19 +196,18 @@ inline constexpr Field kHydraulicsFields[] = {
     field<&HydraulicsDef::pressure_floor>(
         "pressure_floor", {.dimension = Dimension::pressure,
                            .range = kPositive,
-                           .doc = "absolute pressure below which the oil cavitates; vapour then fills the volume"}),
+                           .doc = "absolute pressure below which the oil cavitates and vapour fills the volume"}),
     field<&HydraulicsDef::orifice_transition>(
         "orifice_transition", {.dimension = Dimension::pressure,
                                .range = kPositive,
                                .doc = "pressure drop below which an orifice turns from square root to linear"}),
-    field<&HydraulicsDef::solver>(
-        "solver",
-        {.choices = kSolverChoices,
-         .doc = "rodas3: adaptive, L-stable; rk4 and implicit_euler: sub-steps of fixed size; cvode: adaptive BDF "
-                "of variable order, for reference runs"}),
+    field<&HydraulicsDef::solver>("solver",
+                                  {.choices = kSolverChoices,
+                                   .doc = "rodas3: adaptive, L-stable; rk4, implicit_euler: sub-steps of fixed size; "
+                                          "cvode: adaptive BDF of variable order, for reference runs"}),
     field<&HydraulicsDef::relative_tolerance>(
         "relative_tolerance",
-        {.range = kToleranceRange, .read_by = kReadByTolerance, .doc = "relative error allowed per sub-step"}),
+        {.range = kToleranceRange, .read_by = kReadByTolerance, .doc = "relative error of a sub-step"}),
     field<&HydraulicsDef::pressure_scale>(
         "pressure_scale",
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure added to the scale of the error"}),
@@ -217,39 +215,36 @@ inline constexpr Field kHydraulicsFields[] = {
                                                          .range = kPositive,
                                                          .read_by = kReadByHalving,
                                                          .doc = "smallest sub-step; shorter only after a failure"}),
-    field<&HydraulicsDef::max_substep>("max_substep", {.dimension = Dimension::time,
-                                                       .range = kPositive,
-                                                       .read_by = kReadByFixedStep,
-                                                       .doc = "sub-step of rk4 and implicit_euler"}),
-    field<&HydraulicsDef::substep_budget>(
-        "substep_budget",
-        {.range = kBudgetRange,
-         .read_by = kReadByHalving,
-         .doc = "sub-steps allowed in one communication step; beyond, rodas3 goes on at looser tolerances, "
-                "implicit_euler accepts steps, and the step is flagged"}),
+    field<&HydraulicsDef::max_substep>(
+        "max_substep",
+        {.dimension = Dimension::time, .range = kPositive, .read_by = kReadByFixedStep, .doc = "sub-step size"}),
+    field<&HydraulicsDef::substep_budget>("substep_budget",
+                                          {.range = kBudgetRange,
+                                           .read_by = kReadByHalving,
+                                           .doc = "sub-steps in one communication step; beyond, rodas3 loosens its "
+                                                  "tolerances, implicit_euler accepts steps, and the step is flagged"}),
     field<&HydraulicsDef::quasi_static_above>(
-        "quasi_static_above", {.dimension = Dimension::frequency,
-                               .range = kNotNegative,
-                               .doc = "volumes without a chamber whose rate at the start is above this become "
-                                      "quasi-static; 0: only marked volumes"}),
+        "quasi_static_above",
+        {.dimension = Dimension::frequency,
+         .range = kNotNegative,
+         .doc = "rate at the start above which volumes without a chamber are quasi-static; 0: marked volumes only"}),
     field<&HydraulicsDef::start>(
         "start", {.choices = kStartChoices,
                   .doc = "equilibrium: cylinders hold the static load; table13: every volume at its initial pressure"}),
-    field<&HydraulicsDef::start_return_pressure>(
-        "start_return_pressure", {.dimension = Dimension::pressure,
-                                  .range = kPositive,
-                                  .read_by = kReadByEquilibrium,
-                                  .doc = "absolute rod-side pressure of linear cylinders at an equilibrium start"}),
-    field<&HydraulicsDef::start_slew_pressure>(
-        "start_slew_pressure", {.dimension = Dimension::pressure,
-                                .range = kPositive,
-                                .read_by = kReadByEquilibrium,
-                                .doc = "absolute mean pressure of slew cylinders at an equilibrium start"}),
-    field<&HydraulicsDef::start_pump_pressure>("start_pump_pressure",
+    field<&HydraulicsDef::start_return_pressure>("start_return_pressure",
+                                                 {.dimension = Dimension::pressure,
+                                                  .range = kPositive,
+                                                  .read_by = kReadByEquilibrium,
+                                                  .doc = "absolute rod-side pressure of linear cylinders"}),
+    field<&HydraulicsDef::start_slew_pressure>("start_slew_pressure",
                                                {.dimension = Dimension::pressure,
                                                 .range = kPositive,
                                                 .read_by = kReadByEquilibrium,
-                                                .doc = "absolute pressure of pump volumes at an equilibrium start"}),
+                                                .doc = "absolute mean pressure of slew cylinders"}),
+    field<&HydraulicsDef::start_pump_pressure>("start_pump_pressure", {.dimension = Dimension::pressure,
+                                                                       .range = kPositive,
+                                                                       .read_by = kReadByEquilibrium,
+                                                                       .doc = "absolute pressure of pump volumes"}),
 };
 
 inline constexpr Field kVolumeFields[] = {
@@ -260,13 +255,12 @@ inline constexpr Field kVolumeFields[] = {
         {.dimension = Dimension::volume, .range = kNotNegative, .doc = "oil in a rigid block at this node"}),
     field<&VolumeDef::fixed>("fixed", {.doc = "held at its initial pressure: a tank or an ideal pressure source"}),
     field<&VolumeDef::quasi_static>(
-        "quasi_static",
-        {.doc = "stores nothing: its pressure makes the flows into it add up to zero at every instant"}),
+        "quasi_static", {.doc = "stores nothing: its pressure makes the flows add up to zero at every instant"}),
 };
 
 inline constexpr Field kCurveFields[] = {
-    field<&CurveDef::points>("points", {.presence = Presence::required,
-                                        .doc = "list of [argument, value] in SI units, arguments increasing"}),
+    field<&CurveDef::points>(
+        "points", {.presence = Presence::required, .doc = "[argument, value] in SI units, arguments increasing"}),
     field<&CurveDef::interpolation>("interpolation",
                                     {.choices = kInterpolationChoices, .doc = "straight lines or monotone cubics"}),
     field<&CurveDef::odd>("odd", {.doc = "points are for positive arguments; f(-x) = -f(x)"}),

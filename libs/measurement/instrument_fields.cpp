@@ -22,13 +22,13 @@ constexpr std::array kSampling = {
     field<&I::sampling, &S::delay>(
         "delay", {.dimension = time,
                   .range = {.min = 0, .max = kLongestDelay, .min_is_open = false, .max_is_open = false},
-                  .doc = "time from the sample to the measured value, whole steps"}),
+                  .doc = "delay of the measured value, whole steps"}),
     field<&I::sampling, &S::seed>(
-        "seed", {.range = kNotNegative, .doc = "seed of the random numbers; sensors of other names have other ones"}),
-    field<&I::sampling, &S::frozen>("frozen", {.range = kFraction,
-                                               .change = Change::live,
-                                               .doc = "fault: probability that a sample repeats the one before "
-                                                      "unnoticed; 1: the value stays"}),
+        "seed", {.range = kNotNegative, .doc = "seed of the random numbers, which also differ by the sensor's name"}),
+    field<&I::sampling, &S::frozen>("frozen",
+                                    {.range = kFraction,
+                                     .change = Change::live,
+                                     .doc = "fault: probability that a sample repeats the one before unnoticed"}),
     field<&I::sampling, &S::dropout>("dropout", {.range = kFraction,
                                                  .change = Change::live,
                                                  .doc = "fault: probability that a sample is lost; the last value "
@@ -38,9 +38,9 @@ constexpr std::array kSampling = {
 // D: dimension of the value; Difference: that of its errors, which have no zero of their own.
 template <Dimension D, Dimension Difference = D>
 constexpr std::array kTransducer = {
-    field<&I::variable>("variable", {.presence = Presence::required,
-                                     .doc = "variable that is measured, of an element of the mechanics or hydraulics, "
-                                            "such as Vol_MainPump.pressure"}),
+    field<&I::variable>("variable",
+                        {.presence = Presence::required,
+                         .doc = "measured variable of the mechanics or hydraulics, as Vol_MainPump.pressure"}),
     field<&I::value, &C::lowest>("lowest",
                                  {.dimension = D, .presence = Presence::required, .doc = "lower end of the range"}),
     field<&I::value, &C::highest>("highest",
@@ -55,11 +55,9 @@ constexpr std::array kTransducer = {
     field<&I::value, &C::drift>(
         "drift",
         {.dimension = Difference, .change = Change::live, .doc = "growth of the offset in drift_time; 0: it stays"}),
-    field<&I::value, &C::drift_time>("drift_time",
-                                     {.dimension = time, .range = kPositive, .doc = "time that drift refers to"}),
+    field<&I::value, &C::drift_time>("drift_time", {.dimension = time, .range = kPositive, .doc = "time of the drift"}),
     field<&I::value, &C::resolution>(
-        "resolution",
-        {.dimension = Difference, .range = kNotNegative, .doc = "step of the measured value (quantisation); 0: none"}),
+        "resolution", {.dimension = Difference, .range = kNotNegative, .doc = "quantisation step; 0: none"}),
     kSampling[0],
     kSampling[1],
     kSampling[2],
@@ -74,7 +72,7 @@ constexpr std::array kImu = {
                                   {.dimension = acceleration,
                                    .range = kPositive,
                                    .presence = Presence::required,
-                                   .doc = "largest measured component of the specific force, either sign"}),
+                                   .doc = "largest component of the specific force, either sign"}),
     field<&I::acceleration_offset>(
         "acceleration_offset",
         {.dimension = acceleration, .change = Change::live, .doc = "added to the components of the specific force"}),
@@ -83,17 +81,17 @@ constexpr std::array kImu = {
     field<&I::value, &C::noise>("acceleration_noise", {.dimension = acceleration,
                                                        .range = kNotNegative,
                                                        .change = Change::live,
-                                                       .doc = "standard deviation of each component"}),
-    field<&I::value, &C::drift>("acceleration_drift", {.dimension = acceleration,
-                                                       .change = Change::live,
-                                                       .doc = "growth of the offset of each component in drift_time"}),
+                                                       .doc = "standard deviation of white noise"}),
+    field<&I::value, &C::drift>(
+        "acceleration_drift",
+        {.dimension = acceleration, .change = Change::live, .doc = "growth of the offset in drift_time"}),
     field<&I::value, &C::resolution>(
         "acceleration_resolution",
-        {.dimension = acceleration, .range = kNotNegative, .doc = "step of each component; 0: none"}),
+        {.dimension = acceleration, .range = kNotNegative, .doc = "quantisation step; 0: none"}),
     field<&I::rate, &C::highest>("rate_range", {.dimension = angular_velocity,
                                                 .range = kPositive,
                                                 .presence = Presence::required,
-                                                .doc = "largest measured component of the rates, either sign"}),
+                                                .doc = "largest component of the rates, either sign"}),
     field<&I::rate_offset>(
         "rate_offset",
         {.dimension = angular_velocity, .change = Change::live, .doc = "added to the components of the rates"}),
@@ -101,15 +99,13 @@ constexpr std::array kImu = {
     field<&I::rate, &C::noise>("rate_noise", {.dimension = angular_velocity,
                                               .range = kNotNegative,
                                               .change = Change::live,
-                                              .doc = "standard deviation of each component"}),
-    field<&I::rate, &C::drift>("rate_drift", {.dimension = angular_velocity,
-                                              .change = Change::live,
-                                              .doc = "growth of the offset of each component in drift_time"}),
+                                              .doc = "standard deviation of white noise"}),
+    field<&I::rate, &C::drift>(
+        "rate_drift",
+        {.dimension = angular_velocity, .change = Change::live, .doc = "growth of the offset in drift_time"}),
     field<&I::rate, &C::resolution>(
-        "rate_resolution",
-        {.dimension = angular_velocity, .range = kNotNegative, .doc = "step of each component; 0: none"}),
-    field<&I::value, &C::drift_time>("drift_time",
-                                     {.dimension = time, .range = kPositive, .doc = "time that both drifts refer to"}),
+        "rate_resolution", {.dimension = angular_velocity, .range = kNotNegative, .doc = "quantisation step; 0: none"}),
+    field<&I::value, &C::drift_time>("drift_time", {.dimension = time, .range = kPositive, .doc = "time of the drift"}),
     kSampling[0],
     kSampling[1],
     kSampling[2],

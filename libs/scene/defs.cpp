@@ -83,116 +83,101 @@ constexpr Field kSessionFields[] = {
         "flexible",
         {.choices = kElasticExchanges,
          .doc = "exchange of the elastic forces of the modes. once: the flex node publishes them at the start, and no "
-                "node waits for later samples; every_step: it publishes them about each step's modal coordinates, and "
-                "the mechanics waits; condensed: it integrates the modes itself and publishes them condensed over each "
-                "step (trapezoidal integrator, one sub-step)"}),
+                "node waits; every_step: about each step's modal coordinates, and the mechanics waits; condensed: it "
+                "integrates the modes (trapezoidal, one sub-step) and publishes the condensed forces"}),
     field<&SessionDef::mode>("mode",
                              {.choices = kModes,
-                              .doc = "behaviour of a node without the partner's sample. lockstep: it waits, the result "
-                                     "is the same on any machine; free_running: it waits for wait_budget at most, then "
-                                     "continues its copy of the partner's model (real pace; levels linear and two)"}),
+                              .doc = "node without the partner's sample. lockstep: it waits, with the same result on "
+                                     "any machine; free_running: for wait_budget at most, then it continues its copy "
+                                     "of the partner's model (real pace; levels linear and two)"}),
     field<&SessionDef::exchange_every>(
-        "exchange_every",
-        {.range = kExchangeRange,
-         .doc = "steps between two exchanges of mechanics and hydraulics; in between each node continues its copy of "
-                "the partner's model, while ticks and inputs arrive at every step"}),
-    field<&SessionDef::coupling_alarm>(
-        "coupling_alarm",
-        {.choices = kCouplingAlarms,
-         .doc = "action if the coupling leaves its range of validity. stop: the session ends and names the port when "
-                "level linear or two diverges, and a free-running session above the limit of omega_H does not start; "
-                "warn: the session continues with red lamps and flags"}),
+        "exchange_every", {.range = kExchangeRange,
+                           .doc = "steps between two exchanges of mechanics and hydraulics, for which each node "
+                                  "continues its copy of the partner's model; ticks and inputs arrive at every step"}),
+    field<&SessionDef::coupling_alarm>("coupling_alarm",
+                                       {.choices = kCouplingAlarms,
+                                        .doc = "coupling outside of its validity. stop: the session ends and names the "
+                                               "port when level linear or two diverges, and a free-running session "
+                                               "above the limit of omega_H does not start; warn: red lamps and flags"}),
     field<&SessionDef::wait_budget>("wait_budget",
                                     {.dimension = Dimension::time,
                                      .range = kBudgetRange,
                                      .doc = "longest time a free-running node waits for a sample; 0: half a step"}),
     field<&SessionDef::solution>(
-        "solution",
-        {.choices = kSolutions,
-         .doc = "split: every node solves its own part; monolithic: all physics as one system in one process, the "
-                "reference for accuracy; coupling, formulation and integrators then have no effect"}),
+        "solution", {.choices = kSolutions,
+                     .doc = "split: every node solves its own part; monolithic: one system in one process, the "
+                            "reference for accuracy, without effect of coupling, formulation and integrators"}),
     field<&SessionDef::rtol>(
         "rtol",
         {.range = kToleranceRange, .read_by = kReadByMonolith, .doc = "relative tolerance of a monolithic solution"}),
     field<&SessionDef::contact>(
-        "contact", {.choices = kContactUses,
-                    .doc = "off: the session omits the pairs of shapes in `contacts`, with their variables and cost"}),
+        "contact",
+        {.choices = kContactUses, .doc = "off: the session omits the `contacts`, with their variables and cost"}),
     field<&SessionDef::window>(
         "window",
         {.range = kWindowRange,
-         .doc = "ticks that may be ahead of the slowest node; 0: 1 in real pace, 4 in free pace, free-running "
-                "as many as fit into 100 ms"}),
+         .doc =
+             "ticks ahead of the slowest node; 0: 1 in real pace, 4 in free pace, those of 100 ms when free-running"}),
     field<&SessionDef::controller_timeout>("controller_timeout", {.dimension = Dimension::time,
                                                                   .range = kTimeoutRange,
                                                                   .doc = "silence, or time out of step, after which a "
                                                                          "controller's channel goes to neutral"}),
-    field<&SessionDef::rejoin>(
-        "rejoin", {.dimension = Dimension::time,
-                   .range = kRejoinRange,
-                   .doc = "time for which the session is held when a physics node is lost, until another process takes "
-                          "its place and continues from the last checkpoint; 0: no checkpoints, the session ends"}),
-    field<&SessionDef::stall_timeout>(
-        "stall_timeout",
-        {.dimension = Dimension::time,
-         .range = kStallRange,
-         .doc =
-             "longest wait of a step for one message of a node whose other messages arrive; then the session ends with "
-             "exit code 4, or with session.rejoin the node's place is given away"}),
+    field<&SessionDef::rejoin>("rejoin",
+                               {.dimension = Dimension::time,
+                                .range = kRejoinRange,
+                                .doc = "time for which the place of a lost physics node is held for a process that "
+                                       "continues from the last checkpoint; 0: no checkpoints, the session ends"}),
+    field<&SessionDef::stall_timeout>("stall_timeout", {.dimension = Dimension::time,
+                                                        .range = kStallRange,
+                                                        .doc = "longest wait of a step for one message of a node whose "
+                                                               "other messages arrive; then the node is given up"}),
     field<&SessionDef::give_up_after>(
-        "give_up_after",
-        {.dimension = Dimension::time,
-         .range = kGiveUpRange,
-         .doc = "how long a node may be silent; then it is given up. The session ends with exit code 4, or with "
-                "session.rejoin holds the node's place. Every node keeps the ticks and samples of this time and 0.5 s "
-                "more, so that a silent node that comes back misses none"}),
+        "give_up_after", {.dimension = Dimension::time,
+                          .range = kGiveUpRange,
+                          .doc = "silence after which a node is given up: the session ends with exit code 4, or with "
+                                 "rejoin its place is held. Nodes keep the ticks and samples of this time and 0.5 s"}),
     field<&SessionDef::overrun>(
-        "overrun",
-        {.choices = kOverrunPolicies,
-         .read_by = kReadByRealPace,
-         .doc = "action if the machine cannot keep real pace. slip: whole steps of wall time are dropped and counted; "
-                "hold: the session pauses until it is resumed; stop: the session ends with exit code 3"}),
+        "overrun", {.choices = kOverrunPolicies,
+                    .read_by = kReadByRealPace,
+                    .doc = "loss of real pace. slip: whole steps of wall time are dropped and counted; hold: the "
+                           "session pauses until it is resumed; stop: it ends with exit code 3"}),
     field<&SessionDef::overrun_after>(
-        "overrun_after", {.range = kOverrunAfterRange,
-                          .read_by = kReadByStopping,
-                          .doc = "steps in a row longer than session.step, after which hold or stop takes effect; 0: "
-                                 "overrun_lag alone decides"}),
-    field<&SessionDef::overrun_lag>("overrun_lag", {.dimension = Dimension::time,
-                                                    .range = kOverrunLagRange,
-                                                    .read_by = kReadByRealPace,
-                                                    .doc = "time behind the wall clock after which slip, hold or stop "
-                                                           "takes effect"}),
-    field<&SessionDef::shed>(
-        "shed",
-        {.choices = kShedLoads,
-         .read_by = kReadByRealPace,
+        "overrun_after",
+        {.range = kOverrunAfterRange,
+         .read_by = kReadByStopping,
          .doc =
-             "data that a session may omit on overrun, in this order. view: the values of the flex node's variables; "
-             "variables: also those of mechanics and hydraulics, while no controller steers; never a step's messages"}),
+             "steps in a row longer than session.step after which overrun takes effect; 0: overrun_lag alone decides"}),
+    field<&SessionDef::overrun_lag>("overrun_lag",
+                                    {.dimension = Dimension::time,
+                                     .range = kOverrunLagRange,
+                                     .read_by = kReadByRealPace,
+                                     .doc = "time behind the wall clock after which overrun takes effect"}),
+    field<&SessionDef::shed>(
+        "shed", {.choices = kShedLoads,
+                 .read_by = kReadByRealPace,
+                 .doc = "what is left out on overrun, in this order, never a step's messages. view: the flex node's "
+                        "variables; variables: also those of mechanics and hydraulics while no controller steers"}),
     field<&SessionDef::start_grace>("start_grace", {.dimension = Dimension::time,
                                                     .range = kGraceRange,
                                                     .read_by = kReadByRealPace,
                                                     .doc = "time after step 0 without overrun checks"}),
     field<&SessionDef::cpus>(
-        "cpus",
-        {.doc = "processors of the nodes that `run` starts, such as \"mechanics=1, hydraulics=0\"; empty: any"}),
+        "cpus", {.doc = "processors of the nodes that `run` starts, as \"mechanics=1, hydraulics=0\"; empty: any"}),
 };
 
 constexpr Field kInputFields[] = {
     field<&InputDef::primitive>(
         "primitive", {.presence = Presence::required,
                       .reference = "component or force",
-                      .doc = "component whose control signal it sets, or point force or torque that it multiplies"}),
+                      .doc = "component whose control signal it sets, point force or torque that it multiplies"}),
     field<&InputDef::sub>("sub", {.choices = kSubs, .doc = "signal of the component"}),
-    field<&InputDef::block>(
-        "block", {.range = kBlockRange,
-                  .doc = "I/O block: that of the joystick among the devices whose axes and buttons move it"}),
+    field<&InputDef::block>("block", {.range = kBlockRange, .doc = "block: that of the joystick which moves it"}),
     field<&InputDef::channel>(
-        "channel",
-        {.range = kChannelRange, .doc = "I/O channel: axis or button of the block; two inputs must not share one"}),
+        "channel", {.range = kChannelRange, .doc = "channel of the block, of one input alone: axis or button"}),
     field<&InputDef::scale>("scale", {.dimension = Dimension::electric_signal,
                                       .doc = "control signal at full stick; negative reverses the direction"}),
     field<&InputDef::dead_zone>(
-        "dead_zone", {.range = kDeadZoneRange, .doc = "raw values up to this are 0; larger values are not rescaled"}),
+        "dead_zone", {.range = kDeadZoneRange, .doc = "raw values up to this are 0, larger ones are not rescaled"}),
     field<&InputDef::ramp>("ramp", {.dimension = Dimension::time,
                                     .range = kRampRange,
                                     .doc = "shortest time from neutral to full stick; 0: none"}),
@@ -203,31 +188,28 @@ constexpr Field kInputFields[] = {
     field<&InputDef::controller>(
         "controller",
         {.choices = kControllerModes,
-         .doc = "value that a tick takes from a controller of this input. sampled: the latest value; lockstep: the "
-                "tick waits for the value computed from a certain step's variables, so that the closed loop gives the "
-                "same bits on any machine; step 0 waits until a controller has the channel"}),
-    field<&InputDef::controller_delay>(
-        "controller_delay",
-        {.range = kDelayRange,
-         .read_by = kReadByLockstep,
-         .doc = "lockstep: tick n takes the value computed from the variables of step n less this, or of the last step "
-                "up to it that has variables (recording.every)"}),
+         .doc = "sampled: a tick takes the controller's latest value; lockstep: it waits for the value computed from a "
+                "certain step's variables (the same bits on any machine), step 0 for a controller"}),
+    field<&InputDef::controller_delay>("controller_delay",
+                                       {.range = kDelayRange,
+                                        .read_by = kReadByLockstep,
+                                        .doc = "tick n takes the value computed from step n less this, or from the "
+                                               "last step before with variables (recording.every)"}),
     field<&InputDef::controller_wait>("controller_wait",
                                       {.dimension = Dimension::time,
                                        .range = kWaitRange,
                                        .read_by = kReadByLockstep,
-                                       .doc = "lockstep: longest wait of a tick; then the input holds its value, and "
-                                              "goes to neutral after session.controller_timeout"}),
-    field<&InputDef::supervisor>(
-        "supervisor", {.doc = "name of the controller that may take the input from its holder; empty: none"}),
+                                       .doc = "longest wait of a tick; then the input holds its value, and goes to "
+                                              "neutral after session.controller_timeout"}),
+    field<&InputDef::supervisor>("supervisor",
+                                 {.doc = "controller that may take the input from its holder; empty: none"}),
 };
 
 constexpr Field kScriptFields[] = {
-    field<&ScriptDef::interpolation>(
-        "interpolation",
-        {.choices = kInterpolations,
-         .doc = "between two points: a line, of which a step gets the mean, or the earlier value held; a digital input "
-                "always holds"}),
+    field<&ScriptDef::interpolation>("interpolation",
+                                     {.choices = kInterpolations,
+                                      .doc = "between two points a line, of which a step gets the mean, or the earlier "
+                                             "value; a digital input always holds"}),
 };
 
 constexpr Field kScriptTrackFields[] = {
@@ -240,36 +222,32 @@ constexpr Field kScriptTrackFields[] = {
 };
 
 constexpr Field kScriptChangeFields[] = {
-    field<&ScriptChange::at>(
-        "at", {.dimension = Dimension::time,
-               .range = kDurationRange,
-               .presence = Presence::required,
-               .doc = "time of the change, which acts from the first step on that begins then or later"}),
+    field<&ScriptChange::at>("at", {.dimension = Dimension::time,
+                                    .range = kDurationRange,
+                                    .presence = Presence::required,
+                                    .doc = "time of the change, from the first step on that begins then or later"}),
     field<&ScriptChange::set>("set", {.presence = Presence::required, .doc = "live parameter, Element.key"}),
     field<&ScriptChange::over>("over",
                                {.dimension = Dimension::time,
                                 .range = kRampRange,
-                                .doc = "time over which the value is reached, rounded to whole steps; without it the "
-                                       "parameter's own"}),
+                                .doc = "duration of the change, rounded to whole steps; default: the parameter's own"}),
 };
 
 constexpr Field kRecordingFields[] = {
     field<&RecordingDef::every>("every", {.range = kEveryRange, .doc = "steps between two published values"}),
-    field<&RecordingDef::variables>("variables",
-                                    {.doc = "names of variables, or patterns with * and ?; default all of them"}),
+    field<&RecordingDef::variables>("variables", {.doc = "names of variables, or patterns with * and ?"}),
     field<&RecordingDef::steps>(
         "steps", {.choices = kStepsKept,
-                  .doc = "messages of the steps that the recorder stores. all: ticks and samples; ticks: ticks and "
-                         "digests of the state hashes, from which replay computes the rest and verifies it; none: "
-                         "variables and events alone, without replay"}),
-    field<&RecordingDef::coding>(
-        "coding", {.choices = kCodings,
-                   .doc = "zstd: every MCAP program reads the recording; columns: a third of the size or less, for "
-                          "Slewring and programs with a decoder for it (recording-format.md)"}),
-    field<&RecordingDef::significant_bits>(
-        "significant_bits", {.range = kBitsRange,
-                             .doc = "bits of a recorded value of a variable, rounded; 53 are all, 24 those of a "
-                                    "single-precision number. Ticks, samples and hashes keep all"}),
+                  .doc = "stored messages of the steps. all: ticks and samples; ticks: ticks and digests of the state "
+                         "hashes, enough for replay and its check; none: variables and events alone, no replay"}),
+    field<&RecordingDef::coding>("coding",
+                                 {.choices = kCodings,
+                                  .doc = "zstd: for every MCAP program; columns: a third of the size or less, for "
+                                         "Slewring and programs with a decoder (recording-format.md)"}),
+    field<&RecordingDef::significant_bits>("significant_bits",
+                                           {.range = kBitsRange,
+                                            .doc = "bits of a recorded value of a variable, rounded; 53: all, 24: "
+                                                   "single precision. Ticks, samples and hashes keep all"}),
 };
 
 constexpr Field kPlotFields[] = {

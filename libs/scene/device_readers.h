@@ -41,7 +41,7 @@ void add_enable_fields(std::vector<Field>& fields, std::string_view dead_man) {
   const std::span<const Field> chain = devices::enable_chain_fields();
   fields.push_back(field<&Def::enable, &devices::EnableChainDef::dead_man>("dead_man", {.doc = dead_man}));
   fields.push_back(field<&Def::enable, &devices::EnableChainDef::conditions>(
-      "conditions", {.doc = "conditions on variables that must be met before an input leaves neutral, as "
+      "conditions", {.doc = "conditions on variables that must hold before an input leaves neutral, as "
                             "'Vol_MainPump.pressure > 20 bar'; needs dead_man"}));
   fields.push_back(lent<&Def::enable, &devices::EnableChainDef::neutral_band>(chain, "neutral_band"));
 }

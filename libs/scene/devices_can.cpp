@@ -21,12 +21,11 @@ void add_bus_fields(std::vector<Field>& fields) {
   fields.push_back(field<&Def::bus, &CanBusDef::database>(
       "database", {.doc = "DBC file in the scene's folder with the messages of the signals"}));
   fields.push_back(field<&Def::bus, &CanBusDef::definition>(
-      "definition",
-      {.doc = "these messages as a DBC text, in place of a file; with a database it is filled from there"}));
+      "definition", {.doc = "these messages as a DBC text; filled from a database"}));
   fields.push_back(field<&Def::bus, &CanBusDef::protocol>(
       "protocol", {.choices = kProtocols,
-                   .doc = "j1939: messages are found by their parameter group from any source, and codes for 'not "
-                          "available' and 'error' are no values; canopen: the messages are pdos"}));
+                   .doc = "j1939: messages by their parameter group from any source; codes for 'not available' and "
+                          "'error' are no values; canopen: the messages are pdos"}));
   const std::span<const Field> network = devices::canopen_fields();
   fields.push_back(lent<&Def::bus, &CanBusDef::canopen, &CanOpenDef::own_node>(network, "own_node"));
   fields.push_back(lent<&Def::bus, &CanBusDef::canopen, &CanOpenDef::own_heartbeat>(network, "own_heartbeat"));
@@ -76,13 +75,12 @@ std::vector<Field> make_can_object_fields() {
 
 std::vector<Field> make_can_in_fields() {
   std::vector<Field> fields = {
-      field<&CanInDef::path>("path",
-                             {.doc = "file of 'candump -l' in the scene's folder, in place of an interface; it is "
-                                     "played once"}),
-      field<&CanInDef::timeout>("timeout", {.dimension = Dimension::time,
-                                            .range = kSilenceRange,
-                                            .doc = "time without a value of a signal after which the inputs go to "
-                                                   "neutral"}),
+      field<&CanInDef::path>(
+          "path", {.doc = "file of 'candump -l' in the scene's folder, played once in place of an interface"}),
+      field<&CanInDef::timeout>("timeout",
+                                {.dimension = Dimension::time,
+                                 .range = kSilenceRange,
+                                 .doc = "time without a value of a signal after which inputs go to neutral"}),
   };
   add_bus_fields<CanInDef>(fields);
   add_enable_fields<CanInDef>(fields, "signal that must not be 0 before an input leaves neutral, as Panel.Enable");
@@ -93,7 +91,7 @@ std::vector<Field> make_can_out_fields() {
   std::vector<Field> fields = {
       field<&CanOutDef::every>("every", {.dimension = Dimension::time,
                                          .range = kOftenRange,
-                                         .doc = "shortest time of the session between two frames of a message"}),
+                                         .doc = "shortest session time between two frames of a message"}),
   };
   add_bus_fields<CanOutDef>(fields);
   return fields;
@@ -103,7 +101,7 @@ constexpr Field kCanSignalFields[] = {
     field<&CanSignalDef::signal>(
         "signal", {.presence = Presence::required, .doc = "message and signal of the database, as Panel.Lift"}),
     field<&CanSignalDef::input>(
-        "input", {.reference = "input", .doc = "received: input that the value moves, -1 to 1, digital 0 or 1"}),
+        "input", {.reference = "input", .doc = "received: input that the value moves (-1 to 1, digital 0 or 1)"}),
     field<&CanSignalDef::variable>("variable", {.doc = "sent: variable of the session, as Cyl_Lift.force, in SI"}),
     field<&CanSignalDef::output>("output", {.reference = "output", .doc = "sent: output of the scene"}),
     field<&CanSignalDef::gain>("gain",

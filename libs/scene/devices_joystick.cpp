@@ -12,13 +12,13 @@ constexpr Range kJoystickBlockRange{.min = 0, .max = 15, .min_is_open = false, .
 std::vector<Field> make_joystick_fields() {
   std::vector<Field> fields = {
       field<&JoystickDef::path>("path", {.doc = "device file, as /dev/input/event5 or a link in /dev/input/by-id; or a "
-                                                "file of recorded events in the scene's folder, which is played once"}),
-      field<&JoystickDef::match>("match", {.doc = "name of the device, or a pattern with * and ?; the first one of "
-                                                  "/dev/input that fits is taken, also one that is plugged in later"}),
+                                                "file of recorded events in the scene's folder, played once"}),
+      field<&JoystickDef::match>("match", {.doc = "name of the device, or a pattern with * and ?: the first of "
+                                                  "/dev/input that fits, also one plugged in later"}),
       field<&JoystickDef::block>(
           "block", {.range = kJoystickBlockRange, .doc = "block of the inputs that its axes and buttons move"}),
   };
-  add_enable_fields<JoystickDef>(fields, "button that must be pressed before an input leaves neutral, as BTN_THUMB");
+  add_enable_fields<JoystickDef>(fields, "button to press before an input leaves neutral, as BTN_THUMB");
   return fields;
 }
 

@@ -73,12 +73,11 @@ std::vector<Field> make_motion_platform_fields() {
       lent_as_is<&MotionPlatformDef::seat, &SeatDef::point>(seat, "point"),
       lent_as_is<&MotionPlatformDef::seat, &SeatDef::forward>(seat, "forward"),
       lent_as_is<&MotionPlatformDef::seat, &SeatDef::up>(seat, "up"),
-      field<&MotionPlatformDef::conditions>(
-          "conditions", {.doc = "conditions on variables that must be met, as 'Input_Enable.value > 0.5'; otherwise "
-                                "the platform goes back to neutral and parks"}),
-      field<&MotionPlatformDef::send>("send",
-                                      {.presence = Presence::required,
-                                       .doc = "address and port of the platform's own controller, as 127.0.0.1:6000"}),
+      field<&MotionPlatformDef::conditions>("conditions",
+                                            {.doc = "conditions on variables that must hold, as 'Input_Enable.value > "
+                                                    "0.5'; otherwise the platform goes back to neutral and parks"}),
+      field<&MotionPlatformDef::send>(
+          "send", {.presence = Presence::required, .doc = "address and port of the platform, as 127.0.0.1:6000"}),
       field<&MotionPlatformDef::every>("every",
                                        {.dimension = Dimension::time,
                                         .range = kPlatformStepRange,

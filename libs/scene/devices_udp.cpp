@@ -10,26 +10,26 @@ namespace {
 
 std::vector<Field> make_udp_in_fields() {
   std::vector<Field> fields = {
-      field<&UdpInDef::listen>("listen", {.presence = Presence::required,
-                                          .doc = "address and port that packets are received on, as 127.0.0.1:5005"}),
-      field<&UdpInDef::from>("from", {.doc = "addresses of the senders that are accepted; default 127.0.0.1 alone"}),
-      field<&UdpInDef::timeout>("timeout", {.dimension = Dimension::time,
-                                            .range = kSilenceRange,
-                                            .doc = "silence after which the inputs go to neutral"}),
+      field<&UdpInDef::listen>("listen",
+                               {.presence = Presence::required, .doc = "own address and port, as 127.0.0.1:5005"}),
+      field<&UdpInDef::from>("from", {.doc = "addresses of the accepted senders"}),
+      field<&UdpInDef::timeout>(
+          "timeout",
+          {.dimension = Dimension::time, .range = kSilenceRange, .doc = "silence after which inputs go to neutral"}),
   };
   add_layout_fields<UdpInDef>(fields);
   fields.push_back(lent<&UdpInDef::layout, &devices::LayoutDef::most_lost>(devices::layout_fields(), "most_lost"));
-  add_enable_fields<UdpInDef>(fields, "field of the layout that must not be 0 before an input leaves neutral");
+  add_enable_fields<UdpInDef>(fields, "field that must not be 0 before an input leaves neutral");
   return fields;
 }
 
 std::vector<Field> make_udp_out_fields() {
   std::vector<Field> fields = {
-      field<&UdpOutDef::send>("send", {.presence = Presence::required,
-                                       .doc = "address and port that packets are sent to, as 127.0.0.1:5006"}),
-      field<&UdpOutDef::every>("every", {.dimension = Dimension::time,
-                                         .range = kOftenRange,
-                                         .doc = "shortest time of the session between two packets"}),
+      field<&UdpOutDef::send>(
+          "send", {.presence = Presence::required, .doc = "address and port of the receiver, as 127.0.0.1:5006"}),
+      field<&UdpOutDef::every>(
+          "every",
+          {.dimension = Dimension::time, .range = kOftenRange, .doc = "shortest session time between two packets"}),
   };
   add_layout_fields<UdpOutDef>(fields);
   return fields;

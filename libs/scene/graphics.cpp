@@ -17,23 +17,22 @@ using enum Dimension;
 constexpr std::string_view kFileAxes[] = {"y", "z"};
 
 constexpr Field kGraphicFields[] = {
-    field<&GraphicDef::body>("body",
-                             {.presence = Presence::required,
-                              .reference = "body",
-                              .doc = "body that carries the mesh; a body with one is drawn without its shapes"}),
+    field<&GraphicDef::body>(
+        "body",
+        {.presence = Presence::required, .reference = "body", .doc = "body, which is then drawn without its shapes"}),
     field<&GraphicDef::file>(
         "file", {.presence = Presence::required,
-                 .doc = "mesh in the scene's folder: .stl, .obj, .dae, .3ds, .glb or .fbx; it may be open"}),
+                 .doc = "mesh in the scene's folder, also an open one: .stl, .obj, .dae, .3ds, .glb or .fbx"}),
     field<&GraphicDef::unit>("unit", {.dimension = length,
                                       .range = kPositive,
                                       .presence = Presence::required,
-                                      .doc = "length of one unit of the file, such as 1 mm"}),
+                                      .doc = "length of a unit of the file, as 1 mm"}),
     field<&GraphicDef::up>("up", {.presence = Presence::required,
                                   .choices = kFileAxes,
-                                  .doc = "axis of the file that points up: it becomes y of the mesh"}),
+                                  .doc = "upward axis of the file, which becomes y of the mesh"}),
     field<&GraphicDef::position>("position", {.dimension = length, .doc = "mesh's origin in the body's frame"}),
-    field<&GraphicDef::orientation>(
-        "orientation", {.dimension = angle, .doc = "mesh's axes in the body: successive Euler rotations z, x', z''"}),
+    field<&GraphicDef::orientation>("orientation",
+                                    {.dimension = angle, .doc = "mesh's axes in the body: Euler rotations z, x', z''"}),
     field<&GraphicDef::color>("color",
                               {.range = kFraction, .doc = "red, green, blue; without it the colours of the file"}),
 };

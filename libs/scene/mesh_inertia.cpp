@@ -30,32 +30,32 @@ constexpr Field kFields[] = {
     field<&MeshInertiaDef::mesh>(
         "mesh",
         {.presence = Presence::required,
-         .doc = "closed mesh in the scene's folder, .stl, .obj, .dae, .3ds, .glb or .fbx; it may hold several solids"}),
+         .doc = "closed mesh in the scene's folder, of one or several solids: .stl, .obj, .dae, .3ds, .glb or .fbx"}),
     field<&MeshInertiaDef::mesh_unit>("mesh_unit", {.dimension = length,
                                                     .range = kPositive,
                                                     .presence = Presence::required,
-                                                    .doc = "length of a unit of the file, such as 1 mm"}),
-    field<&MeshInertiaDef::mesh_up>("mesh_up", {.presence = Presence::required,
-                                                .choices = kUpAxes,
-                                                .doc = "axis of the file that is up; it becomes the axis body_up"}),
+                                                    .doc = "length of a unit of the file, as 1 mm"}),
+    field<&MeshInertiaDef::mesh_up>(
+        "mesh_up",
+        {.presence = Presence::required, .choices = kUpAxes, .doc = "upward axis of the file, which becomes body_up"}),
     field<&MeshInertiaDef::body_up>(
         "body_up",
-        {.choices = kUpAxes, .doc = "up in the body's frame; if not mesh_up, the mesh is turned about x by 90 deg"}),
+        {.choices = kUpAxes, .doc = "upward axis of the body; if not mesh_up, the mesh is turned about x by 90 deg"}),
     field<&MeshInertiaDef::mesh_position>("mesh_position",
                                           {.dimension = length, .doc = "the mesh's origin, body frame"}),
     field<&MeshInertiaDef::mesh_orientation>(
-        "mesh_orientation", {.dimension = angle, .doc = "the mesh's axes: successive Euler rotations z, x', z''"}),
-    field<&MeshInertiaDef::density>(
-        "density", {.dimension = density, .range = kPositive, .doc = "density of the solid; either this or mass"}),
+        "mesh_orientation", {.dimension = angle, .doc = "the mesh's axes: Euler rotations z, x', z''"}),
+    field<&MeshInertiaDef::density>("density",
+                                    {.dimension = density, .range = kPositive, .doc = "density; either this or mass"}),
     field<&MeshInertiaDef::mass>("mass", {.dimension = mass,
                                           .range = kPositive,
                                           .change = Change::live,
-                                          .doc = "mass of the solid, spread evenly; either this or density"}),
-    field<&MeshInertiaDef::shell_thickness>("shell_thickness",
-                                            {.dimension = length,
-                                             .range = kNotNegative,
-                                             .doc = "thickness of a sheet on the mesh's surface, which may be open, "
-                                                    "instead of the solid inside; 0: the solid"}),
+                                          .doc = "mass, spread evenly; either this or density"}),
+    field<&MeshInertiaDef::shell_thickness>(
+        "shell_thickness",
+        {.dimension = length,
+         .range = kNotNegative,
+         .doc = "thickness of a sheet on the surface, which may be open, instead of the solid; 0: the solid"}),
 };
 
 class MeshBodyReader {

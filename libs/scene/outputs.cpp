@@ -15,11 +15,11 @@ std::vector<Field> make_switched_fields() {
   using devices::SwitchedOutputDef;
   const std::span<const Field> rows = devices::switched_output_fields();
   return {
-      field<&SwitchedDef::condition>("condition", {.presence = Presence::required,
-                                                   .doc = "variable, > >= < or <=, and a quantity, as "
-                                                          "'Vol_MainPump.pressure > 250 bar'"}),
-      field<&SwitchedDef::hysteresis>("hysteresis", {.doc = "distance from the threshold at which the output goes off, "
-                                                            "a quantity as '5 bar'; without it 0"}),
+      field<&SwitchedDef::condition>("condition",
+                                     {.presence = Presence::required,
+                                      .doc = "variable, > >= < or <=, quantity, as 'Vol_MainPump.pressure > 250 bar'"}),
+      field<&SwitchedDef::hysteresis>(
+          "hysteresis", {.doc = "distance from the threshold at which the output goes off, as '5 bar'; default 0"}),
       lent<&SwitchedDef::output, &SwitchedOutputDef::delay>(rows, "delay"),
       lent<&SwitchedDef::output, &SwitchedOutputDef::least_on>(rows, "least_on"),
       lent<&SwitchedDef::output, &SwitchedOutputDef::pulse_on>(rows, "pulse_on"),

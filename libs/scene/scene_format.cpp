@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// scene_format DOCUMENT: writes the tables of all fields into docs/scene-format.md, between its two markers.
+// scene_format DOCUMENT: writes all fields into docs/scene-format.md, between its two markers.
 // scene_format --schema: prints the JSON Schema.
 #include <cstdio>
 #include <fstream>

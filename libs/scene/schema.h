@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene format as a JSON Schema and as tables for readers, both from the field tables.
+// The scene format as a JSON Schema and as text for readers, both from the field tables.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@ namespace slew::scene {
 // units, existing names and rules between fields.
 [[nodiscard]] std::string json_schema();
 
-// Markdown: one table for each section and type, all fields with unit, range, default and doc. Fields that an earlier
-// type of the section has alike are referred to.
+// Markdown: an item for each field of each section and type, with unit, range, default and doc; what types have alike
+// stands once (shared_keys.h).
 [[nodiscard]] std::string field_reference();
 
 // The same for descriptions of flexible bodies (flexible_model.h).

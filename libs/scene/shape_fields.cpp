@@ -15,14 +15,14 @@ constexpr Field size_row(std::string_view key, std::string_view doc, Presence pr
                                         {.dimension = length, .range = kPositive, .presence = presence, .doc = doc});
 }
 
-constexpr Field kAxis = field<&PartDef::axis>(
-    "axis", {.choices = kAxes, .doc = "axis along which the shape lies, of those that the orientation turns"});
+constexpr Field kAxis =
+    field<&PartDef::axis>("axis", {.choices = kAxes, .doc = "axis of the shape, before the orientation turns it"});
 constexpr Field kRadius = size_row<&SolidDef::radius>("radius", "radius");
-constexpr Field kLength = size_row<&SolidDef::length>("length", "length along its axis; the origin is in the middle");
+constexpr Field kLength = size_row<&SolidDef::length>("length", "length along its axis, about the origin");
 
-constexpr Field kBoxFields[] = {size_row<&SolidDef::size>("size", "edges along x, y, z; the origin is in the middle")};
+constexpr Field kBoxFields[] = {size_row<&SolidDef::size>("size", "edges along x, y, z, about the origin")};
 constexpr Field kHollowBoxFields[] = {
-    size_row<&SolidDef::length>("length", "length along x, open at both ends; the origin is in the middle"),
+    size_row<&SolidDef::length>("length", "length along x, open at both ends, about the origin"),
     size_row<&SolidDef::width>("width", "along y, outside"), size_row<&SolidDef::height>("height", "along z, outside"),
     size_row<&SolidDef::wall>("wall", "thickness of the walls normal to y"),
     size_row<&SolidDef::flange>("flange", "thickness of the walls normal to z; default: wall", Presence::optional)};
@@ -31,36 +31,36 @@ constexpr Field kCylinderFields[] = {kRadius, kLength, kAxis};
 constexpr Field kTubeFields[] = {
     size_row<&SolidDef::diameter>("diameter", "outer diameter"),
     size_row<&SolidDef::inner_diameter>("inner_diameter", "inner diameter; either this or wall", Presence::optional),
-    size_row<&SolidDef::wall>("wall", "thickness of the wall; either this or inner_diameter", Presence::optional),
-    kLength, kAxis};
+    size_row<&SolidDef::wall>("wall", "wall thickness; either this or inner_diameter", Presence::optional), kLength,
+    kAxis};
 constexpr Field kConeFields[] = {
     size_row<&SolidDef::radius>("radius", "radius of the base, at the lower end of its axis"),
     field<&PartDef::solid, &SolidDef::top_radius>(
         "top_radius", {.dimension = length, .range = kNotNegative, .doc = "radius at the upper end; 0: a point"}),
-    size_row<&SolidDef::length>("length", "height along its axis; the origin is in its middle"), kAxis};
+    size_row<&SolidDef::length>("length", "height along its axis, about the origin"), kAxis};
 constexpr Field kCapsuleFields[] = {
     kRadius, size_row<&SolidDef::length>("length", "between the centres of its round ends, along its axis"), kAxis};
 
 constexpr Field kPartRows[] = {
     field<&PartDef::position>("position", {.dimension = length, .doc = "the shape's origin, body frame"}),
-    field<&PartDef::orientation>(
-        "orientation", {.dimension = angle, .doc = "the shape's axes: successive Euler rotations z, x', z''"}),
+    field<&PartDef::orientation>("orientation",
+                                 {.dimension = angle, .doc = "the shape's axes: Euler rotations z, x', z''"}),
     field<&PartDef::density>(
         "density",
-        {.dimension = density, .range = kPositive, .doc = "density; either this or mass. Default: the body's"}),
+        {.dimension = density, .range = kPositive, .doc = "density; either this or mass; default: the body's"}),
     field<&PartDef::mass>("mass", {.dimension = mass, .range = kPositive, .doc = "mass; either this or density"}),
-    field<&PartDef::hole>("hole", {.doc = "true: the shape is taken away from the other parts"}),
+    field<&PartDef::hole>("hole", {.doc = "the shape is taken away from the other parts"}),
 };
 constexpr Field kBodyRows[] = {
     field<&PartDef::position>("shape_position", {.dimension = length, .doc = "the shape's origin, body frame"}),
-    field<&PartDef::orientation>(
-        "shape_orientation", {.dimension = angle, .doc = "the shape's axes: successive Euler rotations z, x', z''"}),
-    field<&PartDef::density>(
-        "density", {.dimension = density, .range = kPositive, .doc = "density of the solid; either this or mass"}),
+    field<&PartDef::orientation>("shape_orientation",
+                                 {.dimension = angle, .doc = "the shape's axes: Euler rotations z, x', z''"}),
+    field<&PartDef::density>("density",
+                             {.dimension = density, .range = kPositive, .doc = "density; either this or mass"}),
     field<&PartDef::mass>("mass", {.dimension = mass,
                                    .range = kPositive,
                                    .change = Change::live,
-                                   .doc = "mass of the solid, spread evenly; either this or density"}),
+                                   .doc = "mass, spread evenly; either this or density"}),
 };
 constexpr Field kPartsFields[] = {
     field<&PartsDef::density>(
@@ -69,7 +69,7 @@ constexpr Field kPartsFields[] = {
     field<&PartsDef::mass>("mass", {.dimension = mass,
                                     .range = kPositive,
                                     .change = Change::live,
-                                    .doc = "mass of all parts together, spread evenly; no part then has its own"}),
+                                    .doc = "mass of all parts, spread evenly; no part then has its own"}),
 };
 
 ShapeWord shape_word(std::string_view name, std::string_view doc, std::span<const Field> rows) {

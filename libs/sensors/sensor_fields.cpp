@@ -31,7 +31,7 @@ constexpr Field kClearanceFields[] = {
                                   {.dimension = length,
                                    .range = kNotNegative,
                                    .read_by = kReadWithLimit,
-                                   .doc = "distance above the limit from which the sensor is no longer close"}),
+                                   .doc = "distance above the limit at which the sensor is no longer close"}),
 };
 
 constexpr Field kZoneFields[] = {
@@ -46,8 +46,7 @@ constexpr Field kZoneFields[] = {
 constexpr Field kCollisionFields[] = {
     kOf,
     kTo,
-    field<&SensorDef::is_continuous>("continuous",
-                                     {.doc = "search the motion between two samples too, for thin or fast things"}),
+    field<&SensorDef::is_continuous>("continuous", {.doc = "search between two samples too, for thin or fast things"}),
 };
 
 constexpr SensorTypeRow kTypes[] = {

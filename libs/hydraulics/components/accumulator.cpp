@@ -28,13 +28,11 @@ constexpr Field kAccumulatorFields[] = {
                                                 .doc = "absolute pressure of the gas without oil"}),
     field<&AccumulatorDef::polytropic_exponent>(
         "polytropic_exponent",
-        {.range = kPolytropicRange,
-         .doc = "polytropic exponent of the gas; the adiabatic one with a thermal_time_constant"}),
+        {.range = kPolytropicRange, .doc = "polytropic exponent; the adiabatic one with a thermal_time_constant"}),
     field<&AccumulatorDef::thermal_time_constant>(
-        "thermal_time_constant",
-        {.dimension = Dimension::time,
-         .range = kNotNegative,
-         .doc = "time constant of the heat exchange between gas and walls; 0: polytropic gas"}),
+        "thermal_time_constant", {.dimension = Dimension::time,
+                                  .range = kNotNegative,
+                                  .doc = "time constant of the heat exchange with the walls; 0: polytropic gas"}),
     field<&AccumulatorDef::friction_pressure>("friction_pressure",
                                               {.dimension = Dimension::pressure,
                                                .range = kNotNegative,

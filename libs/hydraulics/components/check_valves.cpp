@@ -74,19 +74,19 @@ constexpr auto kThrottleCheckValveFields = with_poppet<ThrottleCheckValveDef>(st
 });
 
 constexpr auto kPilotCheckValveFields = with_poppet<PilotCheckValveDef>(std::array{
-    field<&PilotCheckValveDef::port_1>("port_1", port("volume on the side of the directional valve")),
-    field<&PilotCheckValveDef::port_2>("port_2", port("volume on the side of the load, which the valve closes")),
+    field<&PilotCheckValveDef::port_1>("port_1", port("volume at the directional valve")),
+    field<&PilotCheckValveDef::port_2>("port_2", port("volume at the load, which the valve closes")),
     field<&PilotCheckValveDef::port_3>("port_3", port("volume that pilots the valve")),
     field<&PilotCheckValveDef::port_4>(
-        "port_4", {.reference = "volume", .doc = "volume behind the pilot piston, a drain; port_1 when absent"}),
+        "port_4", {.reference = "volume", .doc = "volume behind the pilot piston, a drain, without it port_1"}),
     field<&PilotCheckValveDef::pilot_ratio>("pilot_ratio", kPilotRatio),
 });
 
 constexpr auto kDoublePilotCheckValveFields = with_poppet<DoublePilotCheckValveDef>(std::array{
-    field<&DoublePilotCheckValveDef::port_a1>("port_a1", port("volume of line A on the side of the valve")),
-    field<&DoublePilotCheckValveDef::port_a2>("port_a2", port("volume of line A on the side of the load")),
-    field<&DoublePilotCheckValveDef::port_b1>("port_b1", port("volume of line B on the side of the valve")),
-    field<&DoublePilotCheckValveDef::port_b2>("port_b2", port("volume of line B on the side of the load")),
+    field<&DoublePilotCheckValveDef::port_a1>("port_a1", port("volume of line A at the valve")),
+    field<&DoublePilotCheckValveDef::port_a2>("port_a2", port("volume of line A at the load")),
+    field<&DoublePilotCheckValveDef::port_b1>("port_b1", port("volume of line B at the valve")),
+    field<&DoublePilotCheckValveDef::port_b2>("port_b2", port("volume of line B at the load")),
     field<&DoublePilotCheckValveDef::pilot_ratio>("pilot_ratio", kPilotRatio),
 });
 

@@ -14,12 +14,13 @@ namespace {
 
 constexpr Field kCompensatedOrificeFields[] = {
     field<&CompensatedOrificeDef::port_p>(
-        "port_p", {.presence = Presence::required, .reference = "volume", .doc = "supply volume"}),
+        "port_p", {.presence = Presence::required, .reference = "volume", .doc = "volume at the supply"}),
     field<&CompensatedOrificeDef::port_a>(
-        "port_a", {.presence = Presence::required, .reference = "volume", .doc = "load volume"}),
-    field<&CompensatedOrificeDef::port_t>("port_t", {.presence = Presence::required,
-                                                     .reference = "volume",
-                                                     .doc = "tank volume: reference of the load-sensing pressure"}),
+        "port_a", {.presence = Presence::required, .reference = "volume", .doc = "volume at the load"}),
+    field<&CompensatedOrificeDef::port_t>(
+        "port_t", {.presence = Presence::required,
+                   .reference = "volume",
+                   .doc = "volume of the tank, which the load-sensing pressure is relative to"}),
     field<&CompensatedOrificeDef::area>("area", {.dimension = Dimension::area,
                                                  .range = kPositive,
                                                  .presence = Presence::required,

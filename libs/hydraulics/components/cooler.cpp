@@ -17,8 +17,8 @@ namespace slew::hydraulics {
 namespace {
 
 constexpr Field kCoolerFields[] = {
-    field<&CoolerDef::port_1>("port_1", port_options("volume")),
-    field<&CoolerDef::port_2>("port_2", port_options("volume")),
+    field<&CoolerDef::port_1>("port_1", port_options("volume at one end")),
+    field<&CoolerDef::port_2>("port_2", port_options("volume at the other end")),
     field<&CoolerDef::nominal_flow>("nominal_flow", nominal_flow_options("flow at nominal_pressure_drop")),
     field<&CoolerDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
     field<&CoolerDef::conductance>("conductance", conductance_options("heat flow per difference from the coolant")),

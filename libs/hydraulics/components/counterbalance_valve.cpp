@@ -14,19 +14,18 @@ namespace slew::hydraulics {
 namespace {
 
 constexpr Field kCounterbalanceValveFields[] = {
-    field<&CounterbalanceValveDef::port_1>("port_1", port_options("volume on the side of the directional valve")),
-    field<&CounterbalanceValveDef::port_2>("port_2", port_options("volume on the side of the load")),
+    field<&CounterbalanceValveDef::port_1>("port_1", port_options("volume at the directional valve")),
+    field<&CounterbalanceValveDef::port_2>("port_2", port_options("volume at the load")),
     field<&CounterbalanceValveDef::port_3>("port_3", port_options("volume that pilots the valve")),
     field<&CounterbalanceValveDef::port_4>(
         "port_4",
-        {.reference = "volume", .doc = "volume of the spring's chamber of a vented valve; port_1 when absent"}),
-    field<&CounterbalanceValveDef::setting_pressure>("setting_pressure",
-                                                     {.dimension = Dimension::pressure,
-                                                      .range = kPositive,
-                                                      .presence = Presence::required,
-                                                      .change = Change::live,
-                                                      .doc = "pressure above the spring's chamber at which the load "
-                                                             "opens the valve without a pilot pressure"}),
+        {.reference = "volume", .doc = "volume of the spring's chamber of a vented valve, without it port_1"}),
+    field<&CounterbalanceValveDef::setting_pressure>(
+        "setting_pressure", {.dimension = Dimension::pressure,
+                             .range = kPositive,
+                             .presence = Presence::required,
+                             .change = Change::live,
+                             .doc = "pressure above the spring's chamber at which the load alone opens the valve"}),
     field<&CounterbalanceValveDef::pilot_ratio>(
         "pilot_ratio", {.range = kNotNegative, .doc = "area of the pilot over that of the relief; 0: no pilot"}),
     field<&CounterbalanceValveDef::nominal_flow>("nominal_flow",
@@ -38,7 +37,7 @@ constexpr Field kCounterbalanceValveFields[] = {
                                                            .range = kPositive,
                                                            .doc = "rise above the setting that opens the valve fully"}),
     field<&CounterbalanceValveDef::step_response>("step_response",
-                                                  step_response_options("three time constants of the spool")),
+                                                  step_response_options("three time constants of the opening")),
     field<&CounterbalanceValveDef::check, &CheckParameters::nominal_flow>(
         "check_flow", {.dimension = Dimension::volume_flow,
                        .range = kPositive,

@@ -25,8 +25,7 @@ constexpr auto cylinder_connection_fields() {
   using C = CylinderParameters;
   return std::array{
       cylinder_field<Def, &C::force>(
-          "force",
-          {.presence = Presence::required, .reference = "force", .doc = "force element that the cylinder drives"}),
+          "force", {.presence = Presence::required, .reference = "force", .doc = "force that the cylinder drives"}),
       cylinder_field<Def, &C::friction_curve>("friction_curve",
                                               {.reference = "curve", .doc = "friction coefficient over piston speed"}),
       cylinder_field<Def, &C::port_a>(
@@ -94,10 +93,10 @@ constexpr auto cylinder_stroke_fields() {
       cylinder_field<Def, &C::viscous_friction>(
           "viscous_friction",
           {.dimension = Dimension::damping, .range = kNotNegative, .doc = "friction proportional to the speed"}),
-      cylinder_field<Def, &C::breakaway_friction>(
-          "breakaway_friction", {.dimension = Dimension::force,
-                                 .range = kNotNegative,
-                                 .doc = "friction that the seals have near rest beyond seal_friction"}),
+      cylinder_field<Def, &C::breakaway_friction>("breakaway_friction",
+                                                  {.dimension = Dimension::force,
+                                                   .range = kNotNegative,
+                                                   .doc = "friction of the seals near rest beyond seal_friction"}),
       cylinder_field<Def, &C::stribeck_speed>("stribeck_speed",
                                               {.dimension = Dimension::velocity,
                                                .range = kPositive,
@@ -109,7 +108,7 @@ constexpr auto cylinder_stroke_fields() {
                                                        .doc = "leak across the piston at leak_pressure"}),
       cylinder_field<Def, &C::leak_pressure>(
           "leak_pressure",
-          {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of leak_flow"}),
+          {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of the leak flows"}),
       cylinder_field<Def, &C::end_stiffness>(
           "end_stiffness",
           {.dimension = Dimension::stiffness, .range = kNotNegative, .doc = "spring constant of the end dampers"}),
@@ -122,11 +121,11 @@ constexpr auto cylinder_stroke_fields() {
       cylinder_field<Def, &C::dead_volume_a>("dead_volume_a",
                                              {.dimension = Dimension::volume,
                                               .range = kNotNegative,
-                                              .doc = "oil in chamber A beside dead_volume: its port and its lines"}),
-      cylinder_field<Def, &C::coupling>(
-          "coupling", {.change = Change::live,
-                       .choices = kPortCouplings,
-                       .doc = "coupling level of this cylinder's port; session: the level of session.coupling"}),
+                                              .doc = "oil in chamber A beside dead_volume: port and lines"}),
+      cylinder_field<Def, &C::coupling>("coupling",
+                                        {.change = Change::live,
+                                         .choices = kPortCouplings,
+                                         .doc = "coupling level of this port; session: that of session.coupling"}),
   };
 }
 
@@ -196,8 +195,7 @@ constexpr auto cushion_fields() {
       field<&Def::common, Cushion, &P::flow_back>(
           keys.flow_back, {.choices = kCushionReturns,
                            .read_by = read_by,
-                           .doc = "way of the oil back into the cushion: a check valve without a pressure drop, or "
-                                  "the throttle alone"}),
+                           .doc = "way back of the oil: a check valve without a pressure drop, or the throttle alone"}),
   };
 }
 
@@ -207,7 +205,7 @@ constexpr auto cylinder_second_chamber_fields() {
   return std::array{cylinder_field<Def, &CylinderParameters::dead_volume_b>(
       "dead_volume_b", {.dimension = Dimension::volume,
                         .range = kNotNegative,
-                        .doc = "oil in chamber B beside dead_volume: its port and its lines"})};
+                        .doc = "oil in chamber B beside dead_volume: port and lines"})};
 }
 
 // Chambers that may have a cushion.

@@ -15,16 +15,14 @@ namespace slew::hydraulics {
 namespace {
 
 constexpr Field kEngineFields[] = {
-    field<&EngineDef::torque_curve>(
-        "torque_curve",
-        {.presence = Presence::required,
-         .reference = "curve",
-         .doc = "torque at full load [Nm] over the speed [rad/s]; the last value is held beyond the ends"}),
-    field<&EngineDef::inertia>("inertia",
-                               {.dimension = Dimension::inertia,
-                                .range = kPositive,
-                                .presence = Presence::required,
-                                .doc = "moment of inertia of crankshaft, flywheel and what turns with them"}),
+    field<&EngineDef::torque_curve>("torque_curve",
+                                    {.presence = Presence::required,
+                                     .reference = "curve",
+                                     .doc = "torque at full load [Nm] over the speed [rad/s], held beyond the ends"}),
+    field<&EngineDef::inertia>("inertia", {.dimension = Dimension::inertia,
+                                           .range = kPositive,
+                                           .presence = Presence::required,
+                                           .doc = "inertia of crankshaft, flywheel and what turns with them"}),
     field<&EngineDef::speed>("speed", {.dimension = Dimension::angular_velocity,
                                        .range = kPositive,
                                        .presence = Presence::required,
@@ -38,7 +36,7 @@ constexpr Field kEngineFields[] = {
         {.dimension = Dimension::angular_velocity, .range = kNotNegative, .doc = "least governed speed"}),
     field<&EngineDef::droop>("droop", {.range = kFractionAboveZero,
                                        .change = Change::live,
-                                       .doc = "rise of the governed speed from full load to none, as a share of it"}),
+                                       .doc = "rise of the governed speed from full load to none, as a share"}),
     field<&EngineDef::fuel_time_constant>(
         "fuel_time_constant", {.dimension = Dimension::time,
                                .range = kPositive,

@@ -37,7 +37,8 @@ constexpr Field kFlowDividerFields[] = {
                                 .doc = "difference of the metering drops that throttles a branch most"}),
     field<&FlowDividerDef::least_opening>(
         "least_opening", {.range = kShareRange, .change = Change::live, .doc = "opening of a throttled branch"}),
-    field<&FlowDividerDef::step_response>("step_response", step_response_options("three time constants of the spool")),
+    field<&FlowDividerDef::step_response>("step_response",
+                                          step_response_options("three time constants of the opening")),
 };
 
 constexpr Field kGearFlowDividerFields[] = {
@@ -68,7 +69,7 @@ constexpr Field kGearFlowDividerFields[] = {
                                                         .doc = "leak of each unit at leak_pressure"}),
     field<&GearFlowDividerDef::leak_pressure>(
         "leak_pressure",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of leak_flow"}),
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of the leak flows"}),
 };
 
 constexpr double kDividerCentreWidth = 1e-3;  // share of the travel, smoothing where an edge begins to shut

@@ -15,7 +15,7 @@ constexpr Field kFlushingValveFields[] = {
     field<&FlushingValveDef::port_2>("port_2", port_options("volume of the other side")),
     field<&FlushingValveDef::port_3>("port_3", port_options("volume that takes the oil of the lower side")),
     field<&FlushingValveDef::nominal_flow>("nominal_flow",
-                                           nominal_flow_options("flow of an open edge at nominal_pressure_drop")),
+                                           nominal_flow_options("flow of the open valve at nominal_pressure_drop")),
     field<&FlushingValveDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
     field<&FlushingValveDef::switching_pressure>("switching_pressure",
                                                  {.dimension = Dimension::pressure,

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Field kHoseFields[] = {
     field<&HoseDef::volume>("volume",
-                            {.presence = Presence::required, .reference = "volume", .doc = "connected volume"}),
+                            {.presence = Presence::required, .reference = "volume", .doc = "volume of the hose"}),
     field<&HoseDef::length>(
         "length",
         {.dimension = Dimension::length, .range = kPositive, .presence = Presence::required, .doc = "length"}),

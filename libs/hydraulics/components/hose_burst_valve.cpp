@@ -16,8 +16,8 @@ namespace slew::hydraulics {
 namespace {
 
 constexpr Field kHoseBurstValveFields[] = {
-    field<&HoseBurstValveDef::port_1>("port_1", port_options("volume on the side of the hose")),
-    field<&HoseBurstValveDef::port_2>("port_2", port_options("volume on the side of the load")),
+    field<&HoseBurstValveDef::port_1>("port_1", port_options("volume at the hose")),
+    field<&HoseBurstValveDef::port_2>("port_2", port_options("volume at the load")),
     field<&HoseBurstValveDef::nominal_flow>("nominal_flow", {.dimension = Dimension::volume_flow,
                                                              .range = kPositive,
                                                              .presence = Presence::required,
@@ -32,14 +32,14 @@ constexpr Field kHoseBurstValveFields[] = {
         "closing_pressure_rise",
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "rise above the drop of closing_flow to shut"}),
     field<&HoseBurstValveDef::step_response>("step_response",
-                                             step_response_options("three time constants of the plate")),
+                                             step_response_options("three time constants of the opening")),
     field<&HoseBurstValveDef::leak_flow>("leak_flow", {.dimension = Dimension::volume_flow,
                                                        .range = kNotNegative,
                                                        .change = Change::live,
                                                        .doc = "leak of the shut valve at leak_pressure"}),
     field<&HoseBurstValveDef::leak_pressure>(
         "leak_pressure",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of leak_flow"}),
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of the leak flows"}),
 };
 
 class HoseBurstValve final : public HydraulicComponent {

@@ -31,16 +31,16 @@ constexpr ReadBy kReadByVariable[] = {read_by<&HydraulicMotorDef::is_variable, t
 constexpr ReadBy kReadByBrake[] = {read_by_set<&HydraulicMotorDef::brake_port>("brake_port", "a brake_port")};
 
 constexpr Field kHydraulicMotorFields[] = {
-    field<&HydraulicMotorDef::force>("force", {.presence = Presence::required,
-                                               .reference = "force",
-                                               .doc = "rotational force element that the motor drives"}),
+    field<&HydraulicMotorDef::force>(
+        "force",
+        {.presence = Presence::required, .reference = "force", .doc = "rotational force that the motor drives"}),
     field<&HydraulicMotorDef::port_a>(
         "port_a",
         {.presence = Presence::required, .reference = "volume", .doc = "volume whose pressure turns forwards"}),
     field<&HydraulicMotorDef::port_b>(
         "port_b", {.presence = Presence::required, .reference = "volume", .doc = "volume whose pressure turns back"}),
     field<&HydraulicMotorDef::port_c>(
-        "port_c", {.reference = "volume", .doc = "volume of the case drain; absent: no leak to the case"}),
+        "port_c", {.reference = "volume", .doc = "volume of the case drain, without it no leak to the case"}),
     field<&HydraulicMotorDef::displacement>("displacement", {.dimension = Dimension::displacement_volume,
                                                              .range = kPositive,
                                                              .presence = Presence::required,
@@ -54,7 +54,7 @@ constexpr Field kHydraulicMotorFields[] = {
         "friction_curve",
         {.reference = "curve",
          .read_by = kReadByLoss,
-         .doc = "factor of the loss 1 - eta over the shaft's speed [rad/s], from [0, 0] on; absent: 1"}),
+         .doc = "factor of the loss 1 - eta over the shaft's speed [rad/s], from [0, 0] on; without it 1"}),
     field<&HydraulicMotorDef::torque_loss>(
         "torque_loss",
         {.dimension = Dimension::torque, .range = kNotNegative, .doc = "friction at equal pressures, at the shaft"}),
@@ -76,12 +76,12 @@ constexpr Field kHydraulicMotorFields[] = {
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of the leak flows"}),
     field<&HydraulicMotorDef::dead_volume>(
         "dead_volume", {.dimension = Dimension::volume, .range = kPositive, .doc = "oil in the motor on either side"}),
-    field<&HydraulicMotorDef::coupling>(
-        "coupling", {.change = Change::live,
-                     .choices = kMotorCouplings,
-                     .doc = "coupling level of this motor's port; session: the level of session.coupling"}),
-    field<&HydraulicMotorDef::is_variable>(
-        "variable", {.doc = "the displacement follows setting and the control signal; false: it is fixed"}),
+    field<&HydraulicMotorDef::coupling>("coupling",
+                                        {.change = Change::live,
+                                         .choices = kMotorCouplings,
+                                         .doc = "coupling level of this port; session: that of session.coupling"}),
+    field<&HydraulicMotorDef::is_variable>("variable",
+                                           {.doc = "displacement that follows setting and the control signal"}),
     field<&HydraulicMotorDef::setting>("setting", {.range = kFraction,
                                                    .change = Change::live,
                                                    .read_by = kReadByVariable,
@@ -99,7 +99,7 @@ constexpr Field kHydraulicMotorFields[] = {
                                                                .range = kPositive,
                                                                .change = Change::live,
                                                                .read_by = kReadByVariable,
-                                                               .doc = "time constant of the displacement's servo"}),
+                                                               .doc = "time constant of the displacement"}),
     field<&HydraulicMotorDef::setting_rate_limit>("setting_rate_limit",
                                                   {.dimension = Dimension::frequency,
                                                    .range = kNotNegative,
@@ -107,18 +107,19 @@ constexpr Field kHydraulicMotorFields[] = {
                                                    .read_by = kReadByVariable,
                                                    .doc = "greatest rate of the setting; 0: none"}),
     field<&HydraulicMotorDef::brake_port>(
-        "brake_port", {.reference = "volume", .doc = "volume whose pressure releases the holding brake; absent: none"}),
+        "brake_port",
+        {.reference = "volume", .doc = "volume whose pressure releases the holding brake, without it no brake"}),
     field<&HydraulicMotorDef::brake, &ShaftBrakeParameters::torque>(
         "brake_torque", {.dimension = Dimension::torque,
                          .range = kNotNegative,
                          .read_by = kReadByBrake,
-                         .doc = "greatest torque of the brake at the shaft, without pressure"}),
+                         .doc = "brake torque at the shaft without pressure"}),
     field<&HydraulicMotorDef::brake, &ShaftBrakeParameters::release_pressure>(
         "brake_release_pressure", {.dimension = Dimension::pressure,
                                    .range = kPositive,
                                    .change = Change::live,
                                    .read_by = kReadByBrake,
-                                   .doc = "pressure above the case, without port_c above 1 bar, that opens the brake"}),
+                                   .doc = "pressure above the case (above 1 bar without port_c) that opens the brake"}),
     field<&HydraulicMotorDef::brake, &ShaftBrakeParameters::twist>(
         "brake_twist", {.dimension = Dimension::angle,
                         .range = kPositive,

@@ -54,14 +54,15 @@ inline constexpr Field kL90lsValveFields[] = {
                                                    .change = Change::live,
                                                    .doc = "leak of each edge at leak_pressure"}),
     field<&L90lsValveDef::leak_pressure>(
-        "leak_pressure", {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of leak_flow"}),
+        "leak_pressure",
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of the leak flows"}),
     field<&L90lsValveDef::opening_pressure_rise>("opening_pressure_rise",
                                                  {.dimension = Dimension::pressure,
                                                   .range = kPositive,
                                                   .doc = "supply above load at which the lock-hold is fully open"}),
     field<&L90lsValveDef::step_response>(
         "step_response",
-        {.dimension = Dimension::time, .range = kPositive, .doc = "three time constants of the spool"}),
+        {.dimension = Dimension::time, .range = kPositive, .doc = "three time constants of the opening"}),
     field<&L90lsValveDef::compensator_pressure>("compensator_pressure",
                                                 {.dimension = Dimension::pressure,
                                                  .range = kPositive,

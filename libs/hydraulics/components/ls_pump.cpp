@@ -22,7 +22,8 @@ constexpr ReadBy kLsPumpReadByEngine[] = {{"engine", "an engine", [](const void*
 constexpr Field kLsPumpFields[] = {
     field<&LsPumpDef::port_a>("port_a",
                               {.presence = Presence::required, .reference = "volume", .doc = "volume at the outlet"}),
-    field<&LsPumpDef::port_b>("port_b", {.presence = Presence::required, .reference = "volume", .doc = "tank volume"}),
+    field<&LsPumpDef::port_b>("port_b",
+                              {.presence = Presence::required, .reference = "volume", .doc = "volume of the tank"}),
     field<&LsPumpDef::ls_port>(
         "ls_port", {.reference = "component", .doc = "component whose load-sensing pressure the pump follows"}),
     field<&LsPumpDef::speed>("speed", {.dimension = Dimension::angular_velocity,
@@ -31,7 +32,7 @@ constexpr Field kLsPumpFields[] = {
                                        .read_by = kLsPumpReadBySpeed,
                                        .doc = "speed of the drive; required without an engine"}),
     field<&LsPumpDef::drive, &PumpDriveParameters::engine>(
-        "engine", {.reference = "component", .doc = "engine that drives the pump; absent: the pump has its own speed"}),
+        "engine", {.reference = "component", .doc = "engine that drives the pump"}),
     field<&LsPumpDef::drive, &PumpDriveParameters::speed_ratio>(
         "speed_ratio",
         {.range = kPositive, .read_by = kLsPumpReadByEngine, .doc = "speed of the pump over that of the engine"}),
@@ -73,7 +74,7 @@ constexpr Field kLsPumpFields[] = {
                                                .doc = "leak from outlet to tank at leak_pressure"}),
     field<&LsPumpDef::leak_pressure>(
         "leak_pressure",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of leak_flow"}),
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of the leak flows"}),
 };
 
 constexpr double kPumpSwitchWidth = 2e4;  // Pa, smoothing between stand-by and load sensing, and of the LS limit

@@ -14,21 +14,21 @@ namespace {
 constexpr Field kPostCompensatorFields[] = {
     field<&PostCompensatorDef::port_1>("port_1", port_options("volume behind the metering edge")),
     field<&PostCompensatorDef::port_2>("port_2", port_options("volume before the load")),
-    field<&PostCompensatorDef::port_t>("port_t", port_options("tank, which load-sensing pressures are relative to")),
-    field<&PostCompensatorDef::shared_ls>("shared_ls",
-                                          {.presence = Presence::required,
-                                           .reference = "component",
-                                           .doc = "component with the highest load-sensing pressure of all sections"}),
-    field<&PostCompensatorDef::spring_pressure>(
-        "spring_pressure", {.dimension = Dimension::pressure,
-                            .range = kNotNegative,
-                            .change = Change::live,
-                            .doc = "pressure above the shared one at which the compensator begins to open"}),
+    field<&PostCompensatorDef::port_t>(
+        "port_t", port_options("volume of the tank, which load-sensing pressures are relative to")),
+    field<&PostCompensatorDef::shared_ls>("shared_ls", {.presence = Presence::required,
+                                                        .reference = "component",
+                                                        .doc = "component with the highest load-sensing pressure"}),
+    field<&PostCompensatorDef::spring_pressure>("spring_pressure",
+                                                {.dimension = Dimension::pressure,
+                                                 .range = kNotNegative,
+                                                 .change = Change::live,
+                                                 .doc = "pressure above the shared one at which it begins to open"}),
     field<&PostCompensatorDef::regulation_pressure>(
         "regulation_pressure",
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "rise that opens the compensator fully"}),
-    field<&PostCompensatorDef::nominal_flow>(
-        "nominal_flow", nominal_flow_options("flow of the open compensator at nominal_pressure_drop")),
+    field<&PostCompensatorDef::nominal_flow>("nominal_flow",
+                                             nominal_flow_options("flow of the open valve at nominal_pressure_drop")),
     field<&PostCompensatorDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
     field<&PostCompensatorDef::step_response>("step_response",
                                               step_response_options("three time constants of the opening")),

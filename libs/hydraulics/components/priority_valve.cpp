@@ -15,24 +15,24 @@ constexpr Field kPriorityValveFields[] = {
     field<&PriorityValveDef::port_1>("port_1", port_options("volume at the pump")),
     field<&PriorityValveDef::port_2>("port_2", port_options("volume of the priority line")),
     field<&PriorityValveDef::port_3>("port_3", port_options("volume of the other line")),
-    field<&PriorityValveDef::port_t>("port_t", port_options("tank, which the pressures of the valve are relative to")),
+    field<&PriorityValveDef::port_t>("port_t",
+                                     port_options("volume of the tank, which the valve's pressures are relative to")),
     field<&PriorityValveDef::ls_port>(
-        "ls_port", {.reference = "component",
-                    .doc = "component with the load-sensing pressure of the priority line; absent: none"}),
+        "ls_port", {.reference = "component", .doc = "component with the load-sensing pressure of the priority line"}),
     field<&PriorityValveDef::spring_pressure>(
         "spring_pressure", {.dimension = Dimension::pressure,
                             .range = kPositive,
                             .change = Change::live,
-                            .doc = "pressure above the load-sensing one at which the other line begins to open"}),
+                            .doc = "pressure above the load-sensing one that begins to open the other line"}),
     field<&PriorityValveDef::regulation_pressure>(
         "regulation_pressure", {.dimension = Dimension::pressure,
                                 .range = kPositive,
-                                .doc = "rise from all oil to the priority line to all oil to the other one"}),
+                                .doc = "rise that moves all oil from the priority line to the other"}),
     field<&PriorityValveDef::nominal_flow>("nominal_flow",
                                            nominal_flow_options("flow of either open edge at nominal_pressure_drop")),
     field<&PriorityValveDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
     field<&PriorityValveDef::step_response>("step_response",
-                                            step_response_options("three time constants of the spool")),
+                                            step_response_options("three time constants of the opening")),
 };
 
 class PriorityValve final : public HydraulicComponent {

@@ -41,16 +41,14 @@ constexpr auto with_proportional(const std::array<Field, N>& own) {
   using P = ProportionalParameters;
   constexpr std::span<const ReadBy> kReadBy = ReadByProportional<Def>::kRows;
   const std::array rows = {
-      field<&Def::is_proportional>("proportional",
-                                   {.doc = "the pressure at which the valve opens follows the control signal; false: "
-                                           "it is the full setting"}),
-      field<&Def::solenoid, &P::minimum_pressure>("minimum_pressure",
-                                                  {.dimension = Dimension::pressure,
-                                                   .range = kNotNegative,
-                                                   .change = Change::live,
-                                                   .read_by = kReadBy,
-                                                   .doc = "pressure above the outlet at which the valve opens without "
-                                                          "a control signal"}),
+      field<&Def::is_proportional>(
+          "proportional", {.doc = "opening pressure that follows the control signal; false: the full setting"}),
+      field<&Def::solenoid, &P::minimum_pressure>(
+          "minimum_pressure", {.dimension = Dimension::pressure,
+                               .range = kNotNegative,
+                               .change = Change::live,
+                               .read_by = kReadBy,
+                               .doc = "opening pressure above the outlet without a control signal"}),
       field<&Def::solenoid, &P::maximum_control_signal>("maximum_control_signal",
                                                         {.dimension = Dimension::electric_signal,
                                                          .range = kPositive,
@@ -61,7 +59,7 @@ constexpr auto with_proportional(const std::array<Field, N>& own) {
                                                     .range = kPositive,
                                                     .change = Change::live,
                                                     .read_by = kReadBy,
-                                                    .doc = "three time constants of the solenoid's force"}),
+                                                    .doc = "three time constants of the solenoid"}),
   };
   std::array<Field, N + rows.size()> table;
   std::copy(rows.begin(), rows.end(), std::copy(own.begin(), own.end(), table.begin()));

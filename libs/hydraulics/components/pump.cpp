@@ -36,16 +36,16 @@ constexpr Field kPumpFields[] = {
     field<&PumpDef::port_a>("port_a",
                             {.presence = Presence::required, .reference = "volume", .doc = "volume at the outlet"}),
     field<&PumpDef::port_b>(
-        "port_b", {.presence = Presence::required, .reference = "volume", .doc = "volume at the inlet: tank"}),
+        "port_b", {.presence = Presence::required, .reference = "volume", .doc = "volume at the inlet, the tank"}),
     field<&PumpDef::port_c>("port_c",
-                            {.reference = "volume", .doc = "volume of the case drain; absent: no leak to the case"}),
+                            {.reference = "volume", .doc = "volume of the case drain, without it no leak to the case"}),
     field<&PumpDef::speed>("speed", {.dimension = Dimension::angular_velocity,
                                      .range = kNotNegative,
                                      .change = Change::live,
                                      .read_by = kPumpReadBySpeed,
                                      .doc = "speed of the drive; required without an engine"}),
     field<&PumpDef::drive, &PumpDriveParameters::engine>(
-        "engine", {.reference = "component", .doc = "engine that drives the pump; absent: the pump has its own speed"}),
+        "engine", {.reference = "component", .doc = "engine that drives the pump"}),
     field<&PumpDef::drive, &PumpDriveParameters::speed_ratio>(
         "speed_ratio",
         {.range = kPositive, .read_by = kPumpReadByEngine, .doc = "speed of the pump over that of the engine"}),
@@ -88,7 +88,7 @@ constexpr Field kPumpFields[] = {
                                                      .doc = "limit of the drive's power; 0: none"}),
     field<&PumpDef::control_port>(
         "control_port",
-        {.reference = "volume", .doc = "volume whose pressure sets the swash: negative or positive control"}),
+        {.reference = "volume", .doc = "volume whose pressure sets the swash (negative or positive control)"}),
     field<&PumpDef::full_swash_pressure>("full_swash_pressure",
                                          {.dimension = Dimension::pressure,
                                           .range = kNotNegative,

@@ -15,7 +15,7 @@ namespace {
 constexpr Field kReducingValveFields[] = {
     field<&ReducingValveDef::port_1>("port_1", port_options("volume at the supply")),
     field<&ReducingValveDef::port_2>("port_2", port_options("volume whose pressure is reduced")),
-    field<&ReducingValveDef::port_3>("port_3", port_options("volume at the drain; the setting is relative to it")),
+    field<&ReducingValveDef::port_3>("port_3", port_options("volume at the drain, which the setting is relative to")),
     field<&ReducingValveDef::setting_pressure>("setting_pressure",
                                                {.dimension = Dimension::pressure,
                                                 .range = kNotNegative,
@@ -32,7 +32,7 @@ constexpr Field kReducingValveFields[] = {
                                            nominal_flow_options("flow of the open valve at nominal_pressure_drop")),
     field<&ReducingValveDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
     field<&ReducingValveDef::step_response>("step_response",
-                                            step_response_options("three time constants of the spool")),
+                                            step_response_options("three time constants of the opening")),
 };
 
 // w_u of (4), share of the travel: both edges pass 2.5e-4 of their full flow in the middle, as the lands of pilot

@@ -14,8 +14,10 @@ namespace slew::hydraulics {
 namespace {
 
 constexpr Field kBleedFields[] = {
-    field<&BleedDef::port_1>("port_1", {.presence = Presence::required, .reference = "volume", .doc = "volume"}),
-    field<&BleedDef::port_2>("port_2", {.presence = Presence::required, .reference = "volume", .doc = "volume"}),
+    field<&BleedDef::port_1>("port_1",
+                             {.presence = Presence::required, .reference = "volume", .doc = "volume at one end"}),
+    field<&BleedDef::port_2>("port_2",
+                             {.presence = Presence::required, .reference = "volume", .doc = "volume at the other end"}),
     field<&BleedDef::nominal_flow>("nominal_flow", {.dimension = Dimension::volume_flow,
                                                     .range = kNotNegative,
                                                     .presence = Presence::required,
@@ -28,8 +30,10 @@ constexpr Field kBleedFields[] = {
 };
 
 constexpr Field kOrificeFields[] = {
-    field<&OrificeDef::port_1>("port_1", {.presence = Presence::required, .reference = "volume", .doc = "volume"}),
-    field<&OrificeDef::port_2>("port_2", {.presence = Presence::required, .reference = "volume", .doc = "volume"}),
+    field<&OrificeDef::port_1>("port_1",
+                               {.presence = Presence::required, .reference = "volume", .doc = "volume at one end"}),
+    field<&OrificeDef::port_2>(
+        "port_2", {.presence = Presence::required, .reference = "volume", .doc = "volume at the other end"}),
     field<&OrificeDef::diameter>(
         "diameter",
         {.dimension = Dimension::length, .range = kPositive, .presence = Presence::required, .doc = "diameter"}),
@@ -40,10 +44,10 @@ constexpr Field kOrificeFields[] = {
 };
 
 constexpr Field kLaminarRestrictionFields[] = {
-    field<&LaminarRestrictionDef::port_1>("port_1",
-                                          {.presence = Presence::required, .reference = "volume", .doc = "volume"}),
-    field<&LaminarRestrictionDef::port_2>("port_2",
-                                          {.presence = Presence::required, .reference = "volume", .doc = "volume"}),
+    field<&LaminarRestrictionDef::port_1>(
+        "port_1", {.presence = Presence::required, .reference = "volume", .doc = "volume at one end"}),
+    field<&LaminarRestrictionDef::port_2>(
+        "port_2", {.presence = Presence::required, .reference = "volume", .doc = "volume at the other end"}),
     field<&LaminarRestrictionDef::diameter>(
         "diameter",
         {.dimension = Dimension::length, .range = kPositive, .presence = Presence::required, .doc = "inner diameter"}),

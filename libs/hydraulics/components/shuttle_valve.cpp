@@ -20,7 +20,7 @@ constexpr Field kShuttleValveFields[] = {
     field<&ShuttleValveDef::port_2>("port_2", port_options("volume at the other inlet")),
     field<&ShuttleValveDef::port_3>("port_3", port_options("volume at the outlet")),
     field<&ShuttleValveDef::nominal_flow>("nominal_flow",
-                                          nominal_flow_options("flow of the open seat at nominal_pressure_drop")),
+                                          nominal_flow_options("flow of the open valve at nominal_pressure_drop")),
     field<&ShuttleValveDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
     field<&ShuttleValveDef::switching_pressure>("switching_pressure",
                                                 {.dimension = Dimension::pressure,

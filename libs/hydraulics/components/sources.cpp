@@ -47,9 +47,8 @@ constexpr Field kPressureSourceFields[] = {
                                                              .change = Change::live,
                                                              .doc = "flow at nominal_pressure_drop"}),
     field<&PressureSourceDef::nominal_pressure_drop>(
-        "nominal_pressure_drop", {.dimension = Dimension::pressure,
-                                  .range = kPositive,
-                                  .doc = "difference between the source's pressure and the volume's at nominal_flow"}),
+        "nominal_pressure_drop",
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of nominal_flow"}),
 };
 
 class FlowSource final : public HydraulicComponent {

@@ -30,7 +30,7 @@ constexpr auto kTelescopicCylinderFields = joined(
                        .value_dimension = Dimension::length,
                        .range = kPositive,
                        .presence = Presence::required,
-                       .doc = "list of [stroke at the end of a stage, diameter of its area], the largest first"}),
+                       .doc = "[stroke at the end of a stage, diameter of its area], the largest first"}),
         field<&TelescopicCylinderDef::stage_transition>(
             "stage_transition", {.dimension = Dimension::length,
                                  .range = kPositive,

@@ -12,7 +12,8 @@ namespace {
 
 constexpr Field kUnloadingValveFields[] = {
     field<&UnloadingValveDef::port_1>("port_1", port_options("volume at the pump")),
-    field<&UnloadingValveDef::port_2>("port_2", port_options("tank, which the pressures of the valve are relative to")),
+    field<&UnloadingValveDef::port_2>("port_2",
+                                      port_options("volume of the tank, which the valve's pressures are relative to")),
     field<&UnloadingValveDef::port_3>("port_3", port_options("volume that is sensed, such as an accumulator's")),
     field<&UnloadingValveDef::cut_out_pressure>("cut_out_pressure",
                                                 {.dimension = Dimension::pressure,
@@ -32,7 +33,7 @@ constexpr Field kUnloadingValveFields[] = {
                                             nominal_flow_options("flow of the open valve at nominal_pressure_drop")),
     field<&UnloadingValveDef::nominal_pressure_drop>("nominal_pressure_drop", kNominalPressureDrop),
     field<&UnloadingValveDef::step_response>("step_response",
-                                             step_response_options("three time constants of the spool")),
+                                             step_response_options("three time constants of the opening")),
 };
 
 class UnloadingValve final : public HydraulicComponent {

@@ -17,13 +17,12 @@ constexpr Field kRadius = field<&GearDef::ratio>(
     "radius",
     {.dimension = length,
      .presence = Presence::required,
-     .doc = "radius of the pinion: displacement of joint 2 per radian of joint 1; for a screw its lead over 2 pi"});
+     .doc = "displacement of joint 2 per radian of joint 1: radius of the pinion, lead of a screw over 2 pi"});
 
 constexpr Field offset_row(Dimension position) {
   return field<&GearDef::offset>(
-      "offset",
-      {.dimension = position,
-       .doc = "coordinate of joint 2 where that of joint 1 is 0; none: such that it fits the start position"});
+      "offset", {.dimension = position,
+                 .doc = "coordinate of joint 2 where that of joint 1 is 0; none: fits the start position"});
 }
 
 constexpr Field kGear[] = {kJoint1, kJoint2, kRatio, offset_row(angle)};

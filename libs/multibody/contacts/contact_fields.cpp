@@ -23,23 +23,21 @@ constexpr Field kBody = field<&ShapeDef::body>("body", {.reference = "body", .do
 constexpr Field kShapePosition =
     field<&ShapeDef::position>("position", {.dimension = length, .doc = "shape's origin in the body's frame"});
 constexpr Field kShapeOrientation = field<&ShapeDef::orientation>(
-    "orientation", {.dimension = angle, .doc = "shape's axes in the body: successive Euler rotations z, x', z''"});
+    "orientation", {.dimension = angle, .doc = "shape's axes in the body: Euler rotations z, x', z''"});
 constexpr Field kRadius = field<&ShapeDef::radius>(
     "radius", {.dimension = length, .range = kPositive, .presence = Presence::required, .doc = "radius"});
 
 constexpr Field kSphereFields[] = {kBody, kShapePosition, kShapeOrientation, kRadius};
-constexpr Field kBoxFields[] = {
-    kBody, kShapePosition, kShapeOrientation,
-    field<&ShapeDef::size>("size", {.dimension = length,
-                                    .range = kPositive,
-                                    .presence = Presence::required,
-                                    .doc = "edges along x, y, z; the origin is in the middle"})};
-constexpr Field kCylinderFields[] = {
-    kBody, kShapePosition, kShapeOrientation, kRadius,
-    field<&ShapeDef::length>("length", {.dimension = length,
-                                        .range = kPositive,
-                                        .presence = Presence::required,
-                                        .doc = "length along z; the origin is in the middle"})};
+constexpr Field kBoxFields[] = {kBody, kShapePosition, kShapeOrientation,
+                                field<&ShapeDef::size>("size", {.dimension = length,
+                                                                .range = kPositive,
+                                                                .presence = Presence::required,
+                                                                .doc = "edges along x, y, z, about the origin"})};
+constexpr Field kCylinderFields[] = {kBody, kShapePosition, kShapeOrientation, kRadius,
+                                     field<&ShapeDef::length>("length", {.dimension = length,
+                                                                         .range = kPositive,
+                                                                         .presence = Presence::required,
+                                                                         .doc = "length along z, about the origin"})};
 constexpr Field kCapsuleFields[] = {
     kBody, kShapePosition, kShapeOrientation, kRadius,
     field<&ShapeDef::length>("length", {.dimension = length,
@@ -51,15 +49,14 @@ constexpr Field kHeightFieldFields[] = {
     kBody,
     kShapePosition,
     kShapeOrientation,
-    field<&ShapeDef::columns>("columns",
-                              {.range = kGrid, .presence = Presence::required, .doc = "number of points along x"}),
-    field<&ShapeDef::rows>("rows", {.range = kGrid, .presence = Presence::required, .doc = "number of points along y"}),
+    field<&ShapeDef::columns>("columns", {.range = kGrid, .presence = Presence::required, .doc = "points along x"}),
+    field<&ShapeDef::rows>("rows", {.range = kGrid, .presence = Presence::required, .doc = "points along y"}),
     field<&ShapeDef::spacing_x>(
         "spacing_x",
-        {.dimension = length, .range = kPositive, .presence = Presence::required, .doc = "distance of points along x"}),
+        {.dimension = length, .range = kPositive, .presence = Presence::required, .doc = "their distance along x"}),
     field<&ShapeDef::spacing_y>(
         "spacing_y",
-        {.dimension = length, .range = kPositive, .presence = Presence::required, .doc = "distance of points along y"}),
+        {.dimension = length, .range = kPositive, .presence = Presence::required, .doc = "their distance along y"}),
     field<&ShapeDef::heights>("heights", {.dimension = length,
                                           .presence = Presence::required,
                                           .doc = "heights along z, row by row from the origin; solid below"})};
@@ -67,17 +64,16 @@ constexpr Field kMeshFields[] = {
     kBody,
     kShapePosition,
     kShapeOrientation,
-    field<&ShapeDef::file>("file", {.doc = "mesh file beside the scene: .stl, .obj, .dae, .3ds, .glb or .fbx"}),
+    field<&ShapeDef::file>("file", {.doc = "mesh beside the scene: .stl, .obj, .dae, .3ds, .glb or .fbx"}),
     field<&ShapeDef::file_unit>(
         "unit",
-        {.dimension = length, .range = kPositive, .doc = "length of one unit of the file, `1 mm`; required with file"}),
+        {.dimension = length, .range = kPositive, .doc = "length of a unit of the file, as 1 mm; required with file"}),
     field<&ShapeDef::file_up>(
-        "up", {.doc = "axis of the file that points up, y or z: it becomes y of the shape; required with file"}),
-    field<&ShapeDef::vertices>(
-        "vertices", {.dimension = length, .doc = "instead of a file: x, y, z of one vertex after the other"}),
-    field<&ShapeDef::triangles>("triangles", {.range = kNotNegative,
-                                              .doc = "numbers of vertices from 0, three a triangle, "
-                                                     "counter-clockwise seen from outside"})};
+        "up", {.doc = "upward axis of the file, y or z, that becomes y of the shape; required with file"}),
+    field<&ShapeDef::vertices>("vertices", {.dimension = length, .doc = "x, y, z of each vertex, instead of a file"}),
+    field<&ShapeDef::triangles>(
+        "triangles", {.range = kNotNegative,
+                      .doc = "three numbers of vertices, from 0, a triangle; counter-clockwise seen from outside"})};
 
 constexpr Field kPairFields[] = {
     field<&ContactPairDef::shape_a>("shape_a",
@@ -86,11 +82,9 @@ constexpr Field kPairFields[] = {
                                     {.presence = Presence::required, .reference = "shape", .doc = "second shape"}),
     field<&ContactPairDef::friction>("friction",
                                      {.reference = "friction", .doc = "friction between them; without it none"}),
-    field<&ContactPairDef::point_variables>(
-        "point_variables",
-        {.range = kPointSlots, .doc = "contact points that are variables, with position and forces"}),
-    field<&ContactPairDef::tested>(
-        "tested", {.doc = "false: the pair keeps its name and is never searched, for shapes that never meet"}),
+    field<&ContactPairDef::point_variables>("point_variables",
+                                            {.range = kPointSlots, .doc = "contact points with variables"}),
+    field<&ContactPairDef::tested>("tested", {.doc = "false: the pair keeps its name and is never searched"}),
 };
 
 // the pair's own rows, then those of its normal law

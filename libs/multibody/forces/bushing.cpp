@@ -32,11 +32,11 @@ constexpr Field kBushingFields[] = {
     connector_body<&BushingDef::frames, &ConnectorFrames::body1>("body1", "first body"),
     connector_point<&BushingDef::frames, &ConnectorFrames::point1>("point1", "origin of frame 1 in body 1"),
     connector_axes<&BushingDef::frames, &ConnectorFrames::orientation1>(
-        "orientation1", "frame 1 in body 1: successive rotations about x, y', z''"),
+        "orientation1", "frame 1 in body 1: rotations about x, y', z''"),
     connector_body<&BushingDef::frames, &ConnectorFrames::body2>("body2", "second body"),
     connector_point<&BushingDef::frames, &ConnectorFrames::point2>("point2", "origin of frame 2 in body 2"),
     connector_axes<&BushingDef::frames, &ConnectorFrames::orientation2>(
-        "orientation2", "frame 2 in body 2: successive rotations about x, y', z''"),
+        "orientation2", "frame 2 in body 2: rotations about x, y', z''"),
     bushing_triple<&BushingDef::stiffness>("stiffness", Dimension::stiffness, kNotNegative,
                                            "springs along the axes of frame 1"),
     bushing_triple<&BushingDef::rotational_stiffness>("rotational_stiffness", Dimension::rotational_stiffness,

@@ -15,8 +15,7 @@ constexpr Field dummy_position(std::string_view doc) {
 }
 template <typename Def>
 constexpr Field dummy_orientation() {
-  return field<&Def::orientation>("orientation",
-                                  {.dimension = Dimension::angle, .doc = "successive Euler rotations z, x', z''"});
+  return field<&Def::orientation>("orientation", {.dimension = Dimension::angle, .doc = "Euler rotations z, x', z''"});
 }
 template <typename Def>
 constexpr Field dummy_center() {
@@ -35,7 +34,7 @@ inline constexpr Field kPartDummyFields[] = {
     required_body<&PartDummyDef::carried_by>("carried_by", "body that the mass is fixed to"),
     dummy_position<PartDummyDef>("origin of the dummy in relative_to's frame, at the start"),
     dummy_orientation<PartDummyDef>(),
-    dummy_mass<&PartDummyDef::mass>("mass"),
+    dummy_mass<&PartDummyDef::mass>("mass; 0 for graphics only"),
     dummy_center<PartDummyDef>(),
     dummy_inertia<PartDummyDef>(),
 };
@@ -48,7 +47,7 @@ inline constexpr Field kConstraintDummyFields[] = {
                                                 .doc = "1: fixed to the joint's frame on body 1; 2: on body 2"}),
     dummy_position<ConstraintDummyDef>("origin of the dummy in the joint's frame"),
     dummy_orientation<ConstraintDummyDef>(),
-    dummy_mass<&ConstraintDummyDef::mass>("mass"),
+    dummy_mass<&ConstraintDummyDef::mass>("mass; 0 for graphics only"),
     dummy_center<ConstraintDummyDef>(),
     dummy_inertia<ConstraintDummyDef>(),
 };

@@ -22,7 +22,7 @@ constexpr Field kPointForceFields[] = {
                                  {.dimension = Dimension::force, .change = Change::live, .doc = "constant part"}),
     field<&PointForceDef::force_table>("force_table", {.dimension = Dimension::time,
                                                        .value_dimension = Dimension::force,
-                                                       .doc = "force over time, added; holds its last values"}),
+                                                       .doc = "force over time, added; end values hold"}),
 };
 
 constexpr Field kPointTorqueFields[] = {
@@ -34,7 +34,7 @@ constexpr Field kPointTorqueFields[] = {
                                    {.dimension = Dimension::torque, .change = Change::live, .doc = "constant part"}),
     field<&PointTorqueDef::torque_table>("torque_table", {.dimension = Dimension::time,
                                                           .value_dimension = Dimension::torque,
-                                                          .doc = "torque over time, added; holds its last values"}),
+                                                          .doc = "torque over time, added; end values hold"}),
 };
 
 template <typename Def>

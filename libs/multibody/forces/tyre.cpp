@@ -28,7 +28,7 @@ constexpr Field kTyreDummyFields[] = {
     required_body<&TyreDummyDef::relative_to>("relative_to", "body that carries the wheel"),
     field<&TyreDummyDef::position>("position", {.dimension = Dimension::length, .doc = "wheel's centre in the body"}),
     field<&TyreDummyDef::orientation>(
-        "orientation", {.dimension = Dimension::angle, .doc = "successive Euler rotations z, x', z''; the axle is z"}),
+        "orientation", {.dimension = Dimension::angle, .doc = "Euler rotations z, x', z''; the axle is z"}),
     dummy_mass<&TyreDummyDef::mass>("mass of wheel and tyre"),
     field<&TyreDummyDef::inertia>("inertia", {.dimension = Dimension::inertia,
                                               .range = kNotNegative,
@@ -52,7 +52,7 @@ constexpr Field kTyreDummyFields[] = {
     field<&TyreDummyDef::damping>("damping", {.dimension = Dimension::damping,
                                               .range = kNotNegative,
                                               .change = Change::live,
-                                              .doc = "damper; carries at most what the spring does"}),
+                                              .doc = "damper, with at most the spring's force"}),
     field<&TyreDummyDef::friction>(
         "friction", {.range = kPositive, .change = Change::live, .doc = "largest slip force over normal force"}),
     field<&TyreDummyDef::longitudinal_slip_slope>("longitudinal_slip_slope",

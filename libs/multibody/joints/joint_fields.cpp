@@ -11,12 +11,12 @@ using enum Dimension;
 constexpr Field kBody1 = field<&JointDef::body1>("body1", {.reference = "body", .doc = "first body"});
 constexpr Field kPoint1 = field<&JointDef::point1>("point1", {.dimension = length, .doc = "joint's point in body 1"});
 constexpr Field kOrientation1 = field<&JointDef::orientation1>(
-    "orientation1", {.dimension = angle, .doc = "joint frame in body 1: successive rotations about x, y', z''"});
+    "orientation1", {.dimension = angle, .doc = "joint frame in body 1: rotations about x, y', z''"});
 constexpr Field kBody2 =
     field<&JointDef::body2>("body2", {.presence = Presence::required, .reference = "body", .doc = "second body"});
 constexpr Field kPoint2 = field<&JointDef::point2>("point2", {.dimension = length, .doc = "joint's point in body 2"});
 constexpr Field kOrientation2 = field<&JointDef::orientation2>(
-    "orientation2", {.dimension = angle, .doc = "joint frame in body 2: successive rotations about x, y', z''"});
+    "orientation2", {.dimension = angle, .doc = "joint frame in body 2: rotations about x, y', z''"});
 
 // limits and friction of a coordinate, in its dimensions
 struct AxisDimensions {
@@ -49,38 +49,33 @@ constexpr Range kFromOne{.min = 1, .min_is_open = false};
 template <auto Axis>
 constexpr std::array<Field, 10> axis_rows(const AxisDimensions& d, const AxisKeys& k) {
   using A = JointAxisDef;
-  return {
-      field<Axis, &A::limit_min>(k.limit_min,
-                                 {.dimension = d.coordinate, .doc = "lower limit of the joint coordinate"}),
-      field<Axis, &A::limit_max>(k.limit_max,
-                                 {.dimension = d.coordinate, .doc = "upper limit of the joint coordinate"}),
-      field<Axis, &A::limit_stiffness>(k.limit_stiffness, {.dimension = d.stiffness,
-                                                           .range = kNotNegative,
-                                                           .change = Change::live,
-                                                           .doc = "spring of the limits; they push only"}),
-      field<Axis, &A::limit_damping>(
-          k.limit_damping,
-          {.dimension = d.damping, .range = kNotNegative, .change = Change::live, .doc = "damper of the limits"}),
-      field<Axis, &A::coulomb_friction>(
-          k.coulomb,
-          {.dimension = d.force, .range = kNotNegative, .change = Change::live, .doc = "dry friction of the joint"}),
-      field<Axis, &A::viscous_friction>(k.viscous, {.dimension = d.damping,
-                                                    .range = kNotNegative,
-                                                    .change = Change::live,
-                                                    .doc = "viscous friction of the joint"}),
-      field<Axis, &A::friction_speed>(
-          k.friction_speed, {.dimension = d.speed,
-                             .range = kPositive,
-                             .doc = "speed over which dry friction is smoothed, tanh(v / friction_speed); of bristles "
-                                    "the Stribeck speed"}),
-      field<Axis, &A::bristle_stiffness>(k.bristle_stiffness,
-                                         {.dimension = d.stiffness,
-                                          .range = kNotNegative,
-                                          .doc = "dry friction by bristles, which hold at rest; 0: none"}),
-      field<Axis, &A::bristle_damping>(
-          k.bristle_damping, {.dimension = d.damping, .range = kNotNegative, .doc = "damping of the bristles"}),
-      field<Axis, &A::breakaway_ratio>(k.breakaway_ratio,
-                                       {.range = kFromOne, .doc = "breakaway over dry friction, of bristles"})};
+  return {field<Axis, &A::limit_min>(k.limit_min, {.dimension = d.coordinate, .doc = "lower limit of the coordinate"}),
+          field<Axis, &A::limit_max>(k.limit_max, {.dimension = d.coordinate, .doc = "upper limit of the coordinate"}),
+          field<Axis, &A::limit_stiffness>(k.limit_stiffness, {.dimension = d.stiffness,
+                                                               .range = kNotNegative,
+                                                               .change = Change::live,
+                                                               .doc = "spring of the limits; they push only"}),
+          field<Axis, &A::limit_damping>(
+              k.limit_damping,
+              {.dimension = d.damping, .range = kNotNegative, .change = Change::live, .doc = "damper of the limits"}),
+          field<Axis, &A::coulomb_friction>(
+              k.coulomb, {.dimension = d.force, .range = kNotNegative, .change = Change::live, .doc = "dry friction"}),
+          field<Axis, &A::viscous_friction>(
+              k.viscous,
+              {.dimension = d.damping, .range = kNotNegative, .change = Change::live, .doc = "viscous friction"}),
+          field<Axis, &A::friction_speed>(
+              k.friction_speed,
+              {.dimension = d.speed,
+               .range = kPositive,
+               .doc = "speed that smooths dry friction, tanh(v / friction_speed); of bristles the Stribeck speed"}),
+          field<Axis, &A::bristle_stiffness>(k.bristle_stiffness,
+                                             {.dimension = d.stiffness,
+                                              .range = kNotNegative,
+                                              .doc = "bristles of the dry friction, which hold at rest; 0: none"}),
+          field<Axis, &A::bristle_damping>(
+              k.bristle_damping, {.dimension = d.damping, .range = kNotNegative, .doc = "damping of the bristles"}),
+          field<Axis, &A::breakaway_ratio>(k.breakaway_ratio,
+                                           {.range = kFromOne, .doc = "breakaway over dry friction, of bristles"})};
 }
 
 // of an angle
@@ -88,7 +83,7 @@ template <auto Axis>
 constexpr std::array<Field, 1> turns_row(std::string_view key) {
   return {field<Axis, &JointAxisDef::start_turns>(
       key, {.range = {.min = -1e6, .max = 1e6},
-            .doc = "whole turns of the coordinate at the start, beyond the half turn that poses can show"})};
+            .doc = "whole turns of the coordinate at the start beyond the half turn of the poses"})};
 }
 
 template <std::size_t... Sizes>
@@ -106,8 +101,8 @@ constexpr std::array<Field, 6> kFrames = {kBody1, kPoint1, kOrientation1, kBody2
 
 constexpr std::array<Field, 1> initial_velocity_row(const AxisDimensions& d) {
   return {field<&JointDef::initial_velocity>(
-      "initial_velocity", {.dimension = d.speed,
-                           .doc = "rate of the joint coordinate at the start; none: 0, or the rate given by a loop"})};
+      "initial_velocity",
+      {.dimension = d.speed, .doc = "rate of the coordinate at the start; none: 0, or that of a loop"})};
 }
 
 constexpr auto kRevoluteFields =
@@ -119,11 +114,10 @@ constexpr auto kPrismaticFields =
 constexpr Field kInitialRotation = field<&JointDef::initial_rotation>(
     "initial_angular_velocity",
     {.dimension = angular_velocity,
-     .doc =
-         "angular velocity of body 2 seen from body 1 at the start, body 1 axes; none: 0, or what a loop makes of it"});
+     .doc = "angular velocity of body 2 seen from body 1 at the start, in its axes; none: 0, or that of a loop"});
 constexpr Field kInitialTranslation = field<&JointDef::initial_translation>(
     "initial_velocity",
-    {.dimension = velocity, .doc = "velocity of point 2 seen from body 1 at the start, body 1 axes"});
+    {.dimension = velocity, .doc = "velocity of point 2 seen from body 1 at the start, in its axes"});
 
 // all but the limits
 constexpr auto friction_rows(const std::array<Field, 10>& all) {

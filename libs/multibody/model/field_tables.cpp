@@ -57,46 +57,43 @@ constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::assembly_tolerance>("assembly_tolerance",
                                              {.dimension = length,
                                               .range = kAssemblyRange,
-                                              .doc = "largest violation of a joint by the poses at the start (a radian "
-                                                     "counts as a metre): bodies are then moved onto it and named"}),
+                                              .doc = "largest violation of a joint by the start poses (a radian as a "
+                                                     "metre): the bodies are moved onto it and named"}),
     field<&MechanicsDef::max_substep>(
         "max_substep",
         {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step of the integrator inside a step"}),
     field<&MechanicsDef::contact_substep>(
         "contact_substep",
         {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step while shapes touch or are about to"}),
-    field<&MechanicsDef::penalty_factor>(
-        "penalty_factor", {.range = kPenaltyFactorRange,
-                           .read_by = kReadByPenaltyFactor,
-                           .doc = "augmented, penalty: penalty mass of a joint, relative to the mechanism's mass"}),
-    field<&MechanicsDef::penalty_damping>("penalty_damping", {.range = kPenaltyDampingRange,
-                                                              .read_by = kReadByPenalty,
-                                                              .doc = "penalty: damping ratio of a joint's violation"}),
-    field<&MechanicsDef::penalty_frequency>("penalty_frequency",
-                                            {.dimension = angular_velocity,
-                                             .range = kPenaltyFrequencyRange,
-                                             .read_by = kReadByPenalty,
-                                             .doc = "penalty: angular frequency at which a joint closes"}),
+    field<&MechanicsDef::penalty_factor>("penalty_factor",
+                                         {.range = kPenaltyFactorRange,
+                                          .read_by = kReadByPenaltyFactor,
+                                          .doc = "penalty mass of a joint, relative to the mechanism's mass"}),
+    field<&MechanicsDef::penalty_damping>(
+        "penalty_damping",
+        {.range = kPenaltyDampingRange, .read_by = kReadByPenalty, .doc = "damping ratio of a joint's violation"}),
+    field<&MechanicsDef::penalty_frequency>("penalty_frequency", {.dimension = angular_velocity,
+                                                                  .range = kPenaltyFrequencyRange,
+                                                                  .read_by = kReadByPenalty,
+                                                                  .doc = "angular frequency at which a joint closes"}),
     field<&MechanicsDef::integrator>(
         "integrator",
         {.choices = kIntegrators,
-         .doc =
-             "rule of a sub-step. recursive, lagrange: the first five, of which the last three are implicit (springs "
-             "and dampers may be stiff); augmented: index3_trapezoidal; penalty: rk4. own: the first of these"}),
-    field<&MechanicsDef::spectral_radius>("spectral_radius",
-                                          {.range = kRadiusRange,
-                                           .read_by = kReadByAlpha,
-                                           .doc = "generalised_alpha: share of an oscillation far too fast for the "
-                                                  "sub-step that remains after one sub-step"}),
+         .doc = "rule of a sub-step. recursive, lagrange: the first five, the last three of them implicit (for stiff "
+                "springs and dampers); augmented: index3_trapezoidal; penalty: rk4. own: the first of these"}),
+    field<&MechanicsDef::spectral_radius>(
+        "spectral_radius", {.range = kRadiusRange,
+                            .read_by = kReadByAlpha,
+                            .doc = "share of an oscillation far too fast for the sub-step that remains after one"}),
     field<&MechanicsDef::iteration_tolerance>(
-        "iteration_tolerance", {.range = kIterationRange,
-                                .read_by = kReadByImplicit,
-                                .doc = "implicit integrators: error of speeds at which the iteration ends, relative to "
-                                       "the mechanism's largest (at least 1 m/s, 1 rad/s)"}),
-    field<&MechanicsDef::payload>(
-        "payload", {.reference = "body",
-                    .doc = "body that the machine lifts, whose mass its load notes use: a rigid one that moves. "
-                           "Default: the one at the end of the longest chain of joints outside of loops"}),
+        "iteration_tolerance",
+        {.range = kIterationRange,
+         .read_by = kReadByImplicit,
+         .doc =
+             "error of speeds that ends the iteration, relative to the mechanism's largest (at least 1 m/s, 1 rad/s)"}),
+    field<&MechanicsDef::payload>("payload", {.reference = "body",
+                                              .doc = "lifted body of the load notes, a rigid one that moves; default: "
+                                                     "the end of the longest chain of joints outside of loops"}),
 };
 
 constexpr Field kRelativeTo = field<&BodyDef::relative_to>(
@@ -104,7 +101,7 @@ constexpr Field kRelativeTo = field<&BodyDef::relative_to>(
 constexpr Field kPosition =
     field<&BodyDef::position>("position", {.dimension = length, .doc = "origin of the body's frame"});
 constexpr Field kOrientation =
-    field<&BodyDef::orientation>("orientation", {.dimension = angle, .doc = "successive Euler rotations z, x', z''"});
+    field<&BodyDef::orientation>("orientation", {.dimension = angle, .doc = "Euler rotations z, x', z''"});
 
 constexpr Field kBodyFields[] = {
     kRelativeTo,
@@ -124,7 +121,7 @@ constexpr Field kBodyFields[] = {
                                                 "from_mesh, from_shape, from_parts"}),
     field<&BodyDef::products>(
         "products",
-        {.dimension = inertia, .doc = "the tensor's elements Ixy, Ixz, Iyz (minus the integral of x y dm)"}),
+        {.dimension = inertia, .doc = "elements Ixy, Ixz, Iyz of the tensor (minus the integral of x y dm)"}),
     field<&BodyDef::inertia_about>("inertia_about",
                                    {.choices = kInertiaPoints, .doc = "point that inertia and products refer to"}),
 };
@@ -137,51 +134,48 @@ constexpr Field kFlexibleBodyFields[] = {
     kRelativeTo,
     kPosition,
     kOrientation,
-    field<&BodyDef::flex_model>("flex_model",
-                                {.doc = "model in the names Model_Prefix_Matrix.dat of its flexible files; without it "
-                                        "the scene's name"}),
-    field<&BodyDef::flex_file_prefix>(
-        "flex_file_prefix",
-        {.presence = Presence::required, .doc = "prefix in the names of the files, which lie beside the scene"}),
+    field<&BodyDef::flex_model>(
+        "flex_model",
+        {.doc =
+             "Model in the names Model_Prefix_Matrix.dat of the files beside the scene; without it the scene's name"}),
+    field<&BodyDef::flex_file_prefix>("flex_file_prefix",
+                                      {.presence = Presence::required, .doc = "Prefix in these names"}),
     field<&BodyDef::flex_modes>(
-        "flex_modes",
-        {.doc = "selected modes, as '1;2', or none: rigid, with the files' mass; default: all of the files"}),
+        "flex_modes", {.doc = "selected modes, as '1;2', or none: rigid, with the files' mass; default: all"}),
     field<&BodyDef::flex_frequency_limit>(
         "flex_frequency_limit",
-        {.dimension = Dimension::frequency, .range = kPositive, .doc = "modes above it are omitted"}),
+        {.dimension = Dimension::frequency, .range = kPositive, .doc = "frequency above which modes are omitted"}),
     field<&BodyDef::relative_damping>(
-        "relative_damping", {.doc = "damping over critical damping by mode, as '0.005;0.005', or one for all; 0"}),
-    field<&BodyDef::start_shape>("start_shape",
-                                 {.choices = kStartShapes,
-                                  .read_by = kReadWithoutCoordinates,
-                                  .doc = "equilibrium: the body rests under its load at the start, in a mechanism with "
-                                         "loops where actuators hold its joints, else it is undeformed"}),
+        "relative_damping",
+        {.doc = "damping over critical damping by mode, as '0.005;0.005', or one for all; default 0"}),
+    field<&BodyDef::start_shape>("start_shape", {.choices = kStartShapes,
+                                                 .read_by = kReadWithoutCoordinates,
+                                                 .doc = "equilibrium: the body rests under its load at the start; with "
+                                                        "loops only where actuators hold its joints, else undeformed"}),
     field<&BodyDef::modal_coordinates>(
-        "modal_coordinates",
-        {.doc = "modal coordinates at the start by mode, as '0.01;0', in SI units of the files' modes, instead of "
-                "start_shape"}),
+        "modal_coordinates", {.doc = "modal coordinates at the start, as '0.01;0', in SI units of the files' modes"}),
     field<&BodyDef::modal_rates>("modal_rates",
-                                 {.doc = "their rates at the start, as '0.1;0'; 0. Loops close by the other speeds"}),
+                                 {.doc = "their rates, as '0.1;0'; default 0. Loops close by the other speeds"}),
 };
 
 constexpr Field kSegmentedBodyFields[] = {
     kRelativeTo,
     kPosition,
     kOrientation,
-    field<&BodyDef::flex_model>("flex_model",
-                                {.doc = "model in the names Model_Prefix_Matrix.dat of its flexible files; without it "
-                                        "the scene's name"}),
-    field<&BodyDef::flex_file_prefix>(
-        "flex_file_prefix",
-        {.presence = Presence::required, .doc = "prefix in the names of the files, which lie beside the scene"}),
+    field<&BodyDef::flex_model>(
+        "flex_model",
+        {.doc =
+             "Model in the names Model_Prefix_Matrix.dat of the files beside the scene; without it the scene's name"}),
+    field<&BodyDef::flex_file_prefix>("flex_file_prefix",
+                                      {.presence = Presence::required, .doc = "Prefix in these names"}),
     field<&BodyDef::segments>("segments", {.range = {1, 200, false, false},
-                                           .doc = "elastic connectors of equal length, between one more rigid lumps"}),
-    field<&BodyDef::relative_damping>("relative_damping",
-                                      {.doc = "damping over critical damping of the files' first mode, one number; 0"}),
+                                           .doc = "elastic connectors, of equal length, between one more rigid lumps"}),
+    field<&BodyDef::relative_damping>(
+        "relative_damping", {.doc = "damping over critical damping of the first mode, one number; default 0"}),
     field<&BodyDef::start_shape>("start_shape",
                                  {.choices = kStartShapes,
-                                  .doc = "equilibrium: the body rests under its load at the start, in a mechanism with "
-                                         "loops it is undeformed; undeformed: all segmented bodies of the scene are"}),
+                                  .doc = "equilibrium: the body rests under its load at the start, with loops it is "
+                                         "undeformed; undeformed: all segmented bodies of the scene are"}),
 };
 
 template <typename Def>
@@ -230,11 +224,11 @@ constexpr Field kTranslationalForceFields[] = {
 constexpr Field kRotationalForceFields[] = {
     field<&RotationalForceDef::body1>("body1",
                                       {.presence = Presence::required, .reference = "body", .doc = "first body"}),
-    field<&RotationalForceDef::f1>("f1", {.doc = "direction at a right angle to the axis, body 1"}),
-    field<&RotationalForceDef::g1>("g1", {.doc = "direction at a right angle to axis and f1, body 1"}),
+    field<&RotationalForceDef::f1>("f1", {.doc = "direction across the axis, body 1"}),
+    field<&RotationalForceDef::g1>("g1", {.doc = "direction across axis and f1, body 1"}),
     field<&RotationalForceDef::body2>("body2",
                                       {.presence = Presence::required, .reference = "body", .doc = "second body"}),
-    field<&RotationalForceDef::f2>("f2", {.doc = "direction whose angle from f1 towards g1 is measured, body 2"}),
+    field<&RotationalForceDef::f2>("f2", {.doc = "direction of the angle, from f1 towards g1, body 2"}),
     field<&RotationalForceDef::spring_constant>("spring_constant", {.dimension = rotational_stiffness,
                                                                     .range = kNotNegative,
                                                                     .change = Change::live,
@@ -275,17 +269,16 @@ constexpr Field kForceDummyFields[] = {
                                 {.dimension = mass, .range = kPositive, .presence = Presence::required, .doc = "mass"}),
     field<&ForceDummyDef::center_of_mass>(
         "center_of_mass", {.dimension = length, .doc = "centre of mass on the element's x axis = unit(P1 - P2)"}),
-    field<&ForceDummyDef::inertia>("inertia", {.dimension = inertia,
-                                               .range = kNotNegative,
-                                               .doc = "moments about the centre of mass, element frame; Iyy = Izz, "
-                                                      "the axial Ixx has no effect"}),
+    field<&ForceDummyDef::inertia>(
+        "inertia", {.dimension = inertia,
+                    .range = kNotNegative,
+                    .doc = "moments about the centre of mass, element frame; Iyy = Izz, Ixx has no effect"}),
 };
 
 constexpr Field kStaticDummyFields[] = {
     field<&StaticDummyDef::relative_to>("relative_to", {.reference = "body", .doc = "body that carries the mass"}),
     field<&StaticDummyDef::position>("position", {.dimension = length, .doc = "origin of the dummy in the body"}),
-    field<&StaticDummyDef::orientation>("orientation",
-                                        {.dimension = angle, .doc = "successive Euler rotations z, x', z''"}),
+    field<&StaticDummyDef::orientation>("orientation", {.dimension = angle, .doc = "Euler rotations z, x', z''"}),
     field<&StaticDummyDef::mass>("mass",
                                  {.dimension = mass, .range = kNotNegative, .doc = "mass; 0 for graphics only"}),
     field<&StaticDummyDef::center_of_mass>("center_of_mass",

@@ -13,8 +13,8 @@ constexpr Range kAxis{.min = 1, .max = 2, .min_is_open = false, .max_is_open = f
 
 constexpr Field kJoint = field<&MotionDef::joint>(
     "joint", {.presence = Presence::required, .reference = "joint", .doc = "joint whose coordinate it drives"});
-constexpr Field kUniversalAxis = field<&MotionDef::axis>(
-    "axis", {.range = kAxis, .doc = "coordinate of a universal joint: 1 about z of frame 1, 2 about z of frame 2"});
+constexpr Field kUniversalAxis =
+    field<&MotionDef::axis>("axis", {.range = kAxis, .doc = "axis of a universal joint: z of frame 1 or of frame 2"});
 
 constexpr Field points_row(Dimension value) {
   return field<&MotionDef::points>("points", {.dimension = Dimension::time,
@@ -24,15 +24,15 @@ constexpr Field points_row(Dimension value) {
 }
 constexpr Field kPositionEnds = field<&MotionDef::ends>(
     "ends", {.choices = kEnds,
-             .doc = "outside of the times: held (slope 0 at the ends), continued with the end's speed, or refused"});
+             .doc = "outside of the times: held (slope 0 at the ends), continued with the end's speed, refused"});
 constexpr ReadBy kReadByPoints[] = {read_by_set<&MotionDef::points>("points", "points")};
 constexpr Field kSpeedEnds = field<&MotionDef::ends>(
     "ends", {.choices = kEnds,
              .read_by = kReadByPoints,
-             .doc = "outside of the times: the speed is held, continued with the end's acceleration, or refused"});
+             .doc = "outside of the times: the speed is held, continued with the end's acceleration, refused"});
 constexpr Field offset_row(Dimension position) {
-  return field<&MotionDef::offset>(
-      "offset", {.dimension = position, .doc = "mean position; none: such that the motion fits the start position"});
+  return field<&MotionDef::offset>("offset",
+                                   {.dimension = position, .doc = "mean position; none: fits the start position"});
 }
 constexpr Field amplitude_row(Dimension position) {
   return field<&MotionDef::amplitude>("amplitude",

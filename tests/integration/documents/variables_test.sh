@@ -53,7 +53,7 @@ awk -F'\t' -v variables="$scratch/variables" '
 # Element.quantity of the other documents, where Element is one of a scene: a variable, a part of one, or a key. Not:
 # signals of a device, names that stand for any, named points, files, a name that is wrong on purpose
 except='^(Seat|Free|Pair)\.|^Boom\.(tip|foot)$|\.(stl|obj)$|^Pump\.ls_prt$'
-sed -n 's/^| \(`[^|]*`\) |.*/\1/p' "$source/docs/scene-format.md" | grep -o '[a-z0-9_]*' | sort -u > "$scratch/keys"
+grep -E '^(\| |- |  )' "$source/docs/scene-format.md" | grep -o '`[a-z0-9_]*`' | tr -d '`' | sort -u > "$scratch/keys"
 (cd "$source" && grep -oE '\b[A-Z][A-Za-z0-9_]*\.[a-z_][A-Za-z0-9_]*(\.[A-Za-z0-9_]+)*' README.md docs/*.md docs/howto/*.md \
   docs/tutorial/*.md docs/machines/*.md) | sort -u |
   awk -F: -v variables="$scratch/all" -v keys="$scratch/keys" -v except="$except" '
