@@ -174,7 +174,8 @@ double Circuit::state_of_oil(std::size_t volume, double w) const noexcept {
     const OilMeasure reached = rigid_oil(volume, p);
     const double step = (oil - reached.value) / reached.slope;
     p += step;
-    if (std::fabs(step) <= kSettledOil * p) break;
+    // one that does not rise is rounding, which may be many times that of p
+    if (step <= kSettledOil * p) break;
   }
   return std::max(p, floor_);
 }
