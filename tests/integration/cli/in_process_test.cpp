@@ -9,6 +9,7 @@
 
 #include "command.h"
 #include "sample_hashes.h"
+#include "tests/support/test_domain.h"
 
 namespace slew::testing {
 namespace in_process_test {
@@ -120,7 +121,8 @@ TEST_F(InProcess, FlagsAreReportedAlikeWithAndWithoutARecordingInOneProcessAndIn
   EXPECT_EQ(notes({"--in-process", "--no-record"}), recorded);
   const CommandResult info = slewring({"info", work_.recording().string(), "--json"});
   EXPECT_EQ(nlohmann::json::parse(info.out).at("notes"), recorded);
-  EXPECT_EQ(notes({"--no-record", "--session", "flags_unrecorded"}), recorded);
+  const TestDomain domain;
+  EXPECT_EQ(notes({"--no-record", "--domain", std::to_string(domain.number())}), recorded);
 }
 
 TEST_F(InProcess, TheLastLineIsThePathOfTheRecording) {
