@@ -26,14 +26,13 @@
 // every correction; elsewhere, near a singular position, and where it is slow, the matrix is that of body coordinates.
 // M a - Q by Newton and Euler with all forces at the stage, so that the result does not depend on the left side; K and
 // D: those of all force elements and contacts (link_stiffness.h) and, once the iteration proves slow, the pull of a
-// joint's force F
-// at s from a link's origin, (F . s) across s where it is positive. It omits gyroscopic and centrifugal terms, row
-// forces, pushing joints. In joint coordinates delta is read off as relative speeds. A force that jumps at the edge of
-// a stop takes a value between its two there: (4) is relaxed if it alternates. A sub-step in which a stop is touched or
-// left, or changes in iterations that do not settle, uses tau = sigma = h, u* = u_0, d = 0 instead of the rule: of
-// order 1, but without energy gain from a spring that only pushes, unlike the other rules for contacts shorter than h.
-// The same holds in the middle of an impact with a frequency or damping rate above kUnresolved/h. After the step the
-// state is projected onto the joints (project()).
+// joint's force F at s from a link's origin, (F . s) across s where it is positive. It omits gyroscopic and centrifugal
+// terms, row forces, pushing joints. In joint coordinates delta is read off as relative speeds. A force that jumps at
+// the edge of a stop takes a value between its two there: (4) is relaxed if it alternates. A sub-step in which a stop
+// is touched or left, or changes in iterations that do not settle, uses tau = sigma = h, u* = u_0, d = 0 instead of the
+// rule: of order 1, but without energy gain from a spring that only pushes, unlike the other rules for contacts shorter
+// than h. The same holds in the middle of an impact with a frequency or damping rate above kUnresolved/h. After the
+// step the state is projected onto the joints (project()).
 //
 // The trapezoid has an error of h^2/12 (a_1 - a_0) in a turn, the others nearly as much. A sub-step in which it exceeds
 // both kLargestTurnError and the turn itself has not resolved a whip; small ringing of stiff laws passes. For any

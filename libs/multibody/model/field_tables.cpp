@@ -103,6 +103,12 @@ constexpr Field kPosition =
 constexpr Field kOrientation =
     field<&BodyDef::orientation>("orientation", {.dimension = angle, .doc = "Euler rotations z, x', z''"});
 
+constexpr Field kFlexModel = field<&BodyDef::flex_model>(
+    "flex_model",
+    {.doc = "Model in the names Model_Prefix_Matrix.dat of the files beside the scene; without it the scene's name"});
+constexpr Field kFlexFilePrefix = field<&BodyDef::flex_file_prefix>(
+    "flex_file_prefix", {.presence = Presence::required, .doc = "Prefix in these names"});
+
 constexpr Field kBodyFields[] = {
     kRelativeTo,
     kPosition,
@@ -134,12 +140,8 @@ constexpr Field kFlexibleBodyFields[] = {
     kRelativeTo,
     kPosition,
     kOrientation,
-    field<&BodyDef::flex_model>(
-        "flex_model",
-        {.doc =
-             "Model in the names Model_Prefix_Matrix.dat of the files beside the scene; without it the scene's name"}),
-    field<&BodyDef::flex_file_prefix>("flex_file_prefix",
-                                      {.presence = Presence::required, .doc = "Prefix in these names"}),
+    kFlexModel,
+    kFlexFilePrefix,
     field<&BodyDef::flex_modes>(
         "flex_modes", {.doc = "selected modes, as '1;2', or none: rigid, with the files' mass; default: all"}),
     field<&BodyDef::flex_frequency_limit>(
@@ -162,12 +164,8 @@ constexpr Field kSegmentedBodyFields[] = {
     kRelativeTo,
     kPosition,
     kOrientation,
-    field<&BodyDef::flex_model>(
-        "flex_model",
-        {.doc =
-             "Model in the names Model_Prefix_Matrix.dat of the files beside the scene; without it the scene's name"}),
-    field<&BodyDef::flex_file_prefix>("flex_file_prefix",
-                                      {.presence = Presence::required, .doc = "Prefix in these names"}),
+    kFlexModel,
+    kFlexFilePrefix,
     field<&BodyDef::segments>("segments", {.range = {1, 200, false, false},
                                            .doc = "elastic connectors, of equal length, between one more rigid lumps"}),
     field<&BodyDef::relative_damping>(
