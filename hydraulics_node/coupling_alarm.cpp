@@ -95,9 +95,8 @@ void CouplingAlarm::write_text(std::size_t port, coupling::Level level) noexcept
     const auto written = fmt::format_to_n(
         text_.data(), text_.size(),
         "{}: the coupling diverges: over the last second it created {:.2g} % or more of the energy that the oil "
-        "springs hold, at omega_H = {:.2g} of the oil-spring oscillation, as a chamber became soft or stiff within a "
-        "step; use {}, or "
-        "session.coupling_alarm: warn to continue with red lamps",
+        "springs hold, at omega_H = {:.2g} of the oil-spring oscillation, in steps within which the spring of a "
+        "chamber may change; use {}, or session.coupling_alarm: warn to continue with red lamps",
         scene_.ports[port].name, 1e2 * made_[port].share, indicator_.omega_H(), remedy);
     text_length_ = std::min(written.size, text_.size());
     return;
